@@ -8,15 +8,14 @@ once, and everything that asks for it later shares the answer.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.confirmation import Confirmation
-from jbf.diagnosis.level import Directions, Level, calibrated, score_test, with_decoys
+from jbf.diagnosis.fitted import Fitted
+from jbf.diagnosis.level import Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.reached import Reached
 from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
@@ -42,7 +41,6 @@ from jbf.models.catalogue import find_effect, why_not
 from jbf.models.vocabulary import Clock
 
 Progress = Callable[[str, int, int], None]
-State = Literal["posed", "looked", "ranked", "converged"]
 Array = npt.NDArray[np.float64]
 
 RANKING_EVALUATIONS = 6
@@ -52,64 +50,6 @@ RANKING_EVALUATIONS = 6
 def many_peaks(effects: Iterable[str]) -> bool:
     """True where the likelihood of these effects has peak beside peak."""
     return any(find_effect(name).peaks for name in effects)
-
-
-@dataclass
-class Fitted:
-    """A set of effects beside the law, as far as it has been fitted.
-
-    Attributes
-    ----------
-    state
-        `posed`, `looked` (at first sight), `ranked` (a few steps) or `converged`.
-    score
-        What its score test promised beside the first model that asked, in twice the log
-        likelihood; infinite where the null is out of a step's reach.
-    directions
-        Where its score was tested; until the level of the tests has been calibrated by them.
-    stepped
-        Where one step from its null leads: near a weak effect.
-    approach, least
-        A fit that was looked at only, and the sum of squares that it must come below to be
-        followed.
-    promised
-        What it may gain by the linear model, in twice the log likelihood; infinite once it was
-        followed.
-    peaks_searched
-        True once its other peaks were looked for.
-    left_out
-        Runs that were left out of the fit; empty until somebody asks.
-    halves
-        Held-out predictions of two halves of a run, by (run, alternate).
-    """
-
-    problem: Problem
-    state: State = "posed"
-    solution: Solution | None = None
-    score: float | None = None
-    directions: Directions | None = None
-    stepped: Array | None = None
-    approach: Approach | None = None
-    least: float = np.inf
-    promised: float = np.inf
-    peaks_searched: bool = False
-    left_out: list[LeftOut] = field(default_factory=list)
-    halves: dict[tuple[int, bool], list[LeftOut]] = field(default_factory=dict)
-
-    def found(self) -> Solution:
-        """The solution so far."""
-        assert self.solution is not None
-        return self.solution
-
-    def improve(self, better: Solution) -> None:
-        """Take a better solution of the same problem; what followed from the other is void."""
-        if better is not self.solution:
-            self.solution = better
-            self.left_out, self.halves = [], {}
-
-    def named_values(self) -> dict[str, float]:
-        """Parameter name to value."""
-        return dict(zip(self.problem.names, self.found().values.tolist(), strict=True))
 
 
 class Candidates:

@@ -93,5 +93,7 @@ def one_round(
         raise Stopped(fitted) from None
     except Unfinished as stop:
         raise Unfinished(steps=stop.steps, fit=fitted, file=campaign.named) from None
-    ledger = step(candidates, chosen, comparison.noise_n, trials)
-    return OneRound(fitted, replace(ledger, rms_n=comparison.rms_n), comparison, strengths)
+    ledger = replace(
+        step(candidates, chosen, trials), rms_n=comparison.rms_n, noise_n=comparison.noise_n
+    )
+    return OneRound(fitted, ledger, comparison, strengths)

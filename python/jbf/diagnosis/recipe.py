@@ -191,7 +191,7 @@ def _with_law(
     certain = with_errors_of_motion(candidates)
     if certain is not None:
         candidates = candidates.of(certain)
-    selected = select(candidates, _before(candidates).noise_n)
+    selected = select(candidates)
     candidates = selected.candidates
     before = _before(candidates)
     campaign = candidates.campaign
@@ -210,7 +210,7 @@ def _with_law(
     equal = {name: tuple(w)[1:] for name, w in posterior.items()}
     kept = best_predicting(candidates, present, named)
     if kept != steps[-1].effects:
-        steps.append(step(candidates, kept, before.noise_n, ()))
+        steps.append(step(candidates, kept, ()))
     fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
     tied = {name: others for name, others in equal.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))

@@ -24,6 +24,7 @@ from jbf.diagnosis.terms import changed_terms
 from jbf.diagnosis.terms.shifts import DELAY
 from jbf.estimation.left_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
+from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import least_weights
 from jbf.models.catalogue import may_come
@@ -51,7 +52,7 @@ class Selected:
     refused: tuple[Remainder, ...] = ()
 
 
-def select(candidates: Candidates, noise_n: float) -> Selected:
+def select(candidates: Candidates) -> Selected:
     """Add effects and terms of the observation model, the largest evidence first, until none is
     accepted.
 
@@ -72,7 +73,7 @@ def select(candidates: Candidates, noise_n: float) -> Selected:
             candidates = candidates.of(settled)
             present = still_needed(candidates, present)
         found = try_candidates(candidates, present, follow)
-        steps.append(step(candidates, present, noise_n, found.trials))
+        steps.append(step(candidates, present, found.trials))
         led = max((t.evidence for t in found.trials if t.outcome == "added"), default=None)
         other = changed_terms(candidates, present, led) if terms < policy.most_terms else None
         if other is not None:
@@ -176,9 +177,13 @@ def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:
     return Remainder("effects", where, max(1.0 - (richer.rms_n / base.rms_n) ** 2, 0.0))
 
 
-def step(candidates: Candidates, effects: Names, noise_n: float, trials: tuple[Trial, ...]) -> Step:
-    rms, left_out = candidates.converge(effects).rms_n, candidates.left_out_rms(effects)
-    return Step(effects, rms, left_out, noise_n, trials, _extrapolations(candidates, effects))
+def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> Step:
+    """A line of the ledger: a model, its errors, and the candidates tried beside it."""
+    solution = candidates.converge(effects)
+    noise_n = noise_floor(candidates.campaign.prepared, solution.samples)
+    left_out_n = candidates.left_out_rms(effects)
+    beyond = _extrapolations(candidates, effects)
+    return Step(effects, solution.rms_n, left_out_n, noise_n, trials, beyond)
 
 
 def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolation, ...]:

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from jbf.diagnosis.candidates import Candidates, Fitted
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.fitted import Fitted
 from jbf.diagnosis.excitations import Excitation, Limits, excitations
 from jbf.estimation.likelihood import unexplained_square
 from jbf.estimation.problem import bounded

@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.fitted import Fitted
 from jbf.diagnosis.excitations import Excitation, Limits, excitations
+from jbf.diagnosis.fitted import Fitted
 from jbf.estimation.likelihood import unexplained_square
 from jbf.estimation.problem import bounded
 from jbf.models.chain import core_load_n, core_motion

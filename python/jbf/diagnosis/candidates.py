@@ -75,7 +75,10 @@ class Candidates:
     def of(self, campaign: Campaign) -> Candidates:
         """The candidates of another campaign of the same runs, whose fits start from these."""
         self.before = None
-        return Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
+        again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
+        # Until it is calibrated beside a model of the new campaign.
+        again._level = self._level
+        return again
 
     # ---- which effects ----------------------------------------------------------------------
 

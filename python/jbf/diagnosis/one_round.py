@@ -84,7 +84,7 @@ def one_round(
     try:
         settled = settled_again(candidates.fitted(chosen).problem, candidates.converge(chosen))
         if settled is not None:
-            candidates = Candidates(settled, law, clock, policy, progress, candidates)
+            candidates = candidates.of(settled)
         trials = try_candidates(candidates, chosen).trials
         if progress is not None:
             progress("how strong each would have to be", 0, 0)

@@ -107,7 +107,8 @@ class Diagnosis(Result):
     def negligible(self) -> tuple[str, ...]:
         """Effects that are significant beside the final model and too small to be worth reporting
         (`indifference` of the policy)."""
-        return tuple(t.effect for t in self.steps[-1].trials if t.outcome == "negligible")
+        trials = next((s.trials for s in reversed(self.steps) if s.trials), ())
+        return tuple(t.effect for t in trials if t.outcome == "negligible")
 
     @property
     def model(self) -> Model:

@@ -20,7 +20,7 @@ from jbf.diagnosis.selection import (
     still_needed,
     try_candidates,
 )
-from jbf.diagnosis.terms import changed_terms
+from jbf.diagnosis.terms import best_term_update
 from jbf.diagnosis.terms.shifts import DELAY
 from jbf.estimation.left_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
@@ -64,40 +64,57 @@ def select(candidates: Candidates) -> Selected:
     present, steps = start_model(candidates), []
     follow: Follow = "promising"
     visited = {frozenset(present)}
-    terms = 0
+    updates = 0
     while True:
         candidates.converge(present)
-        candidates.reached.candidates, candidates.reached.present = candidates, present
         settled = settled_again(candidates.fitted(present).problem, candidates.converge(present))
         if settled is not None:
             candidates = candidates.of(settled)
             present = still_needed(candidates, present)
+            visited = {frozenset(present)}
+        candidates.reached.candidates, candidates.reached.present = candidates, present
         found = try_candidates(candidates, present, follow)
         steps.append(step(candidates, present, found.trials))
-        led = max((t.evidence for t in found.trials if t.outcome == "added"), default=None)
-        other = changed_terms(candidates, present, led) if terms < policy.most_terms else None
-        if other is not None:
-            terms += 1
-            candidates = candidates.of(other.campaign)
-            present = still_needed(candidates, [n for n in present if n in other.effects])
+        may_update = updates < policy.most_terms
+        update, grown = None, present
+        if found.leader is not None:
+            least = _evidence_of_leader(candidates, present, found)
+            update = best_term_update(candidates, present, least) if may_update else None
+            if update is None and len(present) < policy.most_effects:
+                grown = _grown(candidates, present, found)
+        ended = frozenset(grown) in visited
+        if update is None and ended and follow == "promising" and may_update:
+            update = best_term_update(candidates, present)
+        if update is not None:
+            updates += 1
+            candidates = candidates.of(update.campaign)
+            present = still_needed(candidates, [n for n in present if n in update.effects])
             visited, follow = {frozenset(present)}, "promising"
             steps.pop()
             continue
-        if found.leader is not None:
-            if len(present) >= policy.most_effects:
-                refused = (_one_more(candidates, present, found.leader),)
-                return Selected(candidates, present, steps, refused)
-            grown = _grown(candidates, present, found)
-        elif follow == "promising" and remainder_of(candidates, present):
+        if ended and follow == "promising" and remainder_of(candidates, present):
             follow = "all"
             steps.pop()
             continue
-        else:
-            grown = _pair(candidates, present, found) if follow == "all" else present
+        if ended and follow == "all":
+            grown = _pair(candidates, present, found)
         if frozenset(grown) in visited:
-            return Selected(candidates, present, steps, _refused(candidates, present))
+            if found.leader is not None and len(present) >= policy.most_effects:
+                refused: tuple[Remainder, ...] = (_one_more(candidates, present, found.leader),)
+            else:
+                refused = _refused(candidates, present)
+            return Selected(candidates, present, steps, refused)
         visited.add(frozenset(grown))
         present, follow = grown, "promising"
+
+
+def _evidence_of_leader(candidates: Candidates, present: Names, found: Round) -> float:
+    """Evidence for the leading effect; its whole gain if independent units confirmed it."""
+    leader = next(t for t in found.trials if t.effect == found.leader)
+    if leader.evidence > 0.0:
+        return leader.evidence
+    richer = candidates.converge((*present, leader.effect))
+    return max(full_gain(candidates, richer, candidates.converge(present)), 0.0)
 
 
 def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:

@@ -65,16 +65,16 @@ class LatenessStep:
         count = int(np.sum(self.told))
         return float(special.chdtrc(count, self.square)) if count else 1.0
 
-    def differ_chance(self, late_s: Array, share: float) -> float:
+    def differ_chance(self, late_s: Array) -> float:
         """Probability that runs that are late by so much, as they were compared until this step,
-        differ so much by chance; of their chi-square a share is asked."""
+        differ so much by chance."""
         count = int(np.sum(self.told))
         if count < 2:
             return 1.0
         inverse = np.linalg.pinv(self.covariance_s2, rcond=RANK, hermitian=True)
         late = (late_s + self.late_s)[self.told]
         late -= np.sum(inverse @ late) / np.sum(inverse)
-        return float(special.chdtrc(count - 1, share * float(late @ inverse @ late)))
+        return float(special.chdtrc(count - 1, float(late @ inverse @ late)))
 
     def mean_s(self, late_s: Array) -> float:
         """The mean lateness of the runs that tell theirs, by how surely they do, s."""

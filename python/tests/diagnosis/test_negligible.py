@@ -29,6 +29,7 @@ def test_effect_below_the_smallest_size_is_listed_and_not_named(
     found = diagnosed(share * NOISE_N)
     assert found.effects == effects
     assert set(negligible) <= set(found.negligible)
+    assert share > 0.0 or found.negligible == ()
     assert not set(effects) & set(found.negligible)
     assert ("Possible, negligible" in found.summary()) == bool(found.negligible)
     assert found.to_dict()["negligible"] == list(found.negligible)

@@ -17,7 +17,7 @@ from jbf.diagnosis.terms.noise_variance import (
     variance_by_force,
     variance_by_run,
 )
-from jbf.diagnosis.terms.proposal import Model, accepted
+from jbf.diagnosis.terms.proposal import is_accepted
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
@@ -25,6 +25,7 @@ from jbf.estimation.robust import robust_size
 from jbf.estimation.solution import Solution
 from linear_campaigns import fit_from_truth, reversing_runs
 from scipy import special, stats
+from term_models import model_of
 
 NOISE_N = 0.1
 Change = Callable[[int, Array, np.random.Generator], Array]
@@ -47,9 +48,9 @@ def weighted(problem: Problem, solution: Solution) -> Campaign:
     """The campaign with the accepted terms, one after another."""
     campaign = problem.campaign
     for term in (variance_by_force, variance_by_run, heavy_tails):
-        model = Model.of(problem, solution)
+        model = model_of(problem, solution)
         found = term(model)
-        if found is not None and accepted(found, model):
+        if found is not None and is_accepted(found, model):
             campaign = found.campaign
             problem, solution = fit_from_truth(campaign)
     return campaign

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from by_hand import Array, assert_recovered, coulomb
 from jbf import Rig, Run, diagnose
-from jbf.diagnosis.terms.proposal import Model, Proposal, accepted
+from jbf.diagnosis.terms.proposal import Proposal, is_accepted
 from jbf.diagnosis.terms.random_effects import random_effect
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
@@ -15,6 +15,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
 from linear_campaigns import fit_from_truth, reversing_runs
+from term_models import model_of
 
 NOISE_N = 0.1
 Extra = Callable[[int, Array, Array], Array]
@@ -32,9 +33,9 @@ def fitted(extra: Extra, *, runs: int = 6) -> tuple[Problem, Solution]:
 
 def clearest(problem: Problem, solution: Solution) -> Any:
     """The accepted proposal of a random effect, or None."""
-    model = Model.of(problem, solution)
+    model = model_of(problem, solution)
     found = random_effect(model)
-    return found if accepted(found, model) else None
+    return found if is_accepted(found, model) else None
 
 
 def finding(found: Proposal) -> Finding:

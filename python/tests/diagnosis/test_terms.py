@@ -10,11 +10,16 @@ from jbf import Rig
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.terms import TERMS
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_run
-from jbf.diagnosis.terms.proposal import Model, Proposal, accepted, price_of_term
+from jbf.diagnosis.terms.proposal import Model, Proposal, is_accepted, price_of_term
+from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
+from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
+from jbf.estimation.problem import Problem
 from linear_campaigns import fit_from_truth, reversing_runs
 from scipy import stats
+from term_models import model_of
 
 NOISE_N = 0.1
 Draw = Callable[[int, int, np.random.Generator], Array]
@@ -24,7 +29,7 @@ Draw = Callable[[int, int, np.random.Generator], Array]
 def model(draw: Draw, *, seed: int = 0) -> Model:
     """Coulomb friction with this noise, fitted."""
     runs = reversing_runs(lambda i, t, f, random: f + draw(i, len(t), random), seed=seed)
-    return Model.of(*fit_from_truth(Campaign.prepare(Rig(), runs)))
+    return model_of(*fit_from_truth(Campaign.prepare(Rig(), runs)))
 
 
 def white(i: int, n: int, random: np.random.Generator) -> Array:
@@ -61,6 +66,45 @@ def test_gain_of_variances_by_run_is_that_of_normal_likelihoods() -> None:
     )
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e3])
+def test_gain_of_variances_is_the_same_in_any_unit_beside_an_effect_that_moves_jumps(
+    unit: float,
+) -> None:
+    """The effect excludes samples next to reversals."""
+    gains = []
+    for factor in (1.0, unit):
+        runs = reversing_runs(
+            lambda i, t, f, random, k=factor: k * (f + (1.0 + i) * white(i, len(t), random))
+        )
+        law = {"F_s_n": 6.0 * factor}
+        problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", ("time_delay",), law)
+        near = approach(problem, [{}], 20)
+        gains.append(proposed(variance_by_run(model_of(problem, settle(problem, near)))).gain)
+    assert gains[1] == pytest.approx(gains[0], rel=1e-3)
+
+
+def test_random_effect_is_removed_if_the_runs_do_not_have_it() -> None:
+    fitted = model(lambda i, n, random: white(i, n, random) + 0.3 * (-1.0) ** i)
+    found = proposed(random_effect(fitted))
+    between = found.campaign.samples.between
+    assert between is not None
+    problem, solution = fit_from_truth(found.campaign)
+    assert without_random_effect(model_of(problem, solution)) is None
+    # With a gain by run as well, which these runs do not have.
+    force = problem.predict(solution.values)
+    directions = tuple(
+        np.column_stack([d, 0.3 * f]) for d, f in zip(between.directions, force, strict=True)
+    )
+    both = replace(between, names=(*between.names, "gain"), directions=directions)
+    samples = replace(found.campaign.samples, between=both)
+    campaign = replace(found.campaign, samples=samples)
+    simpler = without_random_effect(model_of(*fit_from_truth(campaign)))
+    assert simpler is not None
+    assert simpler.samples.between is not None
+    assert simpler.samples.between.names == ("zero",)
+    assert [f.kind for f in simpler.more_findings] == ["level_by_run"]
+
+
 def test_gain_of_heavy_tails_is_that_of_the_student_distribution() -> None:
     fitted = model(lambda i, n, random: NOISE_N * random.standard_t(4.0, n))
     every = np.concatenate(residuals(fitted))
@@ -74,7 +118,7 @@ def test_gain_of_heavy_tails_is_that_of_the_student_distribution() -> None:
 @pytest.mark.parametrize("seed", range(5))
 def test_no_term_is_accepted_in_white_noise(seed: int) -> None:
     fitted = model(white, seed=seed)
-    assert [term.__name__ for term in TERMS if accepted(term(fitted), fitted)] == []
+    assert [term.__name__ for term in TERMS if is_accepted(term(fitted), fitted)] == []
 
 
 def test_term_is_not_accepted_if_held_out_runs_are_predicted_worse() -> None:
@@ -86,10 +130,10 @@ def test_term_is_not_accepted_if_held_out_runs_are_predicted_worse() -> None:
         solution=fitted.solution,
         gain=1e3,
     )
-    assert accepted(found, fitted)
+    assert is_accepted(found, fitted)
     off = fitted.solution.values + np.array([NOISE_N, 0.0, 0.0])
     held = {name: float(value) for name, value in zip(fitted.problem.names, off, strict=True)}
     problem, _ = fit_from_truth(fitted.campaign)
     problem = type(problem)(problem.campaign, problem.law, problem.clock, (), held)
     worse = problem.solution(off, fitted.solution.samples, WHITE)
-    assert not accepted(replace(found, problem=problem, solution=worse), fitted)
+    assert not is_accepted(replace(found, problem=problem, solution=worse), fitted)

@@ -22,13 +22,14 @@ from delayed_runs import (
 from jbf import Rig, Run
 from jbf.diagnosis.terms import shifts
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
-from jbf.diagnosis.terms.proposal import Model, accepted
+from jbf.diagnosis.terms.proposal import is_accepted
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import LINEAR_S, drift_step
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
+from term_models import model_of
 
 DELAYS_S = (4e-3, -2e-3, 9e-3, 1e-3)
 LARGE_DELAYS_S = (24e-3, -6e-3, 31e-3, 9e-3)
@@ -49,13 +50,9 @@ def corrected(
     before
         A fit with more effects, which delays would replace.
     """
-    model = replace(
-        Model.of(problem, solution),
-        before=solution if before is None else before,
-        price_of_effect=PRICE_OF_EFFECT,
-    )
+    model = model_of(problem, solution, reference=before, price_of_effect=PRICE_OF_EFFECT)
     found = delays(model)
-    return found.campaign if found is not None and accepted(found, model) else None
+    return found.campaign if found is not None and is_accepted(found, model) else None
 
 
 def unshifted(problem: Problem, solution: Solution) -> shifts.Shifted:
@@ -107,7 +104,7 @@ def test_clocks_differ_by_a_tenth_of_each_run_and_drift_by_two_parts_in_a_thousa
 )
 def test_delays_beyond_the_linear_range_are_found_at_any_start(start_s: tuple[float, ...]) -> None:
     problem, start = fitted(one_way_campaign(LARGE_DELAYS_S))[0], np.array(start_s)
-    found = shifts.jointly(
+    found = shifts.fit_delays_by_run(
         problem, shifts.Shifted(*fitted(shifts.moved(problem, start, 0.0)), start, 0.0)
     )
     assert max(LARGE_DELAYS_S) > 3.0 * LINEAR_S
@@ -117,7 +114,7 @@ def test_delays_beyond_the_linear_range_are_found_at_any_start(start_s: tuple[fl
 
 def test_delay_effect_is_replaced_by_run_delays_if_the_runs_differ_in_delay() -> None:
     fit = fitted(one_way_campaign(LARGE_DELAYS_S), DELAY)
-    found = shifts.jointly(fit[0], unshifted(*fit))
+    found = shifts.fit_delays_by_run(fit[0], unshifted(*fit))
     assert found.problem.effects == ()
     np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
 
@@ -133,7 +130,7 @@ def test_mass_in_one_run_is_not_corrected_as_a_delay_of_100_ms() -> None:
         runs.append(Run.from_arrays(t, v, force, name=f"run {i}"))
     problem, solution = fitted(Campaign.prepare(Rig(), runs))
     before = unshifted(problem, solution)
-    assert shifts.jointly(problem, before) is before
+    assert shifts.fit_delays_by_run(problem, before) is before
     assert corrected(problem, solution) is None
 
 
@@ -142,7 +139,7 @@ def test_clock_drift_is_estimated_jointly_with_the_law(drift: float) -> None:
     """At the end of the longer run the error is 2.4 ms or 36 ms, of at most 8 ms a step."""
     durations = (20.0, 10.0)
     problem, solution = fitted(one_way_campaign((0.0, 0.0), drift, durations_s=durations))
-    found = shifts.by_one_clock(problem, unshifted(problem, solution))
+    found = shifts.fit_clock_drift(problem, unshifted(problem, solution))
     step = drift_step(found.problem, found.solution)
     assert found.drift == pytest.approx(drift, abs=4.0 * step.variance**0.5)
     np.testing.assert_allclose(found.late_s, 0.5 * found.drift * np.array(durations), rtol=1e-3)
@@ -198,6 +195,16 @@ def test_delay_equal_in_all_runs_is_not_corrected(delay_s: float, effects: tuple
 def test_common_delay_beyond_the_linear_range_is_not_corrected(seed: int) -> None:
     """Intermediate estimates on the way to 30 ms differ between the runs."""
     assert corrected(*fitted(one_way_campaign((30e-3,) * 4, seed=seed))) is None
+
+
+@pytest.mark.parametrize("delay_s", [8e-3, 12e-3])
+def test_common_delay_is_no_clock_drift(delay_s: float) -> None:
+    assert corrected(*fitted(reversing_campaign((delay_s,) * 4))) is None
+    assert corrected(*fitted(one_way_campaign((delay_s,) * 4))) is None
+
+
+def test_delay_of_a_single_run_is_that_of_the_effect() -> None:
+    assert corrected(*fitted(reversing_campaign((12e-3,)))) is None
 
 
 def test_force_that_leads_the_motion_in_all_runs_is_corrected() -> None:

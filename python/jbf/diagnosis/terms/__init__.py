@@ -1,8 +1,8 @@
 """Terms of the observation model: what the recording adds to the output of a model.
 
 Each module estimates one kind of term beside a model and returns it as a `Proposal`, whose evidence
-is comparable with that of an effect. The selection (`jbf.diagnosis.rounds`) adds whichever has the
-larger evidence.
+is comparable with that of an effect. The selection (`jbf.diagnosis.rounds`) adds the term with the
+largest evidence if no effect is accepted; some terms (`COMPETING`) also compete with the effects.
 
 | module | terms |
 | --- | --- |
@@ -22,7 +22,7 @@ from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.motion import errors_of_motion
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_force, variance_by_run
-from jbf.diagnosis.terms.proposal import Model, Term, accepted
+from jbf.diagnosis.terms.proposal import Model, Term, is_accepted
 from jbf.diagnosis.terms.quantiser import quantiser
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
 from jbf.estimation.campaign import Campaign
@@ -46,44 +46,46 @@ lacks an effect resembles most of them: they are estimated where no effect is ac
 
 
 @dataclass(frozen=True)
-class Changed:
+class TermUpdate:
     """A campaign with other terms, and the effects that remain beside them."""
 
     campaign: Campaign
     effects: Names
 
 
-def changed_terms(
-    candidates: Candidates, present: Names, least: float | None = None
-) -> Changed | None:
+def best_term_update(
+    candidates: Candidates, present: Names, min_evidence: float | None = None
+) -> TermUpdate | None:
     """The campaign with the term that has the largest evidence beside a model, or without a random
     effect that the model no longer needs; None if no term changes.
 
     Parameters
     ----------
-    least
+    min_evidence
         Evidence for the effect that is accepted, with which some terms compete; None if no effect
         is.
     """
     whole = _model(candidates, present, present)
-    found = [(term(whole), whole) for term in (TERMS if least is None else COMPETING)]
+    terms = TERMS if min_evidence is None else COMPETING
+    found = [(term(whole), whole) for term in terms]
     explained = explained_by_delays(present)
-    if explained and least is None:
+    if explained and min_evidence is None:
         rest = _model(candidates, tuple(n for n in present if n not in explained), present)
         found.append((delays(rest), rest))
-    proposals = [(p, m) for p, m in found if p is not None]
+    proposals = [(p, model) for p, model in found if p is not None]
     proposals.sort(key=lambda pair: -pair[0].evidence)
-    for proposal, beside in proposals:
-        if accepted(proposal, beside, least or 0.0):
-            return Changed(proposal.campaign, proposal.problem.effects)
-    fewer = without_random_effect(whole) if least is None else None
-    return None if fewer is None else Changed(fewer, present)
+    for proposal, model in proposals:
+        if is_accepted(proposal, model, min_evidence or 0.0):
+            return TermUpdate(proposal.campaign, proposal.problem.effects)
+    fewer = without_random_effect(whole) if min_evidence is None else None
+    return None if fewer is None else TermUpdate(fewer, present)
 
 
 def _model(candidates: Candidates, effects: Names, present: Names) -> Model:
     return Model(
         candidates.fitted(effects).problem,
         candidates.converge(effects),
+        candidates.fitted(present).problem,
         candidates.converge(present),
         candidates.policy,
         price_of(candidates, 1),

@@ -16,10 +16,10 @@ from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
 from jbf.diagnosis.terms.shifts import (
     Shifted,
-    all_alike,
-    by_one_clock,
-    jointly,
-    searched,
+    fit_clock_drift,
+    fit_common_delay,
+    fit_delays_by_run,
+    fit_delays_by_search,
 )
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import drift_step, lateness_step
@@ -47,17 +47,18 @@ def delays(model: Model) -> Proposal | None:
     proposals, estimates = [], _estimates(model)
     if not estimates:
         return None
-    least = min((found.solution for found in estimates), key=lambda s: s.rms_n)
-    share = min(independent_share(least.residuals, least.samples.steps_s), 1.0)
+    best = min((found.solution for found in estimates), key=lambda s: s.rms_n)
+    counted = zip(best.residuals, best.samples.counted, strict=True)
+    share = min(independent_share([r * c for r, c in counted], best.samples.steps_s), 1.0)
     for found in estimates:
         price = price_of_term(model.policy)
         if found.drift == 0.0 and np.mean(found.late_s) > 0.0:
             # The mean delay is that of the effect, and must gain as much.
             price += model.price_of_effect
-        price -= model.price_of_effect * max(model.before.free - found.solution.free, 0)
+        price -= model.price_of_effect * max(model.reference.free - found.solution.free, 0)
         shifted = found.campaign.with_findings(_findings(known_delays(campaign), found))
-        gain = _gain(found, model.before, share)
-        proposals.append(Proposal("delays", shifted, found.problem, found.solution, gain, price))
+        gain = _gain(found, model.reference, share)
+        proposals.append(Proposal(shifted, found.problem, found.solution, gain, price))
     return max(proposals, key=lambda p: p.evidence)
 
 
@@ -80,14 +81,14 @@ def _estimates(model: Model) -> list[Shifted]:
     start = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
     estimates = []
     if lateness_step(problem, solution).chance < policy.deviation_chance:
-        estimates.append(jointly(problem, start))
+        estimates.append(fit_delays_by_run(problem, start))
     if not known_delays(problem.campaign):
         # The parameters of the model follow a drift slowly.
         if special.chdtrc(1, drift_step(problem, solution).square) < HINT:
-            estimates.append(by_one_clock(problem, start))
-        coarse = searched(problem, solution, policy)
+            estimates.append(fit_clock_drift(problem, start))
+        coarse = fit_delays_by_search(problem, solution, policy)
         if coarse is not None:
-            estimates.append(all_alike(problem, coarse) if coarse.drift == 0.0 else coarse)
+            estimates.append(fit_common_delay(problem, coarse) if coarse.drift == 0.0 else coarse)
     return [f for f in estimates if f is not start and _significant(f, policy)]
 
 
@@ -98,11 +99,16 @@ def _significant(found: Shifted, policy: Policy) -> bool:
     if found.drift != 0.0:
         # The residual of a wrong model is not white: half of Wald's statistic is used.
         square = 0.5 * found.drift**2 / drift_step(problem, solution).variance
-        return bool(special.chdtrc(1, square) < policy.deviation_chance)
+        # A delay common to all runs resembles a drift.
+        beside = drift_step(problem, solution, beside_delay=True)
+        left = (found.drift + beside.drift) ** 2 / beside.variance
+        return bool(
+            special.chdtrc(1, square) < policy.deviation_chance and special.chdtrc(1, left) < HINT
+        )
     if np.ptp(found.late_s) == 0.0:
-        return True
+        return bool(found.late_s[0] < 0.0)
     step = lateness_step(problem, solution)
-    return step.differ_chance(found.late_s, 1.0) < policy.deviation_chance
+    return step.differ_chance(found.late_s) < policy.deviation_chance
 
 
 def _gain(found: Shifted, other: Solution, share: float) -> float:

@@ -10,7 +10,10 @@ from jbf.estimation.refine import with_motion_errors_again
 
 def errors_of_motion(model: Model) -> Proposal | None:
     """Noise, scale and smoothness of the motion's errors, estimated again for a model with other
-    effects; None if the model leaves no less noise than the one for which they were estimated."""
+    effects; None if the noise is not clearly smaller than that for which they were estimated.
+
+    The gain is relative to the errors that the likelihood has so far.
+    """
     before = model.campaign.samples.motion
     if before is None:
         return None
@@ -25,4 +28,4 @@ def errors_of_motion(model: Model) -> Proposal | None:
     samples = replace(model.campaign.samples, motion=motion)
     campaign = replace(again.campaign, samples=samples)
     price = price_of_term(model.policy, 2)
-    return Proposal("errors_of_motion", campaign, again, after, gain, price)
+    return Proposal(campaign, again, after, gain, price)

@@ -13,13 +13,10 @@ import numpy.typing as npt
 from scipy import optimize, special
 
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
+from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term, refitted
 from jbf.estimation.likelihood import effective_share
-from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.robust import robust_size
-from jbf.estimation.samples import Samples
-from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
 
@@ -41,8 +38,6 @@ ERROR = 1.9
 the number of samples: 1.17 for independent ones (Rousseeuw & Croux 1993); these share readings."""
 START_FREEDOM = 5.0
 """Degrees of freedom of Student's t distribution at the start of its fit."""
-EVALUATIONS = 8
-"""Evaluations of a fit with weights."""
 
 
 def variance_by_force(model: Model) -> Proposal | None:
@@ -77,14 +72,16 @@ def _weighted(
     levels, finding = found
     ones = [np.ones(len(w)) for w in levels]
     samples = campaign.samples.weighed(levels, ones, campaign.samples.between)
-    after = _refitted(problem, solution, samples)
+    counted = solution.samples.counted
+    after = refitted(problem, solution, samples.within(counted))
+    before = campaign.samples.within(counted)
     # The likelihood of a sample has the factor 1 / (standard deviation).
     fitted = [w > 0.0 for w in after.samples.weight]
     logs = sum(float(np.sum(np.log(w[at]))) for w, at in zip(levels, fitted, strict=True))
-    gain = solution.cost - after.cost + 2.0 * logs
+    gain = before.cost(solution.residuals, solution.noise) - after.cost + 2.0 * logs
     again = replace(campaign, samples=samples).with_findings([finding])
     price = price_of_term(policy, parameters)
-    return Proposal(kind, again, problem, after, effective_share(after) * gain, price)
+    return Proposal(again, problem, after, effective_share(after) * gain, price)
 
 
 def heavy_tails(model: Model) -> Proposal | None:
@@ -108,18 +105,11 @@ def heavy_tails(model: Model) -> Proposal | None:
     weights, finding, gain = found
     ones = [np.ones(len(w)) for w in weights]
     samples = campaign.samples.weighed(ones, weights, campaign.samples.between)
-    after = _refitted(problem, solution, samples)
+    after = refitted(problem, solution, samples.within(solution.samples.counted))
     again = replace(campaign, samples=samples).with_findings([finding])
     gain *= effective_share(solution)
     price = price_of_term(policy)
-    return Proposal("heavy_tails", again, problem, after, gain, price)
-
-
-def _refitted(problem: Problem, solution: Solution, samples: Samples) -> Solution:
-    """A few steps of a fit with weights."""
-    within = samples.within(solution.samples.counted)
-    values = search(problem, within, solution.values, solution.noise, EVALUATIONS).values
-    return problem.solution(values, within, noise_at(problem, within, values))
+    return Proposal(again, problem, after, gain, price)
 
 
 def force_weights(

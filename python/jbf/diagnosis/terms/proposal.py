@@ -8,17 +8,24 @@ from typing import Protocol
 import numpy as np
 from scipy import special
 
-from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import left_out_by_run
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.long_run import sure_inflation
+from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
+from jbf.estimation.samples import Samples
+from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 KINDS = 10
 """Number of terms among which the probability of a false one is shared: offset, drift, gain and oil
 by run, delay by run, clock drift, quantiser, variance by force and by run, heavy tails."""
+
+
+EVALUATIONS = 8
+"""Evaluations of a fit with a term."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,20 +34,17 @@ class Proposal:
 
     Attributes
     ----------
-    term
-        Its name.
     campaign
         The campaign with the term.
     problem, solution
         The fit with the term.
     gain
-        Increase of twice the log marginal likelihood, corrected for the autocorrelation of the
-        residuals.
+        Increase of twice the log marginal likelihood of the independent samples.
     price
-        Least increase at which the term is accepted.
+        Penalty: the increase at which the term is accepted, less that of the effects which it
+        replaces.
     """
 
-    term: str
     campaign: Campaign
     problem: Problem
     solution: Solution
@@ -61,7 +65,7 @@ class Model:
     ----------
     problem, solution
         Its fit.
-    before
+    reference_problem, reference
         The fit that the term is compared with: this one, or that of a model with more effects,
         which the term would replace.
     price_of_effect
@@ -70,14 +74,10 @@ class Model:
 
     problem: Problem
     solution: Solution
-    before: Solution
-    policy: Policy = DEFAULT
-    price_of_effect: float = 0.0
-
-    @classmethod
-    def of(cls, problem: Problem, solution: Solution, policy: Policy = DEFAULT) -> Model:
-        """A model that is compared with itself."""
-        return cls(problem, solution, solution, policy)
+    reference_problem: Problem
+    reference: Solution
+    policy: Policy
+    price_of_effect: float
 
     @property
     def campaign(self) -> Campaign:
@@ -93,22 +93,23 @@ class Term(Protocol):
 
 
 def price_of_term(policy: Policy, parameters: int = 1) -> float:
-    """Increase of twice the log likelihood that noise exceeds with the probability of one term."""
+    """Critical value of the likelihood-ratio test: the upper quantile of chi-square at the
+    probability of one kind of term."""
     return float(special.chdtri(parameters, policy.deviation_chance / KINDS))
 
 
-def independent_samples(after: Solution, before: Solution) -> float:
-    """Number of independent samples a sample counts for in the gain of a term, 0 to 1; the same
-    measure as for an effect (`share_of_gain`)."""
+def independent_fraction(after: Solution, before: Solution) -> float:
+    """Number of independent samples that a sample counts for in the gain of a term, 0 to 1; the
+    same measure as for an effect (`share_of_gain`)."""
     left, was = (s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before))
     ways = [b - e for b, e in zip(was, left, strict=True)]
     return min(effective_share(after), 1.0 / sure_inflation(ways, left, after.samples.steps_s))
 
 
-def accepted(proposal: Proposal | None, model: Model, least: float = 0.0) -> bool:
-    """Whether the evidence for a term exceeds a least one, and runs left out of the fit confirm
-    it."""
-    if proposal is None or proposal.evidence <= max(least, 0.0):
+def is_accepted(proposal: Proposal | None, model: Model, min_evidence: float = 0.0) -> bool:
+    """Whether a term has more than the minimum evidence, and runs left out of the fit are not
+    predicted worse."""
+    if proposal is None or proposal.evidence <= max(min_evidence, 0.0):
         return False
     return not predicts_worse(proposal, model)
 
@@ -118,9 +119,9 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
     policy's ratio and the standard error of its mean over the runs.
 
     Every run has the same weight: where runs deviate from one another, the largest deviation must
-    not decide alone.
+    not decide alone. Delays and the bias of a quantiser are those of the whole fit.
     """
-    fits = ((proposal.problem, proposal.solution), (model.problem, model.solution))
+    fits = ((proposal.problem, proposal.solution), (model.reference_problem, model.reference))
     rms = [
         np.array([np.sqrt(np.mean(e**2)) if len(e) else np.nan for e in left_out_by_run(*fit)])
         for fit in fits
@@ -131,3 +132,10 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
         return False
     error = float(np.std(ratio, ddof=1)) / np.sqrt(len(ratio)) if len(ratio) > 1 else 0.0
     return bool(np.mean(ratio) - error > np.log(model.policy.no_worse))
+
+
+def refitted(problem: Problem, near: Solution, samples: Samples) -> Solution:
+    """A few steps of a fit to samples with other weights or correlations, with the noise that it
+    leaves."""
+    values = search(problem, samples, near.values, near.noise, EVALUATIONS).values
+    return problem.solution(values, samples, noise_at(problem, samples, values))

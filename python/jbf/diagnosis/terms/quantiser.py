@@ -1,7 +1,7 @@
 """Mean reading of a converter whose steps are as large as the noise.
 
 The difference between the mean reading and the force is a periodic function of the force (Widrow
-1956). Averaging does not remove it, and an effect that bends over the force would explain it.
+1956). Averaging does not remove it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy import optimize
 
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.terms.proposal import Model, Proposal, independent_samples, price_of_term
+from jbf.diagnosis.terms.proposal import Model, Proposal, independent_fraction, price_of_term
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.converter import bias_n, origin_n
 from jbf.estimation.noise_at import noise_at
@@ -43,9 +43,9 @@ def quantiser(model: Model) -> Proposal | None:
         after.values, after.samples, noise_at(again, after.samples, after.values)
     )
     gain = after.samples.cost(solution.residuals, solution.noise) - after.cost
-    share = independent_samples(after, solution)
+    share = independent_fraction(after, solution)
     price = price_of_term(model.policy)
-    return Proposal("quantiser", campaign, again, after, share * gain, price)
+    return Proposal(campaign, again, after, share * gain, price)
 
 
 def without_bias(

@@ -11,74 +11,70 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.diagnosis.terms.proposal import Model, Proposal, independent_samples, price_of_term
+from jbf.diagnosis.terms.proposal import (
+    Model,
+    Proposal,
+    independent_fraction,
+    price_of_term,
+    refitted,
+)
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
 from jbf.estimation.robust import robust_size
 from jbf.estimation.samples import Samples
-from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
 
-EVALUATIONS = 8
-"""Evaluations of a fit with the random effect."""
 LEAST_RUNS = 3
 """Number of runs from which on a standard deviation between runs is estimated."""
 
 
 def random_effect(model: Model) -> Proposal | None:
     """The random effect that is most significant beside those already in the model; None if none
-    exceeds chance."""
+    exceeds chance, and beside errors of the motion."""
     problem, solution, campaign = model.problem, model.solution, model.campaign
+    if campaign.samples.motion is not None:
+        return None
     counted = campaign.samples.within(solution.samples.counted)
     found = _most_significant(problem, solution, counted, model.policy.deviation_chance)
     if found is None:
         return None
     between, finding = found
-    after = _fitted(problem, solution, replace(counted, between=between))
+    after = refitted(problem, solution, replace(counted, between=between))
     samples = replace(campaign.samples, between=between)
     again = replace(campaign, samples=samples).with_findings([finding])
     gain = _gain(after, replace(solution, samples=counted))
-    return Proposal(finding.kind, again, problem, after, gain, price_of_term(model.policy))
+    return Proposal(again, problem, after, gain, price_of_term(model.policy))
 
 
 def without_random_effect(model: Model) -> Campaign | None:
-    """The campaign without the random effect that has the least evidence beside the others; None if
-    all of them are needed."""
+    """The campaign without the random effect that explains least beside the others; None if each of
+    them increases the marginal likelihood."""
     problem, solution, campaign = model.problem, model.solution, model.campaign
     between = campaign.samples.between
     if between is None:
         return None
-    evidence = {}
+    gains = {}
     for name in between.names:
         fewer = replace(solution.samples, between=between.without(name))
-        gain = _gain(solution, _fitted(problem, solution, fewer))
-        evidence[name] = gain - price_of_term(model.policy)
-    name = min(evidence, key=lambda name: evidence[name])
-    if evidence[name] >= 0.0:
+        gains[name] = _gain(solution, refitted(problem, solution, fewer))
+    name = min(gains, key=lambda name: gains[name])
+    if gains[name] >= 0.0:
         return None
     samples = replace(campaign.samples, between=between.without(name))
-    kind, _ = _words(name, 0.0, "")
-    findings = tuple(f for f in campaign.more_findings if f.kind != kind)
+    findings = tuple(f for f in campaign.more_findings if not f.words.startswith(WHAT[name]))
     return replace(campaign, samples=samples, more_findings=findings)
-
-
-def _fitted(problem: Problem, near: Solution, samples: Samples) -> Solution:
-    """A few steps of a fit with other random effects, with the noise that they leave."""
-    values = search(problem, samples, near.values, near.noise, EVALUATIONS).values
-    return problem.solution(values, samples, noise_at(problem, samples, values))
 
 
 def _gain(richer: Solution, simpler: Solution) -> float:
     """Gain of random effects in twice the log marginal likelihood."""
     volume = _log_determinant(richer) - _log_determinant(simpler)
     gain = simpler.samples.cost(simpler.residuals, simpler.noise) - richer.cost
-    return independent_samples(richer, simpler) * gain - volume
+    return independent_fraction(richer, simpler) * gain - volume
 
 
 def _log_determinant(solution: Solution) -> float:
@@ -171,14 +167,23 @@ def _spread(
     return spread_between(np.array(estimates), np.array(precisions))
 
 
+WHAT = {
+    "zero": "the zero differs",
+    "drift": "the zero drifts",
+    "gain": "the gain differs",
+    "U_tr_m_s": "the transition speed differs",
+    "gamma": "the viscous friction differs",
+}
+"""First words of the finding on each random effect."""
+
+
 def _words(name: str, sd: float, unit: str) -> tuple[str, str]:
     """Kind and text of the finding."""
+    what = WHAT[name]
     if name == "zero":
-        return "level_by_run", f"the zero differs by run by {sd:.2g} {unit} (1 s.d.)"
+        return "level_by_run", f"{what} by run by {sd:.2g} {unit} (1 s.d.)"
     if name == "drift":
-        return "drift_by_run", f"the zero drifts, by another {sd:.2g} {unit} (1 s.d.) in each run"
+        return "drift_by_run", f"{what}, by another {sd:.2g} {unit} (1 s.d.) in each run"
     if name == "gain":
-        return "gain_by_run", f"the gain differs by run by {100.0 * sd:.2g} % (1 s.d.)"
-    what = "transition speed" if name == "U_tr_m_s" else "viscous friction"
-    words = f"the {what} differs by run by {100.0 * sd:.2g} % (1 s.d.): the oil's warmth?"
-    return "oil_by_run", words
+        return "gain_by_run", f"{what} by run by {100.0 * sd:.2g} % (1 s.d.)"
+    return "oil_by_run", f"{what} by run by {100.0 * sd:.2g} % (1 s.d.): the oil's warmth?"

@@ -26,7 +26,8 @@ Names = tuple[str, ...]
 DELAY = "time_delay"
 TAU = "time_delay.tau_s"
 AHEAD_S = 20e-3
-"""So much too little the runs are shifted when their common delay is estimated, or a sample."""
+"""Delay left uncorrected while the common delay is estimated, s; or one sampling period, if that
+is longer."""
 EVALUATIONS = 12
 """Steps of a fit to runs that were shifted."""
 LARGEST_DRIFT = 2e-3
@@ -74,7 +75,12 @@ def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
     old = problem.campaign
-    whole = replace(old, prepared=tuple(prepared), samples=Samples.of(prepared), more_findings=())
+    whole = replace(
+        old,
+        prepared=tuple(prepared),
+        samples=Samples.of(prepared),
+        more_findings=tuple(f for f in old.more_findings if f.done == "left out"),
+    )
     return settled_campaign(whole, problem.law, problem.clock)
 
 
@@ -98,7 +104,7 @@ def refitted(
     return again, solution
 
 
-def jointly(first: Problem, start: Shifted) -> Shifted:
+def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
     """Runs shifted on, each by what its force is late beside the model that is fitted with it;
     where that leaves no less, as they were.
 
@@ -138,7 +144,7 @@ def jointly(first: Problem, start: Shifted) -> Shifted:
     return now if now.solution.rms_n < start.solution.rms_n else start
 
 
-def by_one_clock(first: Problem, start: Shifted) -> Shifted:
+def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
     """Runs shifted on as one clock has it that was started with each, its drift fitted together
     with the model; where that leaves no less, as they were."""
     lasts_s = np.array([p.run.duration_s for p in first.campaign.prepared])
@@ -175,7 +181,7 @@ def _coloured(shifted: Shifted) -> Shifted:
     return replace(shifted, solution=problem.solution(values, samples, noise))
 
 
-def searched(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
+def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
     """The runs shifted to where their squares are smallest (`lateness`), repeatedly; None if the
     delays do not differ, do not grow, and are not negative."""
     campaign = problem.campaign
@@ -201,7 +207,7 @@ def searched(problem: Problem, solution: Solution, policy: Policy) -> Shifted | 
     return None if campaign is old else Shifted(problem, solution, late_s, drift)
 
 
-def all_alike(problem: Problem, found: Shifted) -> Shifted:
+def fit_common_delay(problem: Problem, found: Shifted) -> Shifted:
     """The runs shifted by what all of them are late besides.
 
     A law takes a delay of all runs for its own memory, nearly: how late each is tells how they

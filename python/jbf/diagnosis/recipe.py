@@ -26,7 +26,7 @@ from jbf.diagnosis.selection import Names, start_model, weights
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
 from jbf.diagnosis.unseen import propose_to_see, unseen
 from jbf.diagnosis.verdict import verdict
-from jbf.diagnosis.which_law import LawTried, held_out_rms, simpler_law, which_law
+from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
@@ -120,14 +120,16 @@ def _diagnose(
     recorded = Campaign.prepare(rig, runs)
     laws: tuple[LawTried, ...] = ()
     no_law: dict[str, str] = {}
-    names = {law: 0.0}
+    names: tuple[str, ...] = (law,)
+    margin = policy.no_worse
     if law == AUTO:
-        laws, no_law = which_law(comparable(recorded, clock, policy), clock, policy, progress)
+        known = comparable(recorded, clock, policy)
+        laws, no_law = which_law(known, clock, policy, progress)
         names = _to_diagnose(laws)
-    best: tuple[Diagnosis, float] | None = None
-    for name, alone in names.items():
-        # An elastic law must predict better without effects than another one with its effects.
-        if best is not None and alone > best[1] / policy.no_worse:
+        margin = max(margin, (1.0 + policy.least_share(known.motion_share)) ** 0.5)
+    best: Diagnosis | None = None
+    for name in names:
+        if best is not None and not _may_predict_better(name, best, laws, margin):
             continue
         campaign = replace(recorded, work=recorded.work.part(1.0))
         try:
@@ -142,28 +144,51 @@ def _diagnose(
         except KeyboardInterrupt:
             if best is None:
                 raise
-            raise Stopped(best[0].fit) from None
-        if best is None or answer[1] < best[1] / policy.no_worse:
-            best = answer
+            raise Stopped(best.fit) from None
+        if best is not None:
+            before, after = _held_out_errors((best, answer), recorded)
+            if after >= before / margin:
+                continue
+        best = answer
     assert best is not None
-    first = [t for t in laws if t.law == best[0].model.law]
+    first = [t for t in laws if t.law == best.model.law]
     return replace(
-        best[0],
+        best,
         laws=(*first, *(t for t in laws if t not in first)),
-        not_tried=no_law | best[0].not_tried,
+        not_tried=no_law | best.not_tried,
         elapsed_s=time.monotonic() - begun,
     )
 
 
-def _to_diagnose(laws: Sequence[LawTried]) -> dict[str, float]:
-    """The selected law and, before it if it is elastic, the best one without memory; and the RMS of
-    their held-out errors without effects, N."""
-    first = laws[0]
-    best = {first.law: first.left_out_rms_n}
-    if not find_law(first.law).has_bristle:
-        return best
-    without = [t for t in laws if not memories(t.law, ())]
-    return {t.law: t.left_out_rms_n for t in without[:1]} | best
+def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
+    """The selected law and, before it if it is elastic, the best one without memory."""
+    first = laws[0].law
+    if not find_law(first).has_bristle:
+        return (first,)
+    without = [t.law for t in laws if not memories(t.law, ())]
+    return (*without[:1], first)
+
+
+def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:
+    """Whether an elastic law without effects predicts better than another one with its effects."""
+    alone = {t.law: t.left_out_rms_n for t in laws}
+    first, last = best.steps[0], best.steps[-1]
+    improved = last.holdout_rms_n / max(first.holdout_rms_n, 1e-300)
+    return alone[law] < alone[best.model.law] * improved / margin
+
+
+def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
+    """RMS of the errors of final models on runs that had no part in a fit, at the same samples, in
+    the unit of the force: of the fit there, times the ratio of held-out and fitted RMS."""
+    compared = [compare_prepared(answer.model, recorded) for answer in answers]
+    samples = recorded.samples
+    for own in compared:
+        samples = samples.within(own.samples.counted)
+    lasts = [answer.steps[-1] for answer in answers]
+    return [
+        samples.rms(own.residuals) * last.holdout_rms_n / max(last.rms_n, 1e-300)
+        for own, last in zip(compared, lasts, strict=True)
+    ]
 
 
 def _with_law(
@@ -176,8 +201,8 @@ def _with_law(
     reached: Reached,
     *,
     given: bool,
-) -> tuple[Diagnosis, float]:
-    """A diagnosis with a law, and the RMS of its held-out errors, N.
+) -> Diagnosis:
+    """A diagnosis with a law.
 
     Parameters
     ----------
@@ -225,7 +250,7 @@ def _with_law(
     if tied:
         rivals = [_rivals(named, name, others) for name, others in tied.items()]
         proposal = propose(candidates, rivals, limits)
-    diagnosis = Diagnosis(
+    return Diagnosis(
         verdict=answer,
         effects=missing,
         machine=machine_of(candidates, kept),
@@ -250,7 +275,6 @@ def _with_law(
         power=strengths,
         limitations=limitations(recorded, _values(fit), policy),
     )
-    return diagnosis, held_out_rms(candidates, kept)
 
 
 def _values(fit: Fit) -> dict[str, float]:

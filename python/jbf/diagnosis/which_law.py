@@ -193,12 +193,6 @@ def _with_starts(samples: Samples, every: Samples) -> Samples:
     return replace(samples, counted=tuple(counted), weight=tuple(weight))
 
 
-def held_out_rms(candidates: Candidates, effects: tuple[str, ...]) -> float:
-    """RMS of the errors of `left_out`, N."""
-    errors = np.concatenate(left_out(candidates, effects).errors)
-    return float(np.sqrt(np.nanmean(errors**2)))
-
-
 def compared(
     names: Sequence[str],
     parameters: Sequence[int],

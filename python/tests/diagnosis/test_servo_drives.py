@@ -36,6 +36,7 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> 
         pytest.param(4017, {"sensor_offset", "inertia_leak"}, id="hand, late force"),
         pytest.param(4030, {"inertia_leak"}, id="saturated steps, command"),
         pytest.param(4032, {"inertia_leak", "gravity"}, id="swinging, position alone"),
+        pytest.param(4612, {"sensor_offset", "inertia_leak"}, id="hand, stamps at arrival"),
     ],
 )
 def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) -> None:
@@ -47,7 +48,12 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
 
 @pytest.mark.parametrize(
     ("seed", "effect"),
-    [(4049, "cogging"), (4045, "viscous_thinning"), (4315, "torque_proportional")],
+    [
+        (4049, "cogging"),
+        (4045, "viscous_thinning"),
+        (4315, "torque_proportional"),
+        (4617, "torque_proportional"),
+    ],
 )
 def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:
     found = diagnosed(seed, (effect,))

@@ -177,7 +177,7 @@ class Candidates:
     def _beside(self, present: Sequence[str]) -> Level:
         base = self.converge(present)
         samples = effective_share(base) * base.samples.count
-        least = self.policy.least_share(self.campaign.motion_share)
+        least = self.policy.least_effect_share(self.campaign.motion_share)
         return Level.shared(self.policy, len(self.names), samples, base.rms_n, least)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:

@@ -6,7 +6,7 @@ In twice the log likelihood.
 from __future__ import annotations
 
 from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
-from jbf.estimation.campaign import Campaign
+from jbf.estimation.campaign import SMOOTHS_FORCE, Campaign
 from jbf.estimation.likelihood import (
     effective_share,
     gain_of_most,
@@ -50,6 +50,8 @@ def evidence(
         # What a few samples alone ask for may be no more than what is wrong with them.
         of_most = gain_of_most(richer, simpler)
         gain = gain if of_most > price else max(of_most, 0.0)
+    if _filters_motion(candidates, richer, simpler):
+        gain = min(gain, price)
     return gain - price
 
 
@@ -60,8 +62,21 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
         return 0.0
     if _within_steps(candidates.campaign, richer, simpler):
         return 0.0
+    if _filters_motion(candidates, richer, simpler):
+        return 0.0
     gain = min(likelihood_gain(richer, simpler), gain_of_most(richer, simpler))
     return gain - price_of(candidates, richer.free - simpler.free)
+
+
+def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
+    """Whether the richer of two models adds an effect that filters a force or a motion, and
+    explains no more than the errors of the motion contribute."""
+    if not SMOOTHS_FORCE & (set(richer.effects) - set(simpler.effects)):
+        return False
+    samples = least_weights(richer.samples, simpler.samples)
+    explained = samples.rms(simpler.residuals) ** 2 - samples.rms(richer.residuals) ** 2
+    share = candidates.policy.least_share(candidates.campaign.motion_share)
+    return bool(explained < share * samples.rms(simpler.residuals) ** 2)
 
 
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:

@@ -199,9 +199,16 @@ class Policy:
     )
     motion_share: float = _number(
         0.08,
-        "largest share of the mean square that an effect or a law must explain, and that structure "
-        "must have, because of the errors of the motion: below it, their share of the variance",
+        "largest share of the mean square that structure must have, and that a law or an effect "
+        "which filters a force or a motion must explain, because of the errors of the motion: "
+        "below it, their share of the variance",
         "simulated servo drives (benches/servo_diagnoses.py, seeds 4007 to 4067)",
+    )
+    motion_effect_share: float = _number(
+        0.025,
+        "the same for all other effects",
+        "simulated servo drives without hidden effects (seeds 4007 to 4036): such an effect "
+        "explained at most 1.5 %",
     )
     noise_changes: float = _number(
         1.1,
@@ -306,7 +313,7 @@ class Policy:
         return 2.0 * math.log(1.0 / self.least_weight - 1.0)
 
     def least_share(self, motion_share: float) -> float:
-        """Share of the mean square that an effect must explain.
+        """Share of the mean square that structure must have, and a law or a filter must explain.
 
         An effect that filters a force or a motion explains as much as the errors of the motion
         contribute, whose covariance is an estimate.
@@ -317,6 +324,10 @@ class Policy:
             Mean share of the motion's errors in the variance.
         """
         return min(motion_share, self.motion_share)
+
+    def least_effect_share(self, motion_share: float) -> float:
+        """Share of the mean square that an effect must explain that is no filter."""
+        return min(motion_share, self.motion_effect_share)
 
     def to_dict(self) -> dict[str, float]:
         """For JSON."""

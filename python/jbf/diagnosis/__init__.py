@@ -1,9 +1,11 @@
-"""Diagnosis: which physical effect is missing from a model, and when nothing is.
+"""Diagnosis: which physical effects a friction model lacks, or that no effect is missing.
 
-Comes in: a rig and runs. Goes out: `Diagnosis`: verdict, effects with their evidence, a ledger of
-errors that fall, what remains, and the run to record next. `candidates` fits, `evidence` weighs,
-`selection` adds and questions, `remainder` tests what is left, `verdict` says it, `policy` has
-every number that decides; `recipe` puts them together.
+Input: a rig and its runs. Output: a `Diagnosis` with the verdict, the effects with their evidence,
+a ledger of decreasing errors, the residual structure and the run to record next.
+
+Modules: `candidates` fits the models and `evidence` compares them. `selection` adds and reviews
+effects. `remainder` tests the residual for lack of fit. `verdict` states the verdict. `policy`
+holds every number that influences a verdict. `recipe` combines these steps.
 
 May import: `jbf.records`, `jbf.models`, `jbf.estimation`, `jbf.comparison`.
 """

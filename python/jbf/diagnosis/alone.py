@@ -1,11 +1,12 @@
-"""How strong an effect must be for no other one to stand in its place.
+"""Strength from which an effect is distinguishable from every other effect.
 
-What an effect changes that a rival's parameters cannot make up for is, in squares of the noise, how
-much more it gains than that rival on average; the difference of two gains is normal, with four
-times its mean as variance. An effect is named alone where it is found, and no rival comes near.
+The change of the record that a rival's parameters cannot reproduce, as a sum of squares in units of
+the noise variance, is the expected difference between the two gains. The difference of the gains is
+normally distributed with a variance of four times its mean. An effect is identified alone where it
+is detected and no rival comes close to its gain.
 
-Where one of the two moves jumps, samples beside those tell neither of them: both are compared by
-the samples that both leave.
+Where one of the two effects moves jumps, the samples next to these jumps do not distinguish them.
+Both effects are then compared on the samples that both use.
 """
 
 from __future__ import annotations
@@ -25,31 +26,38 @@ Array = npt.NDArray[np.float64]
 
 EVERY = slice(None)
 NEVER = 30.0
-"""Times the strength that shows an effect from which on two effects are one in these runs."""
+"""Multiple of the detectable strength from which two effects count as indistinguishable."""
 MOST = 9.0
-"""Square, in noises, from which on a sample tells no more: one that stands out alone is no evidence
-of a law but a bad sample, or an instant of reversal that nobody knows."""
+"""Limit of the squared change of one sample, in units of the noise variance.
+
+A single larger change is no evidence of a law. It is an outlier, or the uncertain instant of a
+reversal.
+"""
 
 
 def worth(left: Array) -> float:
-    """What is told by what is left of a change, in units of the noise."""
-    # Of what stands far above no noise at all the square would overflow.
+    """Sum of squares of the unexplained part of a change, in units of the noise variance.
+
+    The contribution of each sample is limited to `MOST`.
+    """
+    # Limit before squaring: with almost no noise the square would overflow.
     return float(np.sum(np.minimum(np.abs(left), np.sqrt(MOST)) ** 2))
 
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """What an effect changes at some strength, and how that changes with its parameters.
+    """Change of the record by an effect of given strength, and its parameter derivatives.
 
     Attributes
     ----------
     ways
-        N, one (n, 2 + k) a run: what it changes, what it changes when it is stronger, and what each
-        of its parameters changes; the samples beside jumps that it moves with what they count.
+        Change in N, one (n, 2 + k) array per run. The columns are the change, the change at a
+        larger strength, and the derivative with respect to each parameter. Samples next to jumps
+        that the effect moves are scaled by their weights.
     shares
-        What samples count, one (n,) a run; None where the effect leaves them as they are.
+        Weights of the samples, one (n,) array per run; None where the effect does not change them.
     shown
-        `ways` apart from what the rest of the model makes up for, in units of the noise.
+        The part of `ways` that the rest of the model cannot reproduce, in units of the noise.
     """
 
     ways: list[Array]
@@ -62,7 +70,7 @@ class Change:
         return spanned(self.shown)
 
     def beside(self, other: Change, runs: RunsAtHand, columns: slice = EVERY) -> Array:
-        """`shown` by the samples that another effect leaves as well; of some of the ways."""
+        """`shown` on the samples that another effect also uses, for selected columns."""
         if other.shares is None:
             return self.shown[:, columns]
         own = [np.ones(len(s)) for s in other.shares] if self.shares is None else self.shares
@@ -76,21 +84,29 @@ class Change:
 
 
 def left_apart(own: Change, rival: Change, runs: RunsAtHand) -> float:
-    """What of an effect another one cannot make up for, in units of the noise."""
+    """Size of the part of an effect that a rival cannot reproduce, in units of the noise."""
     change = own.beside(rival, runs, slice(1))[:, 0]
     span = rival.span if own.shares is None else spanned(rival.beside(own, runs))
     return float(np.sqrt(worth(change - span @ (span.T @ change))))
 
 
 def chance_apart(left: float, least: float) -> float:
-    """The chance that an effect gains so much more than a rival that leaves so much of it."""
+    """Probability that the gain of an effect exceeds that of a rival by more than `least`.
+
+    Parameters
+    ----------
+    left
+        Size of the part of the effect that the rival cannot reproduce, in units of the noise.
+    least
+        Required difference of the gains.
+    """
     if left <= 0.0:
         return 0.0
     return float(special.ndtr((left**2 - least) / (2.0 * left)))
 
 
 def chance_found(price: float | Array, parameters: int, non_centrality: float) -> Array:
-    """The chance that a chi-square of that non-centrality exceeds a price, or each of some."""
+    """Probability that a noncentral chi-square variable exceeds each of the given thresholds."""
     return np.asarray(1.0 - special.chndtr(price, parameters, non_centrality), dtype=np.float64)
 
 
@@ -101,19 +117,27 @@ def times_alone(
     rivals: Mapping[str, tuple[float, float]],
     chance: float,
 ) -> float:
-    """How many times as strong an effect must be to be found and told from every rival so often;
-    infinite where it never is.
+    """Factor on the strength from which an effect is detected and distinguished from all rivals.
 
     Parameters
     ----------
     non_centrality
-        Of the effect as it is; it grows as the square.
+        Non-centrality at the present strength; it grows with the square of the strength.
     rivals
-        What each leaves of the effect, and by how much the effect must gain more.
+        For each rival, the part of the effect that it cannot reproduce, in units of the noise, and
+        the required difference of the gains.
+    chance
+        Required probability of detection and distinction.
+
+    Returns
+    -------
+    float
+        The factor, at least 1; infinite where it would exceed `NEVER`.
     """
 
     def lacking(times: float) -> float:
-        # Rivals that leave little leave the same: where the nearest one is told, so are others.
+        # Close rivals share the same unexplained part: where the closest is excluded, so are the
+        # others.
         told = min(
             (chance_apart(times * left, least) for left, least in rivals.values()), default=1.0
         )

@@ -1,10 +1,9 @@
-"""Structure at isolated instants: bursts of innovations that are larger than the rest, and of one
-sign.
+"""Tests for structure at isolated instants: bursts of large innovations of one sign.
 
-Single large innovations are noise with heavy tails, or glitches of the recording: what their
-neighbours are does not depend on them. A burst of friction lasts: the neighbours of its largest
-innovation have its sign. The correlation of large innovations with their neighbours, all clipped so
-that no single one decides, is a normal deviate where there are no bursts.
+Single large innovations are heavy-tailed noise or recording glitches and are independent of their
+neighbours. A burst of friction lasts for several samples: the neighbours of its largest innovation
+have the same sign. The statistic is the correlation of large innovations with their neighbours, all
+clipped to limit the influence of a single value. Without bursts it is standard normal.
 """
 
 from __future__ import annotations
@@ -24,13 +23,13 @@ from jbf.records.counts import count_of
 Array = npt.NDArray[np.float64]
 
 APART_S = 0.5
-"""Large innovations closer than this are one burst."""
+"""Largest time between two large innovations of the same burst, s."""
 CLIPPED = 3.0
 """Standard deviations at which innovations are clipped."""
 NO_NOISE = 1e-9
-"""Share of the largest innovation below which the rest is rounding."""
+"""Share of the largest innovation below which the other innovations are rounding errors."""
 NAMED = 4
-"""Bursts named in the description."""
+"""Number of bursts listed in the description."""
 
 
 def find_bursts(
@@ -40,13 +39,16 @@ def find_bursts(
     residuals: Sequence[Array],
     policy: Policy,
 ) -> list[Remainder]:
-    """Isolated bursts in the innovations, with their size in the residuals (record minus
-    prediction), if there are any."""
+    """Find isolated bursts in the innovations.
+
+    The size of a burst is reported from the residuals (record minus prediction). Without bursts the
+    list is empty.
+    """
     every = samples.flat(innovations)
     if not len(every):
         return []
-    # The middle of the distribution: bursts must not hide behind the spread that they cause.
-    # Where there is no noise at all, half of them are zero.
+    # The median is robust: bursts do not hide behind the variance that they cause.
+    # Without any noise, half of the innovations are zero.
     sigma = max(float(np.median(np.abs(every))) / 0.6745, NO_NOISE * float(np.max(np.abs(every))))
     if sigma == 0.0:
         return []
@@ -76,7 +78,7 @@ def find_bursts(
 def _lasting_chance(
     innovations: Sequence[Array], samples: Samples, sigma: float, policy: Policy
 ) -> float:
-    """Probability that the neighbours of large innovations have their sign so much by chance."""
+    """Probability by chance of such sign agreement of large innovations with neighbours."""
     product = square = 0.0
     clipped = np.clip(samples.flat(innovations) / sigma, -CLIPPED, CLIPPED)
     usual = float(np.mean(clipped**2))

@@ -1,8 +1,8 @@
-"""The models that a diagnosis weighs, and how far each has been fitted.
+"""Candidate models of a diagnosis and the state of their fits.
 
-A set of effects goes through states: its score is tested, it is ranked (a few steps of a fit), it
-converges, and where its likelihood has many peaks the others are searched. Each state is reached
-once, and everything that asks for it later shares the answer.
+Each set of effects passes through several states. Its score is tested, it is ranked by a few steps
+of a fit, it converges, and further peaks of a multimodal likelihood are searched. Each state is
+computed once and shared by all later uses.
 """
 
 from __future__ import annotations
@@ -44,16 +44,19 @@ Progress = Callable[[str, int, int], None]
 Array = npt.NDArray[np.float64]
 
 RANKING_EVALUATIONS = 6
-"""Steps after which candidates are ranked; only those that could win go on."""
+"""Number of steps after which candidates are ranked.
+
+Only competitive candidates are fitted further.
+"""
 
 
 def many_peaks(effects: Iterable[str]) -> bool:
-    """True where the likelihood of these effects has peak beside peak."""
+    """True where the likelihood of one of these effects has many peaks."""
     return any(find_effect(name).peaks for name in effects)
 
 
 class Candidates:
-    """A campaign under a law, the effects that could be missing, and every fit made so far."""
+    """A campaign under a law, the candidate effects, and every fit made so far."""
 
     def __init__(
         self,
@@ -73,10 +76,10 @@ class Candidates:
         self._levels: dict[frozenset[str], Level] = {}
 
     def of(self, campaign: Campaign) -> Candidates:
-        """The candidates of another campaign of the same runs, whose fits start from these."""
+        """Create the candidates of another campaign of the same runs, with these fits as starts."""
         self.before = None
         again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
-        # Until it is calibrated beside a model of the new campaign.
+        # Valid until the level is calibrated for a model of the new campaign.
         again._level = self._level
         return again
 
@@ -84,19 +87,19 @@ class Candidates:
 
     @cached_property
     def names(self) -> list[str]:
-        """Effects that go with the law and that these records could show."""
+        """Effects that are compatible with the law and that these records could show."""
         pages = (e for e in catalogue().values() if why_not(e, self.law) is None)
         return [e.name for e in pages if self.campaign.lacking(e) is None]
 
     @cached_property
     def not_tried(self) -> dict[str, str]:
-        """Effects that go with the law but that these records cannot show, and why."""
+        """Effects that fit the law but are not testable in these records, with the reason."""
         pages = [e for e in catalogue().values() if why_not(e, self.law) is None]
         reasons = {e.name: self.campaign.lacking(e) for e in pages}
         return {name: reason for name, reason in reasons.items() if reason is not None}
 
     def fitted(self, effects: Iterable[str]) -> Fitted:
-        """A set of effects in whatever state it is."""
+        """Return the fit of a set of effects in its present state."""
         key = frozenset(effects)
         if key not in self._fitted:
             problem = Problem(self.campaign, self.law, self.clock, tuple(key))
@@ -104,14 +107,14 @@ class Candidates:
         return self._fitted[key]
 
     def values_of(self, effects: Iterable[str]) -> dict[str, float] | None:
-        """Parameter name to value of a set of effects; None where it was not fitted."""
+        """Parameter values by name for a set of effects; None where it was not fitted."""
         fitted = self._fitted.get(frozenset(effects))
         if fitted is None or fitted.state in ("posed", "looked"):
             return None
         return fitted.named_values()
 
     def one_more(self, effects: Iterable[str]) -> dict[str, Fitted]:
-        """Every fitted set that has one effect more, by that effect."""
+        """Fitted sets with exactly one more effect, by the name of that effect."""
         here = frozenset(effects)
         found = {}
         for key, fitted in self._fitted.items():
@@ -120,14 +123,25 @@ class Candidates:
                 found[name] = fitted
         return found
 
-    # ---- how far ----------------------------------------------------------------------------
+    # ---- state of the fits ------------------------------------------------------------------
 
     def score_test(self, effects: Sequence[str], near: Solution) -> float:
-        """What the records show of effects beside a smaller model before any of them is fitted.
+        """Score test of added effects in a smaller model, before any of them is fitted.
 
-        The gain in twice the log likelihood that one Gauss-Newton step promises from the effects'
-        null, the law free to move with them; the largest from any start. Infinite of an effect
-        whose null is out of a step's reach, or that moves or rounds jumps.
+        Parameters
+        ----------
+        effects
+            All effects of the larger model.
+        near
+            Solution of the smaller model.
+
+        Returns
+        -------
+        float
+            Gain in twice the log likelihood that one Gauss-Newton step predicts from the null of
+            the added effects, with the parameters of the law free; the largest of all starts.
+            Infinite where the null cannot be reached by a step, or where an effect moves or smooths
+            jumps.
         """
         fitted = self.fitted(effects)
         if fitted.score is None:
@@ -139,7 +153,8 @@ class Candidates:
             }
             nulls = {n: p.null for n, p in pages.items() if p.null is not None}
             reach = bool(nulls) and all(np.isfinite(null) for null in nulls.values())
-            # What moves a jump by less than a sample moves no sample: a null says nothing of more.
+            # A shift of a jump by less than one sample changes no sample: the null predicts
+            # nothing.
             if not reach or any(find_effect(name).moves_jumps for name in added):
                 fitted.score = np.inf
             else:
@@ -147,8 +162,9 @@ class Candidates:
                 starts = fitted.problem.starts({**known, **nulls})
                 told = score_test(fitted.problem, starts, near, added)
                 fitted.score, fitted.directions, fitted.stepped = told
-                # Nor of what rounds it: the samples beside it may tell more than all of the rest.
-                # Nor of what begins anywhere: most of what it explains, it explains far from there.
+                # Likewise where jumps are smoothed: the samples next to them may dominate the
+                # information. Likewise for a free initial state: most of its gain lies far from the
+                # null.
                 if spreads_jumps(added) or begins_anywhere(added):
                     fitted.score = np.inf
         return fitted.score
@@ -156,20 +172,20 @@ class Candidates:
     # ---- the level of the tests -------------------------------------------------------------
     @property
     def level(self) -> Level:
-        """What a gain must exceed; beside the bare law, until it was calibrated."""
+        """Acceptance level of the tests; that of the bare law until it is calibrated."""
         if self._level is None:
             self._level = self._beside(())
         return self._level
 
     def calibrate(self, present: Sequence[str]) -> None:
-        """Ask the residual of a model how often it makes so large a gain by chance."""
+        """Calibrate the level by how often the residual of a model gives a large gain by chance."""
         key = frozenset(present)
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
             directions = [f.directions for f in tested if f.directions is not None]
             level = calibrated(self._beside(present), directions)
             self._levels[key] = with_decoys(level, directions, self.campaign.samples.count)
-            # As large as the records: nobody asks for them again.
+            # These arrays are as large as the records and are not needed again.
             for fitted in self._fitted.values():
                 fitted.directions = None
         self._level = self._levels[key]
@@ -181,7 +197,7 @@ class Candidates:
         return Level.shared(self.policy, len(self.names), samples, base.rms_n, least)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
-        """Fit these effects well enough to rank them, from a smaller model's solution."""
+        """Fit these effects well enough for ranking, starting from a smaller model's solution."""
         fitted = self.fitted(effects)
         if fitted.state in ("posed", "looked"):
             way = fitted.approach or self._way(fitted, effects, near)
@@ -190,7 +206,7 @@ class Candidates:
         return fitted.found()
 
     def look(self, effects: Sequence[str], near: Solution) -> Fitted:
-        """Look at a fit of these effects, from a smaller model's solution."""
+        """Fit these effects by a few steps only, starting from the solution of a smaller model."""
         fitted = self.fitted(effects)
         if fitted.state == "posed":
             fitted.approach = self._way(fitted, effects, near)
@@ -200,36 +216,36 @@ class Candidates:
         return fitted
 
     def _way(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:
-        """The approach of a fit from a smaller model's solution."""
+        """The search of a fit that starts from the solution of a smaller model."""
         seeds: list[Mapping[str, float]] = [{}]
         if near is not None:
             law = self._values_of(near)
-            # A law that had to make up for a missing effect may be a poor start; of an effect
-            # with many peaks the one that it had to climb is no start at all.
+            # The law may have compensated for a missing effect and be a poor start. For effects
+            # with many peaks, the peak found without the new effect is not a useful start.
             anew = many_peaks(near.effects)
             kept = {} if anew else {n: v for n, v in law.items() if "." in n}
             seeds = [law, kept]
         known = None if self.before is None else self.before.values_of(effects)
         if known is not None:
-            # From where it was before the samples were seen in another light.
+            # Start from the solution before the sample weights changed.
             seeds = [known]
         each = near is not None and many_peaks(near.effects)
         fitted.least = self._least_square(near)
         return Approach(fitted.problem, seeds, each=each, stepped=fitted.stepped)
 
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
-        """Rank several sets of effects, each from a smaller model's solution."""
-        # Those that take longest first.
+        """Rank several sets of effects, each from the solution of a smaller model."""
+        # Start the largest problems first.
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         self._each("trying", lambda effects: self.rank(effects, near), order, near)
 
     def look_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
-        """Look at several sets of effects beside a smaller model."""
+        """Fit several sets of effects by a few steps each, from the solution of a smaller model."""
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         self._each("looking at", lambda effects: self.look(effects, near), order, near)
 
     def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
-        """Test the scores of several sets of effects beside a smaller model."""
+        """Compute the score tests of several sets of effects relative to a smaller model."""
         self._each("testing", lambda effects: self.score_test(effects, near), sets, near)
 
     def _each(
@@ -239,7 +255,7 @@ class Candidates:
         sets: Sequence[Sequence[str]],
         near: Solution,
     ) -> None:
-        """Work on every set of effects, side by side, and tell how far it is."""
+        """Process every set of effects in parallel and report progress."""
         done = side_by_side(work, sets, fits_at_once(self.campaign, self.law, self.names))
         for i, effects in enumerate(sets):
             added = ", ".join(name for name in effects if name not in near.effects)
@@ -255,15 +271,17 @@ class Candidates:
         return fitted.found()
 
     def search_peaks(self, effects: Sequence[str]) -> Solution:
-        """Look for a higher peak of the likelihood, now that these effects are together: what was
-        missing before may have led the search to another. Once for each set of effects."""
+        """Search for a higher peak of the likelihood of a set of effects.
+
+        The search for fewer effects may have led to another peak. The search is made once for each set.
+        """
         near, fitted = self.converge(effects), self.fitted(effects)
         if fitted.peaks_searched:
             return near
         fitted.peaks_searched = True
         found = search_peaks(fitted.problem, near)
         if len(frozenset(effects)) > 1 and many_peaks(effects):
-            # As if nothing had been found before.
+            # Repeat the fit from default values, without the earlier solutions.
             fresh = approach(fitted.problem, [{}], RANKING_EVALUATIONS)
             if likelihood_gain(fresh, found) > -self.policy.contender:
                 fresh = search_peaks(fitted.problem, settle(fitted.problem, fresh))
@@ -272,8 +290,10 @@ class Candidates:
         return found
 
     def refit_from(self, effects: Sequence[str], richer: Sequence[str]) -> Solution:
-        """Fit fewer effects from where they are in a richer model, too: it may have found its way
-        past a valley in which they are caught."""
+        """Refit a smaller set of effects from the parameter values of a richer model.
+
+        The richer model may have passed a local minimum in which the smaller one remained.
+        """
         near, fitted = self.converge(effects), self.fitted(effects)
         self.converge(richer)
         problem, known = fitted.problem, self.fitted(richer).named_values()
@@ -281,20 +301,22 @@ class Candidates:
         samples = problem.samples_at(start)
         there = problem.solution(start, samples, near.noise, False)
         there = settle(problem, there, samples)
-        # What each run may say for itself, a law that is wrong gives way to: likelier, and far off.
+        # With run-specific parameters a wrong law can be more likely and yet have a far larger RMS.
         astray = there.rms_n > self.policy.leader_rms * near.rms_n
         if likelihood_gain(there, near) > 0.0 and not astray:
             fitted.improve(there)
         return fitted.found()
 
     def idle(self, solution: Solution) -> tuple[str, ...]:
-        """The effects that a solution left at their null."""
+        """The effects whose parameters a solution left at their null."""
         problem = self.fitted(solution.effects).problem
         return idle_effects(problem.effects, problem.parameters, solution.values.tolist())
 
     def confirmation(self, present: Sequence[str], name: str) -> Confirmation:
-        """What one effect more does for runs left out. Of those that alone tell of a parameter the
-        halves are, in both fits."""
+        """Held-out confirmation of one added effect.
+
+        For a run that alone determines a parameter, halves are held out in turn, in both fits.
+        """
         richer = (*present, name)
         before, after = self.converge(present), self.converge(richer)
         halved = sorted(only_witnesses(self.fitted(richer).problem, after))
@@ -305,7 +327,17 @@ class Candidates:
     def left_out(
         self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
     ) -> list[LeftOut]:
-        """Runs left out of the fit one at a time; of some the halves, or alternate parts."""
+        """Held-out predictions of each run.
+
+        Parameters
+        ----------
+        effects
+            Effects of the model.
+        halved
+            Runs of which two parts, not the whole, are held out in turn.
+        alternate
+            Whether these parts are alternate parts; halves by default.
+        """
         solution, fitted = self.converge(effects), self.fitted(effects)
         if not fitted.left_out:
             fitted.left_out = left_out(fitted.problem, solution)
@@ -319,12 +351,15 @@ class Candidates:
 
     @cached_property
     def beyond(self) -> list[Beyond]:
-        """The runs that go beyond the range of all others; none of a single run."""
+        """The runs that exceed the range of all others; empty for a single run."""
         return runs_beyond(self.campaign)
 
     def left_out_rms(self, effects: Sequence[str]) -> float:
-        """RMS of the held-out errors, N: of runs left out of the fit one at a time, and of parts of
-        those that go beyond all others."""
+        """Held-out RMS, N.
+
+        Runs are held out of the fit one at a time. For runs that exceed the range of all others, parts are
+        held out.
+        """
         parts = self.left_out(effects, [b.run for b in self.beyond], alternate=True)
         errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
@@ -334,7 +369,7 @@ class Candidates:
         return dict(zip(names, near.values.tolist(), strict=True))
 
     def _least_square(self, near: Solution | None) -> float:
-        """The sum of squares from which on something next to a smaller model shows in its score."""
+        """Sum of squares that a larger model must fall below to show a gain."""
         if near is None:
             return np.inf
         every = self.campaign.samples

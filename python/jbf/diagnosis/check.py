@@ -1,8 +1,8 @@
-"""How often a diagnosis is right on this very rig: campaigns like the one at hand, diagnosed whole.
+"""Simulation study of the diagnosis on the user's rig: complete diagnoses of similar campaigns.
 
-The fitted model records the same motions again (`estimation.wild_bootstrap`), so often with the
-effects that were found and so often without them, as if nothing were hidden; each is diagnosed as
-the measured ones were.
+The fitted model records the same motions again (`estimation.wild_bootstrap`): a number of campaigns
+with the effects that were found, and the same number with no missing effect. Each is diagnosed like
+the measured campaign.
 """
 
 from __future__ import annotations
@@ -26,23 +26,24 @@ Names = tuple[str, ...]
 Progress = Callable[[str, int, int], None]
 
 SURE = 0.95
-"""Of an interval of a rate (Clopper & Pearson 1934)."""
+"""Confidence level of the interval of a rate (Clopper & Pearson 1934)."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What the diagnosis of one campaign said.
+    """Result of the diagnosis of one simulated campaign.
 
     Attributes
     ----------
     hidden
-        The effects that were in it.
+        The effects in the simulation.
     draw
-        Which of the draws it is.
+        Index of the random draw.
     verdict, effects
-        Of the diagnosis, with the terms of its machine; `failed` where it ended with an error.
+        Those of the diagnosis, including the terms of its machine; the verdict is `failed` where it
+        ended with an error.
     alternatives
-        What could stand in the place of each named effect.
+        Effects with which each named effect is confounded.
     """
 
     hidden: Names
@@ -53,17 +54,17 @@ class Answer:
 
     @property
     def right(self) -> bool:
-        """All that was hidden was named, and nothing else."""
+        """True where all hidden effects were named and no other."""
         return set(self.effects) == set(self.hidden) and self.verdict != "failed"
 
     @property
     def false(self) -> bool:
-        """A name that was not hidden, not even as an alternative to one that was."""
+        """True where a named effect was not hidden and neither was any of its alternatives."""
         could = [{name, *self.alternatives.get(name, ())} for name in self.effects]
         return any(not names & set(self.hidden) for names in could)
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON: `answer_of` reads it."""
+        """Return a JSON-serialisable dict, the input of `answer_of`."""
         return {
             "hidden": list(self.hidden),
             "draw": self.draw,
@@ -74,7 +75,7 @@ class Answer:
 
 
 def answer_of(told: Mapping[str, Any]) -> Answer:
-    """What `Answer.to_dict` said."""
+    """Restore the result from the output of `Answer.to_dict`."""
     others = {k: tuple(v) for k, v in told["alternatives"].items()}
     return Answer(
         tuple(told["hidden"]), int(told["draw"]), told["verdict"], tuple(told["effects"]), others
@@ -83,16 +84,16 @@ def answer_of(told: Mapping[str, Any]) -> Answer:
 
 @dataclass(frozen=True)
 class Rate:
-    """How often something came true of so many campaigns.
+    """Frequency of an outcome in a number of campaigns.
 
     Attributes
     ----------
     what
-        In words.
+        Description of the outcome.
     count, campaigns
-        So often, of so many.
+        Number of campaigns with the outcome, and of all campaigns.
     low, high
-        Interval that holds the rate in 95 of 100 cases.
+        Limits of the 95 % confidence interval of the rate.
     """
 
     what: str
@@ -103,27 +104,27 @@ class Rate:
 
     @classmethod
     def of(cls, what: str, told: Sequence[bool]) -> Rate:
-        """From what came true and what did not."""
+        """Compute the rate of true values in a sequence of outcomes."""
         from scipy import stats  # most of a second to import
 
         found = stats.binomtest(sum(told), len(told)).proportion_ci(SURE, method="exact")
         return cls(what, sum(told), len(told), float(found.low), float(found.high))
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return dict(vars(self))
 
 
 @dataclass(frozen=True, repr=False)
 class Check(Result):
-    """How often the diagnosis of campaigns like this one is right.
+    """Rates of correct and false results of the diagnosis in campaigns like this one.
 
     Attributes
     ----------
     model
-        What recorded them.
+        Model that generated the campaigns.
     answers
-        One a campaign.
+        Results, one per campaign.
     """
 
     model: Model
@@ -131,7 +132,7 @@ class Check(Result):
 
     @property
     def rates(self) -> tuple[Rate, ...]:
-        """Rates, those with nothing hidden first."""
+        """Rates of each outcome, those without hidden effects first."""
         found: list[Rate] = []
         for hidden in sorted({a.hidden for a in self.answers}, key=len):
             own = [a for a in self.answers if a.hidden == hidden]
@@ -149,7 +150,7 @@ class Check(Result):
         return tuple(found)
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return {
             "law": self.model.law,
             "effects": list(self.model.effects),
@@ -160,7 +161,7 @@ class Check(Result):
 
 @dataclass(frozen=True)
 class _Task:
-    """A campaign to be recorded again, and diagnosed."""
+    """A campaign to simulate and diagnose."""
 
     model: Model
     runs: tuple[Run, ...]
@@ -180,34 +181,34 @@ def check(
     done: Sequence[Answer] = (),
     keep: Callable[[Answer], None] | None = None,
 ) -> Check:
-    """Diagnose campaigns like the one at hand, with and without the effects that were found.
+    """Diagnose campaigns like the present one, with and without the effects that were found.
 
-    Takes as long as so many diagnoses, twice where the model has effects.
+    The duration is that of `campaigns` diagnoses, and twice that where the model has effects.
 
     Parameters
     ----------
     model
-        What `fit` or `diagnose` made of the runs.
+        Result of `fit` or `diagnose` for the runs.
     runs
-        The runs that it was made of, with friction.
+        The runs that the model was fitted to, with friction.
     campaigns
-        How many with the effects, and how many without.
+        Number of campaigns with the effects, and number without them.
     policy
-        The numbers of the diagnoses.
+        Numbers of the diagnoses.
     executor
-        Any `concurrent.futures` executor, a Dask client's `get_executor()` included; one campaign
-        after the other where not given. Left open.
+        Any `concurrent.futures` executor, a Dask client's `get_executor()` included; not shut down.
+        Without one, campaigns are processed sequentially.
     progress
-        Called with a message, and how many of how many campaigns are done.
+        Called with a message, the number of finished campaigns and the total number.
     done
-        Answers of an earlier check of the same model and runs, which are not sought again.
+        Results of an earlier check of the same model and runs, which are not repeated.
     keep
-        Called with each new answer, as soon as it is there.
+        Called with each new result as soon as it is available.
 
     Raises
     ------
     InputError
-        No campaign is asked for, or the runs cannot be prepared.
+        The number of campaigns is not positive, or the runs cannot be prepared.
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     check_callable(progress, "progress")
@@ -235,7 +236,7 @@ def check(
 
 
 def identity(model: Model, runs: Iterable[Run], policy: Policy = DEFAULT) -> str:
-    """A name of a model, its runs and the numbers of a diagnosis: answers to others are no help."""
+    """Hash of a model, its runs and the policy; results of another identity are not comparable."""
     digest = hashlib.sha256(model.to_toml().encode())
     digest.update(repr(policy).encode())
     for run in runs:
@@ -253,7 +254,7 @@ def _answered(tasks: Sequence[_Task], executor: Executor | None) -> Iterator[Ans
 
 
 def _answer(task: _Task) -> Answer:
-    """The diagnosis of one campaign."""
+    """Simulate and diagnose one campaign."""
     try:
         again = recorded_by(task.model, task.runs, task.hidden, task.draw)
         found = diagnose(

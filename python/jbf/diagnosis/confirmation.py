@@ -1,4 +1,4 @@
-"""Whether runs that had no part in a fit confirm what a candidate gains in it."""
+"""Confirmation of a candidate's gain by held-out runs."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
 LEAST_UNITS = 6
-"""Number of independent units from which on a paired test over them decides."""
+"""Smallest number of independent units for a paired test over them."""
 LEAST_SAMPLES = 16
-"""Number of samples of a stroke that is a unit."""
+"""Smallest number of samples of a stroke that counts as a unit."""
 
 
 @dataclass(frozen=True)
 class Confirmation:
-    """What a candidate does for runs that were left out, beside the effects present.
+    """Effect of a candidate on the held-out errors, relative to the model with the present effects.
 
     Attributes
     ----------
     before_n, after_n
-        RMS without and with it, N.
+        Held-out RMS without and with the candidate, N.
     better
         Share of the runs that are predicted better.
     density
-        What it adds to twice the log predictive density of what was left out, over what it adds
-        to twice the log likelihood in the fit.
+        Gain in twice the held-out log predictive density, divided by the gain in twice the log
+        likelihood of the fit.
     halved
-        Runs that alone tell of it: their halves took turns in being left out, in both fits.
+        Runs that alone determine a parameter: their halves were held out in turn, in both fits.
     units
-        Number of independent units: runs or, of fewer than `LEAST_UNITS` runs, strokes.
+        Number of independent units: runs, or strokes where there are fewer than `LEAST_UNITS` runs.
     chance
-        Probability that the units are predicted so much better on average by chance (one-sided
-        t-test of the logarithms of the ratios of their mean squares); 1 of too few units.
+        Probability of so large a mean improvement of the units by chance: one-sided t-test of the
+        logarithms of the ratios of their mean squares. It is 1 where there are too few units.
     """
 
     before_n: float
@@ -66,14 +66,21 @@ class Confirmation:
         halved: Names = (),
         prepared: Sequence[Prepared] = (),
     ) -> Confirmation:
-        """By fits without the candidate and with it, and by what was left out of each.
+        """Compute the confirmation from two fits and their held-out runs.
 
         Parameters
         ----------
+        simpler, richer
+            Solutions without and with the candidate.
+        left, richer_left
+            Held-out predictions of the two models.
+        halved
+            Names of the runs of which halves were held out.
         prepared
-            The runs, whose strokes are units where the runs are too few.
+            The runs, whose strokes are the units where there are too few runs.
         """
-        # At the same samples: one that sets others aside beside its jumps predicts none of them.
+        # Compare on common samples: a model that excludes samples next to its jumps predicts none
+        # there.
         counted = least_weights(simpler.samples, richer.samples).counted
         errors = [
             errors_by_run(simpler, left, apart=True, counted=counted),
@@ -94,22 +101,32 @@ class Confirmation:
         )
 
     def units_confirm(self, chance: float) -> bool:
-        """Whether enough units are predicted better, by more than chance."""
+        """Whether enough units are predicted significantly better."""
         return self.chance < chance and self.after_n < self.before_n
 
     def confirms(self, evidence: float, gained: float, policy: Policy) -> bool:
-        """Whether they confirm it, who gains so much in mean square (N^2) where it is fitted."""
+        """Whether the held-out runs confirm a candidate.
+
+        Parameters
+        ----------
+        evidence
+            Evidence of the candidate.
+        gained
+            Gain in mean square in the fit, N^2.
+        policy
+            Numbers of the decision.
+        """
         share = (self.before_n**2 - self.after_n**2) / max(gained, 1e-300)
         times = self.after_n / max(self.before_n, 1e-300)
         return left_out_confirms(evidence, self.density, share, self.better, policy, times)
 
     def said(self, unit: str) -> str:
-        """The error on what was left out."""
+        """Describe the held-out error."""
         what = "runs" if not self.halved else f"runs and halves of {_listed(self.halved)}"
         return f"left-out {what} {self.after_n:.4g} {unit}"
 
     def lacking(self, unit: str) -> str:
-        """The same, and what their density has of the gain."""
+        """Describe the held-out error and the share of the gain in the predictive density."""
         return f"{self.said(unit)}, {self.density:.0%} of the gain in their log density"
 
 
@@ -119,7 +136,7 @@ def _unit_ratios(
     prepared: Sequence[Prepared],
     counted: Sequence[npt.NDArray[np.bool_]],
 ) -> Array:
-    """Logarithms of the ratios of the mean squares without and with a candidate, one a unit."""
+    """Log ratios of the mean squares without and with a candidate, one per unit."""
     parts: list[tuple[Array, Array]] = [(before[i], after[i]) for i in before]
     if len(parts) < LEAST_UNITS and prepared:
         parts = []
@@ -156,8 +173,10 @@ def _density_share(
     left: Sequence[LeftOut],
     richer_left: Sequence[LeftOut],
 ) -> float:
-    """Gain in the predictive density of what was left out, as a share of that in the fit; both of
-    the same samples, whitened alike."""
+    """Gain in held-out log predictive density as a share of the gain in the fit.
+
+    Both gains use the same samples and the same whitening.
+    """
     samples, noise = least_weights(simpler.samples, richer.samples), richer.noise
     before, _ = mean_square(simpler, samples, noise)
     after, count = mean_square(richer, samples, noise)
@@ -180,22 +199,23 @@ def left_out_confirms(
     policy: Policy,
     times: float = 1.0,
 ) -> bool:
-    """Do runs left out confirm what a candidate gains where it is fitted?
+    """Whether held-out runs confirm the gain of a candidate in the fit.
 
-    Where the evidence is weak their predictive density must: of its errors those tell little which
-    the other runs could not know better, as where one run holds most of what tells the law's own
-    parameters. Where it is strong any gain will do, or one in most of the runs.
+    Where the evidence is weak, the held-out predictive density must confirm it. Errors alone carry
+    little information where the other runs cannot determine a parameter, for example where one run
+    dominates the estimate of the law's own parameters. Where the evidence is strong, any gain in mean
+    square suffices, or a better prediction of most of the runs.
 
     Parameters
     ----------
     density
-        Gain in twice the log predictive density, as a share of that in the fit's log likelihood.
+        Gain in twice the log predictive density, as a share of the gain in the log likelihood.
     gained_share
-        Gain in mean square on left-out runs, as a share of that in the fit.
+        Gain in mean square on held-out runs, as a share of the gain in the fit.
     better
         Share of the runs that are predicted better.
     times
-        RMS on left-out runs, over that without the candidate.
+        Held-out RMS divided by the held-out RMS without the candidate.
     """
     if times > policy.left_out_worse:
         return False

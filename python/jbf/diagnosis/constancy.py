@@ -1,10 +1,12 @@
-"""Do the runs agree on the parameters? A right model has one set of them; of a confounder each run
-asks for its own.
+"""Test whether all runs have the same parameters.
 
-The score test of parameter constancy (Nyblom 1989, with runs for groups): at the fit to all runs,
-what one Gauss-Newton step would gain for each run alone is chi-square, as many degrees of freedom
-as the runs have parameters to themselves less those that they share. Scores are in units of each
-run's own long-run variance. It costs no fit.
+A correct model has one set of parameters. With a confounder, each run requires its own.
+
+The test is the score test of parameter constancy (Nyblom 1989, with runs as groups). At the fit to
+all runs, the statistic is the gain of one Gauss-Newton step for each run separately. It is
+chi-square distributed. Its degrees of freedom are the number of run-specific parameters less the
+number of shared parameters. Scores are in units of each run's own long-run variance. The test
+requires no additional fit.
 """
 
 from __future__ import annotations
@@ -28,27 +30,30 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 SENSITIVE = 1e-3
-"""A direction in which a run moves with the parameters less than this share of its best is none."""
+"""Relative sensitivity of a run below which a direction of the parameters is not determined."""
 OIL = {"U_tr_m_s", "gamma"}
-"""What the oil's warmth moves together: a run whose one differs has another of the other."""
+"""Parameters that both depend on the oil temperature: a run that differs in one differs in both."""
 TOLD = float(np.log(20.0))
-"""Largest change of a logarithm that is told as a number: one Gauss-Newton step knows no larger."""
+"""Largest change of a logarithm that is reported as a number.
+
+One Gauss-Newton step is not accurate beyond it.
+"""
 NAMED = 3
-"""Runs named in the description."""
+"""Number of runs listed in the description."""
 
 
 @dataclass(frozen=True)
 class Disagreement:
-    """How far the runs disagree on the parameters.
+    """Disagreement of the runs on the parameters.
 
     Attributes
     ----------
     gain
-        What parameters of their own would gain the runs, in twice the log likelihood.
+        Gain of run-specific parameters, in twice the log likelihood.
     degrees
-        How much of it chance gives; zero where there is but one run.
+        Expected gain by chance (degrees of freedom); zero where there is only one run.
     by_run
-        Run to its gain over its degrees of freedom, largest first.
+        Gain of each run divided by its degrees of freedom, largest first.
     """
 
     gain: float
@@ -56,26 +61,27 @@ class Disagreement:
     by_run: dict[str, float]
 
     def beyond_chance(self, policy: Policy = DEFAULT) -> bool:
-        """True where one set of parameters cannot be right for all runs."""
+        """True where one set of parameters is rejected for all runs."""
         if self.degrees == 0 or self.gain <= policy.constancy_ratio * self.degrees:
             return False
         return bool(special.chdtrc(self.degrees, self.gain) < policy.constancy_chance)
 
 
 def disagreement(problem: Problem, solution: Solution, effect: str | None = None) -> Disagreement:
-    """How far the runs disagree on the parameters of a solution.
+    """Compute how far the runs disagree on the parameters of a solution.
 
     Parameters
     ----------
     effect
-        Its parameters alone, what the others could explain in each run taken out; all where not
-        given, but for those of effects with many peaks.
+        Effect whose parameters are tested; the part of each run that the other parameters could
+        explain is projected out. By default all parameters are tested except those of effects with
+        many peaks.
     """
-    # Samples beside a jump whose instant is fitted tell that instant with errors of their own.
+    # Samples next to a jump whose instant is fitted carry errors of that instant.
     samples = solution.samples.tested()
     aside = _of_many_peaks(problem) if effect is None else ~_of(problem, {effect})
     if samples.between is not None:
-        # In what they are known to differ runs do not agree, by more than to first order.
+        # Parameters with known between-run variance differ beyond the first order.
         known = set(samples.between.names)
         if known & OIL:
             known |= OIL
@@ -103,8 +109,8 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
     ranked = dict(sorted(by_run.items(), key=lambda item: -item[1]))
     if len(together) < 2:
         return Disagreement(0.0, 0, ranked)
-    # What parameters in common would gain is no disagreement: at a bound, or where the colour of
-    # the noise is not all forgiven, the fit does not stand on the top.
+    # A gain of common parameters is not a disagreement. It is not zero at a bound, or where the
+    # noise colour is only partly accounted for, because the fit is not at the maximum.
     r, j = (np.concatenate(a) for a in zip(*together, strict=True))
     common = float(np.sum((_directions(j).T @ r) ** 2))
     shared = int(np.sum(size > 0.0))
@@ -117,21 +123,22 @@ def _of(problem: Problem, effects: Collection[str]) -> Mask:
 
 
 def _of_many_peaks(problem: Problem) -> Mask:
-    """True at search variables of effects whose likelihood has peak beside peak."""
+    """True at search variables of effects whose likelihood has many peaks."""
     return _of(problem, {name for name in problem.effects if find_effect(name).peaks})
 
 
 def _directions(j: Array) -> Array:
-    """Directions of the record, orthonormal columns, that the parameters move it in."""
+    """Orthonormal directions of the record in which the parameters change it."""
     directions, size, _ = np.linalg.svd(j, full_matrices=False)
     found: Array = directions[:, size > SENSITIVE * max(float(size.max(initial=0.0)), 1e-300)]
     return found
 
 
 def _set_aside(r: Array, j: Array, aside: Mask) -> tuple[Array, Array]:
-    """Residuals and derivatives with what the parameters set aside could explain taken out: of an
-    effect whose likelihood has peak beside peak each run may have the one that its errors of
-    motion choose."""
+    """Project out of residuals and derivatives what the parameters set aside could explain.
+
+    For an effect with many peaks, each run may select its own peak according to its motion errors.
+    """
     if not aside.any():
         return r, j
     taken = _directions(j[:, aside])
@@ -140,7 +147,7 @@ def _set_aside(r: Array, j: Array, aside: Mask) -> tuple[Array, Array]:
 
 
 def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
-    """That the runs ask for different parameters, if they do."""
+    """Report that the runs require different parameters, where they do."""
     found = disagreement(problem, solution)
     if not found.beyond_chance(policy):
         return []
@@ -158,8 +165,10 @@ def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> l
 
 
 def own_step(problem: Problem, solution: Solution, run: str) -> str:
-    """The parameter that gains a run most where it alone is the run's own, and how it differs there
-    by one Gauss-Newton step, in words."""
+    """Describe the run-specific parameter with the largest gain for one run.
+
+    The difference is that of one Gauss-Newton step of this parameter alone.
+    """
     samples = solution.samples.tested()
     i = samples.runs.index(run)
     r, j = samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
@@ -177,7 +186,7 @@ def own_step(problem: Problem, solution: Solution, run: str) -> str:
     if problem.log[place]:
         part = float(np.expm1(np.clip(step, -TOLD, TOLD)))
         if abs(step) > TOLD:
-            # One step says no more than this of a value so far off.
+            # One step gives no more information about a value so far away.
             return f"{said} many times as {'large' if step > 0.0 else 'small'}"
         return f"{said} {100.0 * abs(part):.3g} % {more}"
     return f"{said} {abs(step):.2g}{'' if unit == '-' else f' {unit}'} {more}"

@@ -1,10 +1,10 @@
-"""Decoys: candidates in the wrong place, which nothing in the runs can ask for.
+"""Decoy candidates: signatures at random times, which the true friction cannot contain.
 
-The shape in which a candidate would show is shifted at random along each run, its end put before
-its beginning. It keeps its spectrum and loses its phase: what the residual of these very runs makes
-it gain is chance, whatever the recording did to them. How often one of all the candidates would
-have got a name so is the rate of false names on the user's own data (target-decoy search: Elias &
-Gygi 2007; surrogates: Theiler et al. 1992).
+The signature of a candidate is shifted circularly by a random lag along each run. It keeps its
+spectrum and loses its phase, so its gain on the residual of these runs is due to chance, whatever
+recording artefacts they contain. The share of draws in which any candidate would have been named is
+the false-name rate on the user's own data (target-decoy search: Elias & Gygi 2007; surrogates:
+Theiler et al. 1992).
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 DRAWS = 200
-"""Campaigns of decoys."""
+"""Number of decoy campaigns."""
 SURE = 0.95
-"""How sure the largest rate is that is said."""
+"""Confidence level of the reported upper limit of the rate."""
 
 
 def decoy_gains(directions: Sequence[Directions]) -> list[Array]:
-    """What each candidate's decoys gain in twice the log likelihood, shape (`DRAWS`,)."""
+    """Gains of each candidate's decoys in twice the log likelihood, each of shape (`DRAWS`,)."""
     random = np.random.default_rng(DRAWS)
     return [_gains(one, random) for one in directions]
 
@@ -41,7 +41,7 @@ def _gains(one: Directions, random: np.random.Generator) -> Array:
         n = len(noise)
         if n == 0:
             continue
-        # All shifts at once: the correlation with one is a product in the frequency domain.
+        # All shifts at once: a circular correlation is a product in the frequency domain.
         products = fft.rfft(noise)[:, None] * np.conj(fft.rfft(way, axis=0))
         by_shift = fft.irfft(products, n, axis=0)
         scores += by_shift[random.integers(0, n, DRAWS)]
@@ -50,5 +50,5 @@ def _gains(one: Directions, random: np.random.Generator) -> Array:
 
 
 def rate_below(named: int, draws: int) -> float:
-    """The largest rate at which so few of so many still happen (Clopper & Pearson 1934)."""
+    """Upper confidence limit of a rate, given `named` of `draws` (Clopper & Pearson 1934)."""
     return float(special.betaincinv(named + 1, draws - named, SURE)) if named < draws else 1.0

@@ -1,6 +1,6 @@
-"""Evidence: what a model gains over another, less what it must gain to be kept (`level`).
+"""Evidence: log-likelihood gain of a model over another, less the acceptance threshold (`level`).
 
-In twice the log likelihood.
+All values are in twice the log likelihood.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from jbf.estimation.solution import Solution
 
 
 def price_of(candidates: Candidates, parameters: int) -> float:
-    """What so many parameters must gain in a campaign."""
+    """Threshold for the gain of a number of parameters in a campaign."""
     return candidates.level.price(parameters, candidates.campaign.samples.count)
 
 
@@ -30,13 +30,13 @@ def evidence(
 ) -> float:
     """Evidence for the richer of two models.
 
-    Where even the richer one leaves an error that is smooth, samples count for less. For an effect
-    that the fit left at its null there is none: what is gained beside it is the search's.
+    Where even the richer model leaves a smooth error, the effective number of samples is smaller. An
+    effect that the fit left at its null has no evidence: any gain is due to the search.
 
     Parameters
     ----------
     anywhere
-        A gain counts that comes and goes, too: it tells of structure, and not of this effect.
+        Whether an intermittent gain also counts: it is evidence of structure, not of this effect.
     """
     gain = likelihood_gain(richer, simpler)
     if gain > 0.0 and _within_steps(candidates.campaign, richer, simpler):
@@ -47,7 +47,7 @@ def evidence(
         gain = min(gain, 0.0)
     price = price_of(candidates, richer.free - simpler.free)
     if gain > price:
-        # What a few samples alone ask for may be no more than what is wrong with them.
+        # A gain that is due to a few samples may only reflect errors of these samples.
         of_most = gain_of_most(richer, simpler)
         gain = gain if of_most > price else max(of_most, 0.0)
     if _filters_motion(candidates, richer, simpler):
@@ -56,8 +56,10 @@ def evidence(
 
 
 def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
-    """Gain of the richer of two models if all samples were independent, less what it must gain; for
-    a model that is confirmed by independent units."""
+    """Gain of the richer model with all samples independent, less the threshold.
+
+    Used for a model that is confirmed by independent units.
+    """
     if set(candidates.idle(richer)) - set(simpler.effects):
         return 0.0
     if _within_steps(candidates.campaign, richer, simpler):
@@ -80,7 +82,7 @@ def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution)
 
 
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
-    """Whether two models differ by no more than a converter's steps move a mean reading."""
+    """Whether two models differ by less than the quantisation error of a mean reading."""
     samples = least_weights(richer.samples, simpler.samples)
     ways = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
     return bool(samples.rms(ways) < campaign.steps_rms_n(simpler.rms_n))
@@ -89,11 +91,11 @@ def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bo
 def evidence_alone(
     candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
 ) -> float:
-    """Evidence for the richer of two models, the other fitted to the same samples.
+    """Evidence for the richer of two models, with the simpler one fitted to the same samples.
 
-    An effect that moves jumps sets the samples beside them aside, and with them what may have led
-    the model without it astray, or have made its noise look larger or smoother than it is: that
-    gain is not the effect's.
+    An effect that moves jumps excludes the samples next to them. These samples may have biased the
+    simpler model, or have made its noise appear larger or smoother. That gain is not attributed to the
+    effect.
     """
     gain = evidence(candidates, richer, simpler, anywhere=anywhere)
     if richer.samples is simpler.samples or gain <= 0.0:
@@ -107,15 +109,17 @@ def evidence_alone(
 def swap_cost(
     candidates: Candidates, effects: tuple[str, ...], whole: Solution, near: Solution
 ) -> float:
-    """How much evidence is lost when these effects stand in place of those of `whole`.
+    """Evidence lost when these effects replace those of `whole`.
 
     Parameters
     ----------
+    whole
+        Solution of the complete model.
     near
-        The model without the effect that is exchanged.
+        Solution of the model without the effect that is exchanged.
     """
 
-    # As for evidence: where even the whole leaves a smooth error, samples count for less.
+    # As for evidence: where even `whole` leaves a smooth error, samples count for less.
     share = effective_share(whole)
 
     def cost(solution: Solution) -> float:
@@ -125,12 +129,12 @@ def swap_cost(
     policy = candidates.policy
     score = candidates.score_test(effects, near)
     shows = policy.least_score * price_of(candidates, 1)
-    # Where the law has a step of its own to make yet, that is no promise of the effect's.
+    # Subtract the step that the law itself would still make; it is not due to the effect.
     least = policy.least_swap * likelihood_gain(whole, near)
     if score <= shows or score - next_step_gain(near) <= least:
         return cost(near)
     if not many_peaks(effects):
-        # Of one peak among many no step tells where another one is.
+        # With many peaks, a step from one peak does not predict another.
         looked = candidates.look(effects, near)
         could_gain = policy.foreseen * looked.promised - likelihood_gain(looked.found(), near)
         if cost(looked.found()) - share * could_gain >= policy.contender:
@@ -140,8 +144,8 @@ def swap_cost(
         return first
     solution = candidates.converge(effects, near)
     if solution.rms_n > policy.leader_rms * whole.rms_n:
-        # Where the model is wrong, what is whitest is not what leaves least.
+        # Where the model is wrong, the whitest residual is not the smallest one.
         return float("inf")
-    # What is worth nothing beside the rest stands for nothing: it may fit the fewer samples that
-    # it leaves.
+    # An effect without evidence of its own replaces nothing: its fit may be better only because it
+    # uses fewer samples.
     return cost(solution if evidence_alone(candidates, solution, near) > 0.0 else near)

@@ -1,4 +1,4 @@
-"""Motions that a rig can make, to choose the next experiment from."""
+"""Motions that a rig can make, from which the next experiment is chosen."""
 
 from __future__ import annotations
 
@@ -16,40 +16,40 @@ Array = npt.NDArray[np.float64]
 
 RATES_RAD_S = (0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 SHARES = (1.0, 0.3, 0.1, 0.02)
-"""Amplitudes tried, as shares of the largest speed."""
+"""Amplitudes of the sines, as shares of the largest speed."""
 STOP_SHARES = (0.4, 1.0)
-"""The same of stops and goes."""
+"""Amplitudes of stop-and-go motions, as shares of the largest speed."""
 REST_S = 8.0
 USUAL_RATE_RAD_S = 2.0
-"""A drive that reaches a speed is taken to reach it in a sine of this rate, too."""
+"""Rate of a sine at which a drive is assumed to reach its largest speed."""
 MOST = 1e6
-"""No speed, acceleration or load of a rig, SI, is larger."""
+"""Upper limit of any speed, acceleration or load of a rig, SI units."""
 LONGEST_S = 86400.0
-"""The longest run that is planned."""
+"""Longest run that is planned, s."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What the rig may be asked to do; whatever is None is taken from the runs.
+    """Limits of the rig; values that are None are taken from the runs.
 
     Attributes
     ----------
     velocity_m_s, acceleration_m_s2
-        Largest surface speed and acceleration. From the runs: the largest on record, and at least
-        the acceleration of a sine of the largest speed at 2 rad/s.
+        Largest surface speed and acceleration. From the runs: the largest values recorded, and at
+        least the acceleration of a sine of the largest speed at 2 rad/s.
     duration_s
         Length of the run.
     load_n
-        Smallest and largest load on a bearing; one value twice for a load that cannot be changed.
-        From the runs: the loads on record.
+        Smallest and largest load on a bearing; the same value twice for a fixed load. From the
+        runs: the recorded loads.
     temperature_c
-        Temperatures to record at, the lowest and the highest, C. From the runs: those on record,
+        Lowest and highest temperature to record at, C. From the runs: the recorded temperatures,
         where they differ.
 
     Raises
     ------
     InputError
-        A limit that is not positive, or a lower end above the upper one.
+        A limit is not positive, or a lower limit exceeds the upper one.
     """
 
     velocity_m_s: float | None = None
@@ -89,7 +89,7 @@ class Limits:
             )
 
     def filled(self, campaign: Campaign) -> Limits:
-        """The limits with what the runs tell in place of None."""
+        """Return the limits with None replaced by the values of the runs."""
         motions = [p.motion for p in campaign.prepared]
         top = self.velocity_m_s or max(float(np.max(np.abs(m.velocity_m_s))) for m in motions)
         seen = max(float(np.quantile(np.abs(m.acceleration_m_s2), 0.999)) for m in motions)
@@ -107,8 +107,19 @@ class Limits:
 
 @dataclass(frozen=True)
 class Excitation:
-    """A motion to play: words, speed (m/s) at even steps, load (N) or None for the usual one,
-    temperature (C) or None where none matters."""
+    """A motion to play.
+
+    Attributes
+    ----------
+    words
+        Description of the motion.
+    velocity_m_s
+        Speed at equal time steps, m/s.
+    load_n
+        Load, N; None for the usual load.
+    temperature_c
+        Temperature, C; None where no temperature is varied.
+    """
 
     words: str
     velocity_m_s: Array
@@ -117,7 +128,7 @@ class Excitation:
 
 
 def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Iterator[Excitation]:
-    """Motions within limits that are filled in: each begins at rest."""
+    """Generate motions within complete limits; each begins at rest."""
     loads = (None,) if limits.load_n is None else tuple(dict.fromkeys(limits.load_n))
     warmths = (
         (None,) if limits.temperature_c is None else tuple(dict.fromkeys(limits.temperature_c))
@@ -137,7 +148,7 @@ def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Itera
 
 def _motions(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[str, Array]]:
     duration = float(t[-1]) if len(t) else 0.0
-    # So long a start that its acceleration stays within half of what is allowed.
+    # The start lasts until its acceleration is within half of the limit.
     start = np.clip(t * 0.5 * sharp / top, 0.0, 1.0)
     for share in SHARES:
         for w in RATES_RAD_S:
@@ -163,7 +174,7 @@ def _stops(speed: float, unit: str) -> str:
 
 
 def _stop_and_go(t: Array, speed: float, sharp: float) -> tuple[Array, float]:
-    """Rests and strokes, and how long one there and one back take, s."""
+    """Velocity of a stop-and-go motion, and the duration of one forward and backward stroke, s."""
     ramp = max(1.0, 1.05 * speed / sharp)
     cycle = 2.0 * ramp + 3.0 + REST_S
     phase = np.mod(t, cycle)
@@ -173,18 +184,20 @@ def _stop_and_go(t: Array, speed: float, sharp: float) -> tuple[Array, float]:
 
 
 def _mixed(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[str, Array]]:
-    """Something of everything, one after the other: stop and go, a fast sine, a short and quick
-    one. Each ends at rest, so that the next can begin there."""
+    """Combined motions: stop and go, a fast sine, and a short and fast sine in sequence.
+
+    Each part ends at rest, where the next part begins.
+    """
     duration = float(t[-1]) if len(t) else 0.0
-    # The quickest that the acceleration allows.
+    # The highest rates that the acceleration limit allows.
     quick = {s: max((w for w in RATES_RAD_S if s * top * w <= sharp), default=0.0) for s in SHARES}
     for share in STOP_SHARES:
         first, after_s = _stop_and_go(t, share * top, sharp)
         for short in SHARES[1:]:
-            # Where a full one is within the acceleration, so is one that is less far.
+            # If the full amplitude is within the acceleration limit, so are smaller amplitudes.
             if not quick[1.0]:
                 continue
-            # Half of what is left, in whole half-waves.
+            # Half of the remaining time, in whole half-waves.
             left_s = 0.5 * (duration - after_s)
             waves = np.floor(left_s * quick[1.0] / np.pi)
             if waves < 2.0:

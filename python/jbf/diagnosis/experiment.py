@@ -1,4 +1,4 @@
-"""The run that would part models that fit equally well."""
+"""Proposal of a run that discriminates between models with equal fits."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ class Experiment:
     Attributes
     ----------
     words
-        What to record and why, in a sentence.
+        What to record and why, in one sentence.
     run
-        The motion to play: time, speed, angle or position, load; no friction.
+        The motion to play: time, speed, angle or position, load; without friction.
     separation_n
-        RMS by which the rival models differ there after a new fit, N.
+        RMS difference between the rival models in this run after a new fit, N.
     separation_sigma
-        The same in units of the noise.
+        `separation_n` in units of the noise.
     evidence
-        Twice the log likelihood ratio to be expected between them.
+        Expected value of twice the log-likelihood ratio between the rival models.
     """
 
     words: str
@@ -48,16 +48,16 @@ class Experiment:
 def propose(
     candidates: Candidates, rivals: Sequence[Sequence[Names]], limits: Limits | None = None
 ) -> Experiment | str:
-    """The run that best parts rival models, or the reason why there is none.
+    """Propose the run that best discriminates between rival models, or return the reason for none.
 
     Parameters
     ----------
     candidates
-        The fits of the runs at hand.
+        The fits of the present runs.
     rivals
-        Groups of models, each a tuple of effects; within a group all fit equally well.
+        Groups of models, each a tuple of effects; all models of a group fit equally well.
     limits
-        What the rig may be asked to do.
+        Limits of the rig.
     """
     every = [effects for group in rivals for effects in group]
     strange = {c for effects in every for e in effects for c in find_effect(e).columns} - SIMULATED
@@ -71,7 +71,7 @@ def propose(
     best, chosen = 0.0, None
     for excitation, run, motion in motions(candidates, limits, step_s):
         seen = {effects: model.at(motion) for effects, model in models.items()}
-        # The least separated pair decides whether the run would settle it.
+        # The least separated pair determines whether the run discriminates between the models.
         least = min(
             models[b].separation(seen[b], seen[a], step_s)
             for group in rivals

@@ -273,7 +273,8 @@ class Candidates:
     def search_peaks(self, effects: Sequence[str]) -> Solution:
         """Search for a higher peak of the likelihood of a set of effects.
 
-        The search for fewer effects may have led to another peak. The search is made once for each set.
+        The search for fewer effects may have led to another peak. The search is made once for each
+        set.
         """
         near, fitted = self.converge(effects), self.fitted(effects)
         if fitted.peaks_searched:
@@ -357,8 +358,8 @@ class Candidates:
     def left_out_rms(self, effects: Sequence[str]) -> float:
         """Held-out RMS, N.
 
-        Runs are held out of the fit one at a time. For runs that exceed the range of all others, parts are
-        held out.
+        Runs are held out of the fit one at a time. For runs that exceed the range of all others,
+        parts are held out.
         """
         parts = self.left_out(effects, [b.run for b in self.beyond], alternate=True)
         errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))

@@ -203,8 +203,8 @@ def left_out_confirms(
 
     Where the evidence is weak, the held-out predictive density must confirm it. Errors alone carry
     little information where the other runs cannot determine a parameter, for example where one run
-    dominates the estimate of the law's own parameters. Where the evidence is strong, any gain in mean
-    square suffices, or a better prediction of most of the runs.
+    dominates the estimate of the law's own parameters. Where the evidence is strong, any gain in
+    mean square suffices, or a better prediction of most of the runs.
 
     Parameters
     ----------

@@ -30,8 +30,8 @@ def evidence(
 ) -> float:
     """Evidence for the richer of two models.
 
-    Where even the richer model leaves a smooth error, the effective number of samples is smaller. An
-    effect that the fit left at its null has no evidence: any gain is due to the search.
+    Where even the richer model leaves a smooth error, the effective number of samples is smaller.
+    An effect that the fit left at its null has zero evidence: any gain is due to the search.
 
     Parameters
     ----------
@@ -94,8 +94,8 @@ def evidence_alone(
     """Evidence for the richer of two models, with the simpler one fitted to the same samples.
 
     An effect that moves jumps excludes the samples next to them. These samples may have biased the
-    simpler model, or have made its noise appear larger or smoother. That gain is not attributed to the
-    effect.
+    simpler model, or have made its noise appear larger or smoother. That gain is not attributed to
+    the effect.
     """
     gain = evidence(candidates, richer, simpler, anywhere=anywhere)
     if richer.samples is simpler.samples or gain <= 0.0:

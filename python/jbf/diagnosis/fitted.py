@@ -1,4 +1,4 @@
-"""A model that a diagnosis compares with others, and how far it has been fitted."""
+"""A candidate model of a diagnosis and the state of its fit."""
 
 from __future__ import annotations
 
@@ -20,29 +20,28 @@ State = Literal["posed", "looked", "ranked", "converged"]
 
 @dataclass
 class Fitted:
-    """A set of effects beside the law, as far as it has been fitted.
+    """A set of effects added to the law, and the state of its fit.
 
     Attributes
     ----------
     state
-        `posed`, `looked` (at first sight), `ranked` (a few steps) or `converged`.
+        `posed`, `looked` (a few steps), `ranked` (enough steps for ranking) or `converged`.
     score
-        What its score test promised beside the first model that asked, in twice the log
-        likelihood; infinite where the null is out of a step's reach.
+        Gain predicted by its score test relative to the first smaller model, in twice the log
+        likelihood; infinite where the null cannot be reached by a step.
     directions
-        Where its score was tested; until the level of the tests has been calibrated by them.
+        Score directions of its test, kept until the level of the tests has been calibrated with
+        them.
     stepped
-        Where one step from its null leads: near a weak effect.
+        Values after one step from the null: the start for a weak effect.
     approach, least
-        A fit that was looked at only, and the sum of squares that it must come below to be
-        followed.
+        An unfinished search, and the sum of squares that it must fall below to be continued.
     promised
-        What it may gain by the linear model, in twice the log likelihood; infinite once it was
-        followed.
+        Possible gain by the linear model, in twice the log likelihood; infinite once it was ranked.
     peaks_searched
-        True once its other peaks were looked for.
+        True once its other peaks were searched.
     left_out
-        Runs that were left out of the fit; empty until somebody asks.
+        Held-out predictions of the runs; empty until they are required.
     halves
         Held-out predictions of two halves of a run, by (run, alternate).
     """
@@ -61,16 +60,16 @@ class Fitted:
     halves: dict[tuple[int, bool], list[LeftOut]] = field(default_factory=dict)
 
     def found(self) -> Solution:
-        """The solution so far."""
+        """The present solution."""
         assert self.solution is not None
         return self.solution
 
     def improve(self, better: Solution) -> None:
-        """Take a better solution of the same problem; what followed from the other is void."""
+        """Accept a better solution of the same problem and discard results of the earlier one."""
         if better is not self.solution:
             self.solution = better
             self.left_out, self.halves = [], {}
 
     def named_values(self) -> dict[str, float]:
-        """Parameter name to value."""
+        """Parameter values by name."""
         return dict(zip(self.problem.names, self.found().values.tolist(), strict=True))

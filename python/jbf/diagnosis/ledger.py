@@ -1,4 +1,4 @@
-"""The parts of a diagnosis: what was tried, what each step brought, what remains."""
+"""Parts of a diagnosis: the candidates tried, the gain of each step, and the residual structure."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class Trial:
     rms_n
         Fit RMS with it, N.
     evidence
-        Twice the gain in log likelihood, less what chance and the candidate's parameters would
-        gain; above zero it is better than nothing.
+        Twice the gain in log likelihood, less the expected gain by chance and by the candidate's
+        parameters; above zero the candidate improves the model.
     outcome
-        `added`, `ties`, `rejected`, `negligible` (significant, but smaller than the smallest effect
-        that is worth reporting), `no gain` (no more than chance gives), `confounder` (added, but
-        the runs disagree on its parameters), or `replaced` (added, and removed when a later one did
-        better in its place).
+        `added`, `ties`, `rejected`, `negligible` (significant, but below the minimum effect size),
+        `no gain` (no more than expected by chance), `confounder` (added, but the runs disagree on
+        its parameters), or `replaced` (added, and removed when a later effect was better in its
+        place).
     reason
-        Why, in words.
+        Reason for the outcome.
     """
 
     effect: str
@@ -37,22 +37,22 @@ class Trial:
     reason: str
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return dict(vars(self))
 
 
 @dataclass(frozen=True)
 class Extrapolation:
-    """A run beyond the range of all others, predicted by a fit to those alone.
+    """A run that exceeds the range of all others, predicted by a fit to those alone.
 
     Attributes
     ----------
     run
         Its name.
     rms_n
-        RMS of the error of that prediction, N; no part of the held-out error.
+        RMS of the error of that prediction, N; not included in the held-out error.
     where
-        What it goes beyond, in words.
+        Description of the range that it exceeds.
     """
 
     run: str
@@ -60,18 +60,28 @@ class Extrapolation:
     where: str
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return dict(vars(self))
 
 
 @dataclass(frozen=True)
 class Step:
-    """The model after one addition (the first: the bare law).
+    """The model after one addition; the first step is the bare law.
 
-    `rms_n` is over the runs it was fitted to; `holdout_rms_n` over runs, or parts of runs, that
-    each had no part in the fit that predicts them; `noise_n` the noise floor, zero where it is not
-    known; all N. `trials` are the candidates that competed for the next place. `extrapolations`
-    are the errors of runs that go beyond all others: parts of them count in `holdout_rms_n`.
+    Attributes
+    ----------
+    effects
+        Effects of the model.
+    rms_n
+        RMS over the runs that it was fitted to, N.
+    holdout_rms_n
+        RMS over runs, or parts of runs, each held out of the fit that predicts it, N.
+    noise_n
+        Noise floor, N; zero where it is not known.
+    trials
+        The candidates that competed for the next place.
+    extrapolations
+        Errors of runs that exceed the range of all others; parts of them count in `holdout_rms_n`.
     """
 
     effects: tuple[str, ...]
@@ -82,7 +92,7 @@ class Step:
     extrapolations: tuple[Extrapolation, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return {
             "effects": list(self.effects),
             "rms_n": self.rms_n,
@@ -95,12 +105,12 @@ class Step:
 
 @dataclass(frozen=True)
 class Remainder:
-    """Structure that nothing in the catalogue explains."""
+    """Residual structure that no effect of the catalogue explains."""
 
     axis: str
     where: str
     share: float
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}

@@ -1,17 +1,19 @@
-"""The level of the tests: what an effect must gain so that noise seldom makes a name.
+"""Level of the tests: the gain that an effect needs, controlled for false alarms.
 
-One level holds for a campaign: in so many of a hundred of them with nothing hidden any of the
-candidates may get a name. Shared among them (Bonferroni) it gives the probability at which a gain
-is no chance. Where the campaign's own residual makes large gains more often than that, the
-probability sinks until it does not: the residual's signs are turned block by block (a wild
-bootstrap: Wu 1986; of blocks: Shao 2010), which keeps its size, its tails and its memory and takes
-away whatever it has of an effect.
+One level holds for a campaign: the false-alarm rate is the share of campaigns without a missing
+effect in which any candidate may be named. Shared among the candidates (Bonferroni), it gives the
+significance level of a single gain. Where the campaign's own residual gives large gains more often,
+this level is reduced until the rate holds. The signs of the residual are reversed block by block
+(wild bootstrap: Wu 1986; of blocks: Shao 2010). This keeps its size, tails and memory and removes
+the trace of any effect.
 
-Recordings do to a record what no finding tells: to be named, an effect must gain so much more than
-white noise makes it as simulated recordings with nothing hidden do; or, if that is more, what the
-campaign's own residual makes it gain, in which what its recording did is seen already. And what is
-so little that nobody would act on it gets no name, however sure it is: of a day of samples any
-description of a machine is wrong.
+Recordings have artefacts that no finding reports. The gain of an effect must therefore exceed the
+larger of two limits. The first is the gain in white noise plus an artefact margin from simulated
+recordings without missing effects. The second is the gain in the campaign's own residual, which
+already contains its artefacts.
+
+An effect below the minimum effect size is not named, however significant it is: with enough samples
+any model of a machine is wrong.
 """
 
 from __future__ import annotations
@@ -40,30 +42,30 @@ from jbf.estimation.solution import Solution
 Array = npt.NDArray[np.float64]
 
 DRAWS = 4000
-"""Campaigns whose signs are drawn; forty of them are beyond a level of one in a hundred."""
+"""Number of sign draws of the bootstrap; forty of them exceed a level of one per cent."""
 
 
 @dataclass(frozen=True)
 class Level:
-    """What a gain in twice the log likelihood must exceed.
+    """Threshold for a gain in twice the log likelihood.
 
     Attributes
     ----------
     false_alarms
-        Share of campaigns with nothing hidden in which noise may make a name.
+        False-alarm rate: share of campaigns without a missing effect in which noise may name one.
     candidates
-        Effects that are tried.
+        Number of candidate effects.
     chance
-        Probability of a single candidate's gain at which that is kept.
+        Significance level of the gain of a single candidate.
     blocks
-        Blocks of the residual whose signs were turned; none before there is a residual.
+        Number of blocks of the residual whose signs were reversed; zero before calibration.
     imperfection
-        What recordings may add to what white noise makes an effect gain.
+        Artefact margin: gain that recording artefacts may add to the gain in white noise.
     worth
-        What an effect gains that is just worth a name.
+        Gain of an effect of the minimum effect size.
     decoys, decoys_named
-        Campaigns of candidates in the wrong place (`decoys`), and in how many of them one would
-        have got a name.
+        Number of decoy campaigns (`decoys`), and number of those in which a decoy would have been
+        named.
     """
 
     false_alarms: float
@@ -84,12 +86,12 @@ class Level:
         noise_n: float,
         least_share: float = 0.0,
     ) -> Level:
-        """The level shared among candidates, of noise as white as it can be.
+        """The level shared among candidates, for white noise.
 
         Parameters
         ----------
         samples
-            Independent ones.
+            Number of independent samples.
         noise_n
             RMS of the residual, N.
         least_share
@@ -102,51 +104,54 @@ class Level:
 
     @property
     def critical(self) -> float:
-        """What noise makes one parameter gain with just that probability."""
+        """Gain of one parameter that noise exceeds with probability `chance`."""
         return _gained_by_noise(self.chance)
 
     @property
     def white(self) -> float:
-        """The same of white noise: what the level alone asks, shared among the candidates."""
+        """Gain of one parameter in white noise at the rate shared among the candidates."""
         return _gained_by_noise(self.false_alarms / max(self.candidates, 1))
 
     @property
     def significant(self) -> float:
-        """Gain of one parameter that neither noise nor the recording makes."""
+        """Gain of one parameter that neither noise nor recording artefacts produce."""
         return max(self.critical, self.white + self.imperfection)
 
     def price(self, parameters: int, samples: int) -> float:
-        """What so many parameters must gain: each beyond the first what Schwarz (1978) asks."""
+        """Threshold for the gain of a number of parameters.
+
+        Each parameter beyond the first adds the penalty of Schwarz (1978).
+        """
         more = max(parameters, 1) - 1
         return max(self.significant, self.worth) + more * float(np.log(max(samples, 1)))
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return {**vars(self), "critical": self.critical, "white": self.white}
 
 
 @cache
 def _gained_by_noise(chance: float) -> float:
-    """What noise makes one parameter gain, in twice the log likelihood, with that probability."""
+    """Gain of one parameter, in twice the log likelihood, that noise exceeds with `chance`."""
     return float(special.chdtri(1, chance))
 
 
 @dataclass(frozen=True, eq=False)
 class Directions:
-    """In which directions of the innovations an effect's own parameters show.
+    """Directions of the innovations in which the parameters of an effect show.
 
     Attributes
     ----------
     ways
-        Orthonormal, and to what the model without the effect can do, shape (n, k).
+        Orthonormal columns, orthogonal to the derivatives of the model without the effect, (n, k).
     innovations
-        Under that model, of unit variance, shape (n,).
+        Innovations of that model, of unit variance, shape (n,).
     counted
-        By how much less than in white noise the square of a score counts, shape (k,).
+        Factors on the squared scores relative to white noise, shape (k,).
     blocks
-        Where blocks of the rows begin.
+        First rows of the blocks.
     ends
-        Where one run's rows end and the next one's begin.
+        Rows at which the next run begins.
     """
 
     ways: Array
@@ -159,16 +164,18 @@ class Directions:
     def of(
         cls, innovations: Array, own: Array, law: Array, samples: Samples, share: float
     ) -> Directions:
-        """From rows of a likelihood.
+        """Compute the directions from rows of a likelihood.
 
         Parameters
         ----------
         innovations
-            Under the model without the effect, shape (n,).
+            Innovations of the model without the effect, shape (n,).
         own, law
-            Derivatives by the effect's parameters, (n, k), and by those of that model.
+            Derivatives with respect to the effect's parameters, (n, k), and to those of that model.
+        samples
+            The samples of the rows.
         share
-            How many independent samples one is worth.
+            Number of independent samples per sample.
         """
         size = np.linalg.norm(law, axis=0)
         law = law[:, size > 0.0] / size[size > 0.0]
@@ -185,14 +192,17 @@ class Directions:
         return cls(ways, unit, counted, blocks_of(samples, share), ends)
 
     def by_block(self, innovations: Array, blocks: Places) -> Array:
-        """What noise of a model that has all that any candidate could explain scores, block by
-        block, shape (blocks, k); of unit variance in noise as the evidence takes it to be."""
+        """Scores of noise, block by block, shape (blocks, k).
+
+        The noise is the residual without any part that a candidate could explain. Scores have unit
+        variance in noise of the assumed memory.
+        """
         scores: Array = np.add.reduceat(self.ways * innovations[:, None], blocks, axis=0)
         return scores * np.sqrt(self.counted)
 
 
 def _ends(samples: Samples) -> Places:
-    """Where one run's samples end and the next one's begin, among those that have weight."""
+    """First rows of each run but the first, among the samples with weight."""
     counts = [int(np.count_nonzero(w > 0.0)) for w in samples.weight]
     return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
 
@@ -201,7 +211,7 @@ _known: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDictionary()
 
 
 def _rows(near: Solution) -> tuple[Array, Array]:
-    """Innovations of a solution and their derivatives, kept while every candidate is tested."""
+    """Innovations of a solution and their derivatives, cached while every candidate is tested."""
     if near not in _known:
         _known[near] = near.stacked()
     return _known[near]
@@ -210,14 +220,21 @@ def _rows(near: Solution) -> tuple[Array, Array]:
 def score_test(
     problem: Problem, starts: Sequence[Array], near: Solution, added: Collection[str]
 ) -> tuple[float, Directions, Array]:
-    """What the best of some starts, at each of which the model is a smaller one still, promises
-    (`score_gain`), where the added effects show, and the values to which one step from there leads;
-    of many long runs, in some."""
+    """Score test at the best of several starts, each equivalent to a smaller model.
+
+    Long records are thinned for the derivatives.
+
+    Returns
+    -------
+    tuple
+        The predicted gain (`score_gain`), the directions of the added effects, and the values after
+        one step from the best start.
+    """
     few = problem.thinned
-    # What a smaller model sets aside beside its jumps would seem to ask for anything.
+    # Samples that a smaller model excludes next to its jumps would support any effect.
     samples = near.samples if few is problem else few.campaign.samples
     mine = np.array([few.names[i].split(".")[0] in added for i in few.open], dtype=bool)
-    # At the null the rest of the model is as it was, and so are its derivatives.
+    # At the null the rest of the model is unchanged, and so are its derivatives.
     known = few is problem and near.free == np.count_nonzero(~mine)
     best: tuple[float, Array, Array, Array] | None = None
     for start in starts:
@@ -242,7 +259,7 @@ def score_test(
 
 
 def _explained(ways: Array, target: Array) -> Array:
-    """What columns of unit length, some of which may be one, explain of a target."""
+    """Part of a target that unit columns explain; the columns may be collinear."""
     size, axes = np.linalg.eigh(ways.T @ ways)
     told = size > 1e-12 * size[-1]
     step = axes[:, told] @ ((axes[:, told].T @ (ways.T @ target)) / size[told])
@@ -251,9 +268,9 @@ def _explained(ways: Array, target: Array) -> Array:
 
 
 def _on_the_same_samples(directions: list[Directions]) -> list[Directions]:
-    """Those of the largest group of directions with the same number of samples.
+    """Directions of the largest group with the same number of samples.
 
-    A candidate that sets samples aside cannot be tested against the residual of the others.
+    A candidate that excludes samples cannot be tested against the residual of the others.
     """
     counts = Counter(len(d.ways) for d in directions)
     usual = max(counts, key=lambda count: (counts[count], count), default=0)
@@ -261,11 +278,12 @@ def _on_the_same_samples(directions: list[Directions]) -> list[Directions]:
 
 
 def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
-    """The level at which turned signs of the residual give no more names than it allows.
+    """Reduce the level until sign-reversed residuals give no more names than it allows.
 
-    Of the residual that is taken away first which any of the candidates could explain: that is
-    what is asked for. Candidates that have no direction (one that moves the instants of jumps shows
-    nothing at its null), or one on other samples, keep their share of the level.
+    The part of the residual that any candidate could explain is removed first, because that part is
+    under test. Some candidates have no direction, for example an effect that moves the instants of
+    jumps, which changes nothing at its null. These, and candidates on other samples, keep their
+    share of the level.
     """
     told = _on_the_same_samples([d for d in directions if d.ways.size])
     if not told:
@@ -273,12 +291,12 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     every = np.column_stack([d.ways for d in told])
     noise = told[0].innovations - _explained(every, told[0].innovations)
     noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
-    # Scores may have been tested beside models whose residuals remember more or less.
+    # Scores may refer to models whose residuals have different memory; use the fewest blocks.
     blocks = min((d.blocks for d in told), key=len)
     random = np.random.default_rng(len(blocks))
     signs = random.integers(0, 2, (DRAWS, len(blocks)), dtype=np.int8).astype(np.float32)
     signs = 2.0 * signs - np.float32(1.0)
-    # All at once: the signs are read from memory once.
+    # One matrix product for all candidates: the signs are read from memory once.
     columns = np.column_stack([one.by_block(noise, blocks) for one in told])
     scores = (signs @ columns.astype(np.float32)).astype(np.float64)
     ends = np.cumsum([one.ways.shape[1] for one in told])
@@ -287,7 +305,7 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
         least = np.minimum(least, special.chdtrc(squares.shape[1], np.sum(squares, axis=1)))
     least.sort()
     silent = max(level.candidates - len(told), 0)
-    # So many draws have a name, and those that say nothing may have one besides.
+    # Count the draws with a name; untested candidates may add theirs.
     false = np.arange(1, DRAWS + 1) / DRAWS + silent * least
     allowed = np.flatnonzero(false <= level.false_alarms)
     own = float(least[allowed[-1]]) if len(allowed) else float(0.5 * least[0])
@@ -295,7 +313,7 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
 
 
 def with_decoys(level: Level, directions: Sequence[Directions], samples: int) -> Level:
-    """The level, and how often candidates in the wrong place would have got a name at it."""
+    """Add to the level the number of decoy campaigns in which a decoy exceeds its threshold."""
     told = [d for d in directions if d.ways.size]
     if not told:
         return level

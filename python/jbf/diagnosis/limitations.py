@@ -1,4 +1,4 @@
-"""Conclusions that the motions of a campaign do not allow, whatever model is fitted."""
+"""Conclusions that the motions of a campaign do not support, whatever model is fitted."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ LEVEL, STIFFNESS = "F_c_n", "sigma_0_n_m"
 def limitations(
     campaign: Campaign, parameters: Mapping[str, float], policy: Policy
 ) -> tuple[str, ...]:
-    """One sentence for each conclusion that the runs do not allow.
+    """Describe each conclusion that the runs do not support, in one sentence each.
 
     Parameters
     ----------
     parameters
-        Fitted values by name: those of a bristle tell the presliding displacement.
+        Fitted values by name; those of a bristle give the presliding displacement.
     """
     said = campaign.rig.quantities
     speed = campaign.samples.flat([p.motion.velocity_m_s for p in campaign.prepared])

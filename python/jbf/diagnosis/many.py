@@ -1,4 +1,4 @@
-"""Many rigs at once: each campaign diagnosed by itself, on whatever executor there is."""
+"""Diagnosis of many rigs: each campaign separately, on any executor."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Given = tuple[Rig, Sequence[Run]] | PathLike
 """A rig with its runs, or a folder that holds `rig.toml` and the runs as CSV."""
 
 OPTIONS = ("law", "clock", "limits", "policy")
-"""What of `diagnose` may be asked for all of them."""
+"""Options of `diagnose` that may be given for all campaigns."""
 
 
 def diagnose_many(
@@ -31,18 +31,18 @@ def diagnose_many(
     progress: Progress | None = None,
     **options: Any,
 ) -> dict[str, Diagnosis | JbfError]:
-    """Diagnose many campaigns; one that cannot be diagnosed does not stop the others.
+    """Diagnose many campaigns; an error in one does not stop the others.
 
     Parameters
     ----------
     campaigns
-        Name to a rig with its runs, or to a folder that holds `rig.toml` and CSV files, which is
-        read where the work is done.
+        Name to a rig with its runs, or to a folder that holds `rig.toml` and CSV files. The process
+        that makes the diagnosis reads the folder.
     executor
         Any `concurrent.futures` executor: processes, a Dask client's `get_executor()`, and so on;
-        one campaign after the other where not given. Left open.
+        not shut down. Without one, campaigns are processed sequentially.
     progress
-        Called with a campaign's name and verdict, and how many of how many are done.
+        Called with a campaign's name and verdict, the number of finished campaigns and the total.
     options
         As for `diagnose`: `law`, `clock`, `limits`, `policy`.
 
@@ -54,7 +54,7 @@ def diagnose_many(
     Raises
     ------
     InputError
-        An option that is wrong for all of them.
+        An option is wrong for all campaigns.
     """
     for option in options:
         one_of(option, OPTIONS, "option")
@@ -83,7 +83,7 @@ def diagnose_many(
         for future in as_completed(running):
             try:
                 keep(running[future], future.result())
-            except Exception as error:  # a worker that died; its campaign's result is that
+            except Exception as error:  # a worker that died: record the error as the result
                 keep(running[future], _lost(error))
     return {name: found[name] for name in campaigns}
 

@@ -17,8 +17,11 @@ SIMPLEST = "coulomb"
 
 
 def with_errors_of_motion(candidates: Candidates) -> Campaign | None:
-    """The campaign of a drive with the errors of its motion in the likelihood, and its force
-    corrected by a delay that all runs share; None where these errors are negligible."""
+    """Return the campaign of a drive with the errors of its motion in the likelihood.
+
+    Its force is corrected by a time delay common to all runs. Returns None for a rig without a
+    drive, or where these errors are negligible.
+    """
     if candidates.campaign.rig.drive is None:
         return None
     base = start_model(candidates)
@@ -31,7 +34,7 @@ def with_errors_of_motion(candidates: Candidates) -> Campaign | None:
 
 
 def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
-    """The campaign with the errors of its motion by the simplest law, to compare laws on."""
+    """Return the campaign with motion errors estimated by the simplest law, for comparing laws."""
     if campaign.rig.drive is None:
         return campaign
     own = replace(campaign, work=campaign.work.part(1.0))

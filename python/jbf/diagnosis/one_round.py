@@ -1,6 +1,6 @@
-"""One round by hand: a model with named effects, and what each other effect would bring.
+"""One manual round: a model with named effects, and the gain of each other effect.
 
-Where `diagnose` decides, this leaves the choice to whoever looks on.
+`diagnose` decides automatically; this function leaves the choice to the user.
 """
 
 from __future__ import annotations
@@ -27,8 +27,19 @@ from jbf.threads import one_blas_thread
 
 @dataclass(frozen=True)
 class OneRound:
-    """A fit, its line of the ledger with the candidates tried beside it, where it fails, and how
-    strong each of them must be for these runs to show it beside this model."""
+    """Result of one manual round.
+
+    Attributes
+    ----------
+    fit
+        The fit of the model.
+    step
+        Its step of the ledger, with the candidates tried.
+    comparison
+        Comparison of the model with the records.
+    power
+        Strength from which each candidate is detectable in these runs when added to this model.
+    """
 
     fit: Fit
     step: Step
@@ -48,33 +59,33 @@ def one_round(
     progress: Progress | None = None,
     fitted_as: Callable[[Fit, Comparison], None] | None = None,
 ) -> OneRound:
-    """Fit a law with named effects, and try every other effect beside them.
+    """Fit a law with named effects, and try every other effect in addition to them.
 
     Parameters
     ----------
     rig, runs
-        What was recorded, and on what.
+        The rig and the recorded runs.
     effects
-        Effects that the model is to have.
+        Effects of the model.
     law, clock
         The base law and its clock.
     policy
-        The numbers by which a candidate is judged.
+        Numbers by which a candidate is judged.
     progress
-        Called with a message, and how many of how many candidates have been tried.
+        Called with a message, the number of tried candidates and the total number.
     fitted_as
-        Called with the fit and where it fails, before any candidate is tried.
+        Called with the fit and its comparison before any candidate is tried.
 
     Raises
     ------
     InputError
         An unknown name, a missing column, or runs in which nothing moves.
     Stopped
-        It was interrupted; it has the fit, or the best so far.
+        The computation was interrupted; the exception holds the fit, or the best solution so far.
     """
     if progress is not None:
         progress("fitting", 0, 0)
-    # The model is that of `fit`, to the last digit: who repeats the step by hand gets the same.
+    # The model is exactly that of `fit`, so that the step can be reproduced by hand.
     fitted = fit(rig, runs, effects, law=law, clock=clock)
     chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs)
     comparison = compare_prepared(fitted.model, campaign)

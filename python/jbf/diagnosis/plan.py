@@ -1,11 +1,12 @@
-"""Which runs to record: of the motions that a rig can make, those that show most of what could be
-missing, and tell it apart.
+"""Design of runs: the motions of a rig that best show and discriminate possible missing effects.
 
-What each motion tells of the law's parameters and of each effect at its usual strength adds up over
-runs (Fisher's information). Runs are chosen one after the other (a greedy exact design: Atkinson,
-Donev & Tobias 2007, ch. 12), so that every effect, apart from the law and from the effect most like
-it, is worth as many times its price as can be, and is so without any one run as well: a diagnosis
-asks runs left out to confirm it.
+The Fisher information of each motion about the law's parameters, and about each effect at its usual
+strength, adds up over runs. Runs are chosen one after the other (a greedy exact design: Atkinson,
+Donev & Tobias 2007, ch. 12).
+
+The criterion is the information about every effect, apart from the law and from the most similar
+effect, in multiples of its threshold. It is also maximised without any single run, since a
+diagnosis requires confirmation by held-out runs.
 """
 
 from __future__ import annotations
@@ -39,11 +40,11 @@ from jbf.threads import one_blas_thread
 Array = npt.NDArray[np.float64]
 
 ENOUGH, MORE = 4.0, 0.05
-"""Times its price that an effect is worth and from which on more of it counts for this share."""
+"""Sufficient multiple of an effect's threshold, and the weight of information beyond it."""
 LEAST_RUNS = 3
-"""Fewer leave nothing to predict from where one is left out."""
+"""Smallest number of runs; fewer are not enough for a prediction of a held-out run."""
 MOST_RUNS = 200
-"""More are no plan for a person, and each is simulated."""
+"""Largest number of runs; more are not practical, and each is simulated."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -53,12 +54,12 @@ class Plan(Result):
     Attributes
     ----------
     runs
-        Motions to play, in the order in which they tell most: time, speed, position or angle, load;
-        no friction.
+        Motions to play, most informative first: time, speed, position or angle, load; without
+        friction.
     words
-        Each in words.
+        Description of each motion.
     planned
-        What they would show.
+        Power of these runs.
     """
 
     runs: tuple[Run, ...]
@@ -66,7 +67,7 @@ class Plan(Result):
     planned: PlannedPower
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         motions = [
             {"run": run.name, "motion": words}
             for run, words in zip(self.runs, self.words, strict=True)
@@ -84,28 +85,28 @@ def plan(
     step_s: float = 0.02,
     policy: Policy = DEFAULT,
 ) -> Plan:
-    """The runs that show most of what could be missing from a model.
+    """Design the runs with the largest power for effects that a model may lack.
 
     Parameters
     ----------
     model
-        What the machine is taken to be: of a fit, or `Model` with values of a data sheet.
+        Assumed model of the machine: from a fit, or a `Model` with values of a data sheet.
     limits
-        What the rig may be asked to do; its speed must be given, and `duration_s` is that of each
-        run.
+        Limits of the rig; its speed must be given, and `duration_s` is that of each run.
     minutes
-        How long all runs may take together.
+        Total duration of all runs, min.
     noise_n
-        Standard deviation of the noise on the friction, N (of a rotary drive N m).
+        Standard deviation of the noise on the friction, N (for a rotary drive N m).
     step_s
-        From sample to sample, s.
+        Sampling interval, s.
     policy
-        The numbers by which an effect will be named.
+        Numbers by which an effect will be named.
 
     Raises
     ------
     InputError
-        No speed is given, a number is not above zero, or there is no time for three runs.
+        No speed is given, a number is not above zero, or the time is too short for three runs or
+        too long.
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     of_kind(limits, Limits, "limits", "give a jbf.Limits")
@@ -138,7 +139,8 @@ def plan(
         (e, played(rig, e, step_s, linear=linear))
         for e in excitations(limits, step_s, rig.quantities.speed)
     ]
-    # A few of them, slow and fast, of each load and temperature, tell what could be there.
+    # A sample of the motions, slow and fast, at each load and temperature, shows which effects
+    # apply.
     few = motions[:: max(len(motions) // 7, 1)]
     named = [replace(run, name=f"{i}") for i, (_, run) in enumerate(few)]
     candidates = as_recorded(model, named, noise_n, policy)
@@ -167,7 +169,7 @@ def _effects(candidates: Candidates, model: Model) -> list[Strength]:
 def _told(
     candidates: Candidates, model: Model, effects: Sequence[Strength], run: Run, noise_n: float
 ) -> Array:
-    """What a motion tells of the parameters and of each effect, (p + e, p + e)."""
+    """Information of a motion about the p parameters and the e effects, shape (p + e, p + e)."""
     fitted = candidates.fitted(model.effects)
     problem, values = fitted.problem, fitted.found().values
     motion = core_motion(model.rig, run, known_motion(run, model.rig.radius_m))
@@ -175,14 +177,14 @@ def _told(
     scale = np.where(problem.log, values, 1.0)[problem.open]
     changes = [e.problem.chain.predict(e.values(1.0), [motion])[0] - friction for e in effects]
     rows = np.column_stack([slopes * scale, *changes])
-    # Of a residual that remembers a sample tells less.
+    # In an autocorrelated residual a sample carries less information.
     rows *= np.sqrt(effective_share(fitted.found())) / noise_n
     told: Array = rows.T @ rows
     return told
 
 
 def _chosen(told: Sequence[Array], own: int, prices: Array, count: int) -> list[int]:
-    """The motions that together are worth most."""
+    """Choose motions one by one to maximise their joint criterion."""
     chosen: list[int] = []
     whole = np.zeros_like(told[0])
     for _ in range(count):
@@ -197,14 +199,16 @@ def _chosen(told: Sequence[Array], own: int, prices: Array, count: int) -> list[
 
 
 def _least_worth(chosen: Sequence[int], told: Sequence[Array], own: int, prices: Array) -> float:
-    """What motions are worth without the one that tells most."""
+    """Criterion of motions without the most informative one."""
     whole = np.sum([told[k] for k in chosen], axis=0)
     return min(_worth(whole - told[k], own, prices) for k in set(chosen))
 
 
 def _worth(told: Array, own: int, prices: Array) -> float:
-    """How many times its price each effect is worth, apart from the law and from its likest rival;
-    logarithms, added."""
+    """Design criterion: sum of log information of each effect in multiples of its threshold.
+
+    The information excludes the part shared with the law and with the most similar effect.
+    """
     known = np.linalg.pinv(told[:own, :own], rcond=1e-10, hermitian=True)
     left = told[own:, own:] - told[own:, :own] @ known @ told[:own, own:]
     size = np.maximum(np.diag(left), 0.0)

@@ -1,4 +1,4 @@
-"""Power of runs that are planned, before anything is recorded."""
+"""Power of planned runs, before anything is recorded."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ from jbf.threads import one_blas_thread
 
 @dataclass(frozen=True, repr=False)
 class PlannedPower(Result):
-    """What planned runs would show.
+    """Power of planned runs.
 
     Attributes
     ----------
     model
-        What the machine is taken to be.
+        Assumed model of the machine.
     noise_n
-        Standard deviation of the noise on the friction that was asked for, N.
+        Standard deviation of the given noise on the friction, N.
     power
-        How strong each other effect must be to be found.
+        Strength from which each other effect is detectable.
     not_tried
-        Effects that go with the law but that such runs cannot show, and why.
+        Effects that are compatible with the law but not testable in such runs, with the reason.
     runs
         Names of the runs.
     level
-        What an effect must gain.
+        Threshold for the gain of an effect.
     """
 
     model: Model
@@ -52,7 +52,7 @@ class PlannedPower(Result):
     level: Level
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return {
             **self.model.told_units(),
             "law": self.model.law,
@@ -66,7 +66,7 @@ class PlannedPower(Result):
 
 
 def as_recorded(model: Model, runs: Sequence[Run], noise_n: float, policy: Policy) -> Candidates:
-    """What could be beside a model in runs that it would record with white noise, N."""
+    """Candidates for a model in runs that it would record with white noise of `noise_n`, N."""
     random = np.random.default_rng(0)
     recorded = [
         replace(run, friction_n=friction + noise_n * random.standard_normal(len(run)))
@@ -79,8 +79,11 @@ def as_recorded(model: Model, runs: Sequence[Run], noise_n: float, policy: Polic
 
 
 def _as_read(motion: ImposedMotion) -> ImposedMotion:
-    """A planned motion as one that was recorded: on which side of a reversal the samples next to it
-    lie, nobody knows. Known exactly they would tell the least play or delay."""
+    """Treat a planned motion like a recorded one.
+
+    For samples next to a reversal the side is unknown. If it were known exactly, these samples
+    would show the smallest backlash or delay.
+    """
     way = np.sign(motion.velocity_m_s)
     turns = np.flatnonzero(way[1:] != way[:-1])
     known = motion.sign_known.copy()
@@ -92,26 +95,26 @@ def _as_read(motion: ImposedMotion) -> ImposedMotion:
 def planned_power(
     model: Model, runs: Iterable[Run], *, noise_n: float, policy: Policy = DEFAULT
 ) -> PlannedPower:
-    """How strong an effect must be for planned runs to show it.
+    """Strength from which each effect is detectable in planned runs.
 
-    The model's friction under the runs' motion, with white noise, is what would be recorded.
+    The simulated record is the model's friction under the runs' motion, with white noise.
 
     Parameters
     ----------
     model
-        What the machine is taken to be: of a fit, or `Model` with values of a data sheet.
+        Assumed model of the machine: from a fit, or a `Model` with values of a data sheet.
     runs
         Motions to play; friction in them is ignored.
     noise_n
-        Standard deviation of the noise on the friction, N (of a rotary drive N m).
+        Standard deviation of the noise on the friction, N (for a rotary drive N m).
     policy
-        The numbers by which an effect will be named.
+        Numbers by which an effect will be named.
 
     Raises
     ------
     InputError
-        The noise is not above zero, nothing moves in a run, or a column is missing that the model
-        needs.
+        The noise is not above zero, nothing moves in a run, or a column that the model needs is
+        missing.
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     noise_n = number(noise_n, "noise_n")

@@ -1,7 +1,8 @@
-"""Every number that decides a verdict: what it decides, and where it comes from.
+"""Policy: every number that influences a verdict, with its meaning and its source.
 
-No other file of the diagnosis has one. `Policy()` is what `jbf.diagnose` works with and what its
-JSON prints; a study that asks what a number does gives it another (`diagnose(..., policy=...)`).
+Other modules of the diagnosis define no such number. `Policy()` is the default of `jbf.diagnose`
+and is written to its JSON output. A sensitivity study passes other values
+(`diagnose(..., policy=...)`).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ def _number(value: Any, decides: str, source: str) -> Any:
 
 @dataclass(frozen=True)
 class Policy:
-    """The numbers behind a verdict; evidence is in units of twice the log likelihood."""
+    """Numbers that determine a verdict; evidence is in units of twice the log likelihood."""
 
     # ---- evidence for an effect -------------------------------------------------------------
     false_alarms: float = _number(
@@ -135,7 +136,7 @@ class Policy:
         "others, too",
         "chosen for speed",
     )
-    # ---- what the recording did -------------------------------------------------------------
+    # ---- observation model ------------------------------------------------------------------
     most_terms: int = _number(
         12,
         "number of times that a term of the observation model is added or estimated again",
@@ -173,7 +174,7 @@ class Policy:
         "which on large ones count less",
         "least squares lose a twentieth of their precision there",
     )
-    # ---- names of confounders -------------------------------------------------------------------
+    # ---- confounders ----------------------------------------------------------------------------
     coarse_steps: float = _number(
         2.0,
         "times the residual's RMS from which on a converter's steps are its tails, and no sample "
@@ -186,7 +187,7 @@ class Policy:
         "have gained to keep its name where structure remains",
         "chosen on simulated campaigns with effects that are in no catalogue",
     )
-    # ---- what remains -----------------------------------------------------------------------
+    # ---- residual structure -----------------------------------------------------------------
     pattern_share: float = _number(
         LEAST_SHARE,
         "share of the innovations' mean square that a pattern along an axis must explain",
@@ -255,7 +256,7 @@ class Policy:
         "times its degrees of freedom that the chi-square of constancy must be, besides",
         "simulated campaigns: noise is never quite what it is taken for",
     )
-    # ---- what runs cannot show ------------------------------------------------------------------
+    # ---- limitations of the runs ----------------------------------------------------------------
     one_direction: float = _number(
         0.01,
         "share of the samples in the rarer direction below which the motion has one direction",
@@ -309,14 +310,14 @@ class Policy:
 
     @property
     def tie(self) -> float:
-        """The difference in evidence of an effect and one with that weight."""
+        """Difference in evidence that corresponds to the weight `least_weight`."""
         return 2.0 * math.log(1.0 / self.least_weight - 1.0)
 
     def least_share(self, motion_share: float) -> float:
         """Share of the mean square that structure must have, and a law or a filter must explain.
 
-        An effect that filters a force or a motion explains as much as the errors of the motion
-        contribute, whose covariance is an estimate.
+        The errors of the motion contribute a share of the variance, and their covariance is an
+        estimate. An effect that filters a force or a motion can explain the same share.
 
         Parameters
         ----------
@@ -330,12 +331,12 @@ class Policy:
         return min(motion_share, self.motion_effect_share)
 
     def to_dict(self) -> dict[str, float]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return asdict(self)
 
     @classmethod
     def explained(cls) -> dict[str, tuple[float, str, str]]:
-        """Name to number, what it decides, and where it comes from."""
+        """Map each name to its default number, its meaning and its source."""
         default = cls()
         return {
             f.name: (getattr(default, f.name), f.metadata["decides"], f.metadata["source"])

@@ -1,12 +1,13 @@
-"""Power: how strong an effect must be for runs like these to show it.
+"""Power: strength from which an effect is detectable in runs like these.
 
-An effect of some strength changes the friction by what the law's own parameters cannot make up for;
-that, in squares of the noise, is the non-centrality of the likelihood ratio (Wald 1943), and the
-chance that it exceeds the price of a name is the test's power. What another effect makes up for as
-well is lost for telling the two apart.
+An effect of given strength changes the friction. The part of this change that the law's own
+parameters cannot reproduce, as a sum of squares in units of the noise variance, is the
+non-centrality of the likelihood ratio (Wald 1943). The power of the test is the probability that
+the likelihood ratio exceeds the threshold. The part that another effect can also reproduce does not
+help to distinguish the two.
 
-Strengths are followed to where they are asked for, not extrapolated from the null; the rest of the
-model moves in its tangent.
+The change is evaluated at each strength and not extrapolated from the null; the rest of the model
+is linearised.
 """
 
 from __future__ import annotations
@@ -39,48 +40,53 @@ Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
 LEVELS = (0.80, 0.95)
-"""Chances of being found."""
+"""Detection probabilities for which a strength is computed."""
 LOOKS = 14
-"""Strengths tried for each."""
+"""Largest number of strengths evaluated for each."""
 POWERS = (1.0, 8.0)
-"""Powers of its strength with which what an effect is worth may grow."""
+"""Range of the exponents with which the non-centrality may grow with strength."""
 AGREES = 0.05
-"""Relative difference in strength up to which one looks no more: how it grows says the rest."""
+"""Relative difference in strength at which the search ends; the remainder is interpolated."""
 NEARLY_ALL = 0.97
-"""Share of a gain from which on a noise that is described anew forgives nothing of it."""
+"""Share of the gain above which a refitted noise model is considered to absorb no part of it."""
 BEYOND = 1.2
-"""Times the strength at which that is asked: where colour just earns its price, chance decides."""
+"""Factor on the strength at which that share is evaluated.
+
+It avoids a strength at which the colour of the noise just reaches its threshold.
+"""
 LOOKS_ALONE = 3
-"""Times that strengths are tried at which an effect that moves jumps would be told from another."""
+"""Iterations of the distinguishable strength for effects that move jumps."""
 FURTHER = 2.0
-"""Times the strength at which it is found at which a rival is looked at, too: its change has
-another shape there where it does not grow in proportion."""
+"""Factor on the detectable strength at which a rival is also evaluated.
+
+The shape of its change is different there where it is not proportional to the strength.
+"""
 
 
 @dataclass(frozen=True)
 class Power:
-    """What runs like these show of one effect.
+    """Power of runs like these for one effect.
 
     Attributes
     ----------
     effect, parameter, unit
-        The effect, the parameter whose distance from its null is its strength, and that one's unit.
+        The effect, the parameter whose distance from its null is its strength, and its unit.
     found_80, found_95
-        The parameter's value from which the effect is found in 80 and in 95 of 100 such campaigns;
-        None where no value within its bounds would be.
+        Parameter value from which the effect is detected with 80 % and 95 % power; None where no
+        value within its bounds is detected.
     always
-        True of an effect that shows however weak it is (a contact that holds at rest): the values
-        are the weakest of the catalogue.
+        True for an effect that is detectable at any strength (a contact that holds at rest): the
+        values are the weakest of the catalogue.
     share_80
-        By how much of the friction, RMS, it changes it there.
+        RMS change of the friction at `found_80`, as a share of the friction's RMS.
     alone_80
-        The value from which, in 80 of 100 such campaigns, it is found and no other effect could
-        stand in its place; None where one always could.
+        Parameter value from which, with 80 % power, the effect is detected and no other effect fits
+        as well; None where it is always confounded.
     like
-        Effects that could stand in its place at `found_80`, those that need the most to part first.
+        Effects with which it is confounded at `found_80`, the least distinguishable first.
     hidden
-        True where it could be there at the catalogue's usual strength and not be found in 80 of 100
-        such campaigns.
+        True where an effect of the catalogue's usual strength would be detected with less than 80 %
+        power.
     """
 
     effect: str
@@ -95,23 +101,23 @@ class Power:
     hidden: bool = False
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return {**vars(self), "like": list(self.like)}
 
 
 def power(
     candidates: Candidates, present: Names, names: Iterable[str] | None = None
 ) -> tuple[Power, ...]:
-    """What these runs would have shown of each effect that is not in the model.
+    """Power of these runs for each effect that is not in the model.
 
     Parameters
     ----------
     candidates
         The runs, and the fit of the effects that are in the model.
     present
-        Those effects.
+        Effects of the model.
     names
-        Effects asked for; all that were tried by default.
+        Effects to evaluate; by default all that were tried.
     """
     asked = set(candidates.names if names is None else names) - set(present)
     runs = RunsAtHand(candidates, present)
@@ -132,16 +138,16 @@ def power(
 
 @dataclass(frozen=True)
 class _Seen:
-    """How many times its usual strength an effect is found at, and what is seen of it there.
+    """Detectable strength of an effect, in multiples of its usual strength, and its change there.
 
     Attributes
     ----------
     times
-        Of each of `LEVELS`; nan where no strength is enough.
+        One for each of `LEVELS`; nan where no strength is sufficient.
     change
-        Of the first; and when it is `FURTHER` stronger.
+        Change of the record at the first strength, and at `FURTHER` times that strength.
     share
-        How much of the friction it changes, RMS.
+        RMS change of the friction, as a share of the friction's RMS.
     """
 
     times: tuple[float, ...]
@@ -166,10 +172,10 @@ class _Seen:
 
 
 def _found(runs: RunsAtHand, model: Strength, least: list[float], near: float = 1.0) -> list[float]:
-    """How many times its usual strength an effect has that is worth so much, of each."""
+    """Multiples of the usual strength that give each of the required non-centralities."""
     found, times, last = [], near, least[0]
     for wanted in least:
-        # What an effect is worth grows as its square, nearly.
+        # The non-centrality is nearly proportional to the square of the strength.
         times = _times(runs, model, wanted, times * float(np.sqrt(wanted / last)))
         found.append(times)
         times, last = (times, wanted) if np.isfinite(times) else (near, least[0])
@@ -184,12 +190,18 @@ def _parameters(base: Solution, model: Strength) -> int:
 def non_centrality(
     price: float, parameters: int, chance: float, counts: tuple[float, ...] = (1.0,)
 ) -> float:
-    """The non-centrality with which a chi-square of so many parameters exceeds a price so often.
+    """Non-centrality at which a chi-square variable exceeds a threshold with given probability.
 
     Parameters
     ----------
+    price
+        The threshold.
+    parameters
+        Degrees of freedom.
+    chance
+        The probability.
     counts
-        By how much it may count, 0 to 1, each as likely.
+        Factors on the gain, 0 to 1, each equally likely.
     """
     prices = price / np.array(counts)
 
@@ -201,25 +213,25 @@ def non_centrality(
 
 
 def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> float:
-    """How many times its usual strength an effect has that is worth so much; nan where none is.
+    """Multiple of the usual strength that gives a required non-centrality; nan where none does.
 
-    What an effect is worth grows as its square, nearly, or as it did from one look to the next;
-    where it grows all at once (a lag within a sample shows nothing) the search halves what is left
-    between too little and enough.
+    The search assumes a power law, at first of exponent two and then as observed between successive
+    strengths. Where the non-centrality rises abruptly (a lag within a sample has no effect) the
+    search bisects between too small and sufficient strengths.
     """
     little, enough = 0.0, np.inf
     power, before = 2.0, None
     for _ in range(LOOKS):
         told = max(worth(runs.shown(runs.change(model, times))), 1e-300)
         if before is not None and told != before[1] and times != before[0]:
-            # As it grew from the last strength to this one.
+            # Exponent observed between the last two strengths.
             grown = np.log(told / before[1]) / np.log(times / before[0])
             power = float(np.clip(grown, *POWERS))
         before = (times, told)
         further = float(np.clip((wanted / told) ** (1.0 / power), 1e-3, 30.0))
         if abs(np.log(further)) < AGREES:
             return times * further
-        # At a bound there is no more to be had.
+        # At a bound the strength cannot increase.
         if np.array_equal(model.values(times * further), model.values(times)):
             return times if further < 1.0 else np.nan
         if further > 1.0:
@@ -237,7 +249,7 @@ def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> fl
 
 
 def _change(runs: RunsAtHand, model: Strength, times: float) -> Change:
-    """What an effect changes, there and further on, and what its parameters change."""
+    """Change by an effect at one strength and at `FURTHER` times it, and its derivatives."""
     problem, values = model.problem.thinned, model.values(times)
     shares, now = runs.shares(model, times), runs.change(model, times)
     own = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
@@ -256,7 +268,7 @@ def _power(
     seen: dict[str, _Seen],
     name: str,
 ) -> Power:
-    """The power of one effect, beside what each other one changes."""
+    """Power for one effect, relative to the changes of all other effects."""
     model, own = models[name], seen[name]
 
     def strength(times: float) -> float | None:
@@ -306,8 +318,17 @@ def _further(
     times: float,
     rivals: dict[str, float],
 ) -> dict[str, tuple[float, float]]:
-    """What rivals leave of an effect that is so many times as strong, of what it is once, and by
-    how much it must gain more: of those that do not grow in proportion, since jumps move."""
+    """Re-evaluate rivals at a larger strength of an effect.
+
+    Only pairs are considered in which one effect moves jumps, so that changes are not proportional
+    to the strength.
+
+    Returns
+    -------
+    dict
+        For each rival, the unexplained part per unit of strength and the required difference of the
+        gains.
+    """
     own, again = seen[name], {}
     there = _change(runs, models[name], times * own.times[0])
     for other, least in rivals.items():

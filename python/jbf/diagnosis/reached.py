@@ -1,4 +1,4 @@
-"""How far a diagnosis has come, for one that is stopped before its end."""
+"""Progress of a diagnosis, for the result of an interrupted one."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ if TYPE_CHECKING:
 
 @dataclass
 class Reached:
-    """The model that the last round began from.
+    """The model from which the last round began.
 
     Attributes
     ----------
     candidates, present
-        Its fit is among these candidates; None before the law alone was fitted.
+        The candidates that include its fit, and its effects; None before the law alone was fitted.
     """
 
     candidates: Candidates | None = None
     present: tuple[str, ...] = ()
 
     def fit(self) -> Fit | None:
-        """That model with its errors; None where there is none yet."""
+        """That model with its standard errors; None where no model has been fitted yet."""
         if self.candidates is None:
             return None
-        # What is left to do is little, and there is nothing after it.
+        # The remaining work is small and final: lift the limit on computing steps.
         self.candidates.campaign.work.renew(math.inf)
         problem = self.candidates.fitted(self.present).problem
         return finish(problem, self.candidates.converge(self.present))

@@ -1,5 +1,4 @@
-"""The recipe of a diagnosis: rounds of selection until nothing is asked for, what remains, and the
-verdict."""
+"""Main procedure of a diagnosis: rounds of selection, residual structure, and verdict."""
 
 from __future__ import annotations
 
@@ -54,37 +53,39 @@ def diagnose(
     policy: Policy = DEFAULT,
     progress: Progress | None = None,
 ) -> Diagnosis:
-    """Find which effect of the catalogue a law lacks to explain the runs; add it; repeat.
+    """Find the effects of the catalogue that a law lacks to explain the runs.
+
+    The effect with the largest evidence is added to the model, and the search is repeated.
 
     Parameters
     ----------
     rig
-        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
+        Bearing, lubricant and load; `Rig()` is sufficient for a law in newtons.
     runs
-        Recorded runs with friction; several different motions tell effects apart.
+        Recorded runs with friction; several different motions help to distinguish effects.
     law, clock
-        Base law and its clock; `auto` takes the law, of those that the rig allows, that alone
-        predicts runs best that were left out of its fit.
+        Base law and its clock. `auto` selects, among the laws that the rig allows, the one with the
+        smallest held-out error without effects.
     limits
-        What the rig may be asked to do in the next experiment; from the runs where not given.
+        Limits of the rig in the next experiment; taken from the runs by default.
     policy
-        The numbers that decide the verdict.
+        Numbers that determine the verdict.
     progress
-        Called with a message, and how many of how many trials of the round are done.
+        Called with a message, the number of finished trials of the round and the total number.
 
     Returns
     -------
     Diagnosis
-        Verdict, effects, ledger, alternatives, what remains, and the final model.
+        Verdict, effects, ledger, alternatives, residual structure, and the final model.
 
     Raises
     ------
     InputError
         A run lacks friction, or nothing moves in it.
     Stopped
-        It was interrupted; it has the model that the last round began from.
+        The diagnosis was interrupted; the exception holds the model of the last round's start.
     Unfinished
-        It would have taken too long; it has that model, too.
+        The diagnosis would take too long; the exception holds the same model.
     """
     reached = Reached()
     try:
@@ -109,7 +110,7 @@ def _diagnose(
     progress: Progress | None,
     reached: Reached,
 ) -> Diagnosis:
-    """`diagnose`, which tells how far it has come."""
+    """Implementation of `diagnose` that records its progress."""
     begun = time.monotonic()
     if law != AUTO:
         check_rig(rig, law)
@@ -161,7 +162,7 @@ def _diagnose(
 
 
 def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
-    """The selected law and, before it if it is elastic, the best one without memory."""
+    """The selected law, preceded by the best law without memory if the selected one is elastic."""
     first = laws[0].law
     if not find_law(first).has_bristle:
         return (first,)
@@ -170,7 +171,7 @@ def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
 
 
 def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:
-    """Whether an elastic law without effects predicts better than another one with its effects."""
+    """Whether an elastic law without effects predicts better than another law with its effects."""
     alone = {t.law: t.left_out_rms_n for t in laws}
     first, last = best.steps[0], best.steps[-1]
     improved = last.holdout_rms_n / max(first.holdout_rms_n, 1e-300)
@@ -178,8 +179,10 @@ def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], mar
 
 
 def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
-    """RMS of the errors of final models on runs that had no part in a fit, at the same samples, in
-    the unit of the force: of the fit there, times the ratio of held-out and fitted RMS."""
+    """Held-out RMS of final models on common samples, in the unit of the force.
+
+    Each is the RMS of the fit on these samples, times the ratio of held-out RMS and fit RMS.
+    """
     compared = [compare_prepared(answer.model, recorded) for answer in answers]
     samples = recorded.samples
     for own in compared:
@@ -202,12 +205,12 @@ def _with_law(
     *,
     given: bool,
 ) -> Diagnosis:
-    """A diagnosis with a law.
+    """Diagnose the runs with one law.
 
     Parameters
     ----------
     given
-        Whether the user chose the law: then a simpler one is looked for.
+        Whether the user chose the law; if so, a simpler law is also searched.
     """
     begun = time.monotonic()
     campaign = settled_campaign(recorded, law, clock)
@@ -227,7 +230,7 @@ def _with_law(
     named = tuple(name for name in present if name not in doubted)
     steps = as_it_ended(steps, present, doubted)
     if doubted and not remainder_of(candidates, named):
-        # What some runs asked for and others did not, nothing asks for once it is gone.
+        # The structure was due to the confounders: without them the model is adequate.
         present, remains = named, refused
     missing = tuple(name for name in named if name not in machine)
     asked = (*missing, OFFSET)
@@ -278,18 +281,18 @@ def _with_law(
 
 
 def _values(fit: Fit) -> dict[str, float]:
-    """Parameter name to value."""
+    """Parameter values by name."""
     return {name: parameter.value for name, parameter in fit.parameters.items()}
 
 
 def _before(candidates: Candidates) -> Comparison:
-    """The law with its machine, next to the records."""
+    """Compare the law, together with the terms of its machine, with the records."""
     base = start_model(candidates)
     bare = finish(candidates.fitted(base).problem, candidates.converge(base))
     return compare_prepared(bare.model, candidates.campaign)
 
 
 def _rivals(present: Names, name: str, others: Names) -> list[Names]:
-    """The models that fit equally well: with this effect, or another in its place."""
+    """The models that fit equally well: with this effect, or with one of its alternatives."""
     rest = tuple(e for e in present if e != name)
     return [present, *((*rest, other) for other in others)]

@@ -1,10 +1,11 @@
-"""Structure that nothing in the catalogue explains: patterns along an axis, tones, bursts, what
-comes again with the motion, strokes of which each has a level of its own, and runs that disagree on
-the parameters.
+"""Tests for residual structure (lack of fit) that no effect of the catalogue explains.
 
-Everything is tested on innovations (the residual less what the noise's own memory foretells),
-so that coloured noise is no structure. A pattern must be both beyond chance and large enough to
-matter. What is said of it, in newtons, is of the residual: record minus model.
+The tests cover patterns along an axis, tones, bursts, errors that repeat with the motion, strokes
+with different levels, and runs that disagree on the parameters.
+
+All tests use innovations, the residual less its prediction by the noise's autocorrelation, so that
+coloured noise is not taken for structure. A pattern must be both significant and large enough to be
+relevant. Sizes in newtons refer to the residual: record minus model.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ Array = npt.NDArray[np.float64]
 def find_remainder(
     problem: Problem, solution: Solution, policy: Policy = DEFAULT
 ) -> tuple[Remainder, ...]:
-    """What remains in the residuals of a solution, strongest first."""
+    """Find the structure in the residuals of a solution, largest share first."""
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
     left = samples.without_deviations(solution.residuals, solution.noise)
@@ -47,7 +48,7 @@ def find_remainder(
     found += find_bursts(prepared, samples.with_known_motion(), plain, left, policy)
     found += find_disagreement(problem, solution, policy)
     found += find_stroke_levels(problem, solution, policy)
-    # Of steps as coarse as these no mean reading is right, along whatever axis and in each run.
+    # Coarse quantisation biases mean readings along any axis and in each run.
     steps_n = problem.campaign.steps_rms_n(solution.rms_n)
     found = [r for r in found if np.sqrt(r.share) * solution.rms_n > steps_n]
     if samples.motion is not None:
@@ -63,12 +64,14 @@ def find_patterns(
     residuals: Sequence[Array],
     policy: Policy,
 ) -> list[Failure]:
-    """Axes along which the means of the innovations differ by more than chance and a share, with
-    those of the residuals."""
+    """Find axes along which the means of the innovations differ significantly and relevantly.
+
+    The means of the residuals are reported with them.
+    """
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
     u_tr = transition_speed(problem.law, solution.values.tolist())
-    # Along the force a cell that is not straight shows.
+    # The force axis shows a nonlinear force sensor.
     unit = problem.campaign.rig.quantities.force
     force = force_axis(*_likeliest_forces(problem, solution), unit)
     share, sigma = policy.pattern_share, policy.pattern_sigma
@@ -80,11 +83,11 @@ def find_patterns(
 
 
 def _likeliest_forces(problem: Problem, solution: Solution) -> tuple[list[Array], float]:
-    """The force of each sample by the model and the record, weighted by their precisions, and its
-    usual standard error.
+    """Estimate the force of each sample from model and record, and its median standard error.
 
-    The errors of this mean are uncorrelated with the residual; in bins of the prediction alone the
-    errors of the motion would have a mean. Without errors of the motion it is the prediction.
+    Both are weighted by their precisions. The error of this mean is uncorrelated with the residual;
+    in bins of the prediction alone, the errors of the motion would have a nonzero mean. Without
+    errors of the motion, the estimate is the prediction.
     """
     predicted, samples = problem.predict(solution.values), solution.samples
     motion = samples.motion

@@ -1,8 +1,8 @@
-"""Structure seen without any axis: what comes again when the same motion comes again.
+"""Test for structure without an axis: errors that repeat with a repeated motion.
 
-Noise of one period knows nothing of the next; an error of the model does. The correlation of the
-residual with itself one period later is therefore the share of its mean square that is no noise
-(a lack-of-fit test with replicates).
+Noise is independent between periods; a model error is not. The correlation of the residual with
+itself one period later is therefore the share of its mean square that is not noise (a lack-of-fit
+test with replicates).
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from jbf.estimation.replicates import period_samples
 from jbf.estimation.solution import Solution
 
 MIN_PAIRS = 100
-"""Pairs of replicates that a run must have to say something."""
+"""Smallest number of pairs of replicates for a run to be tested."""
 BETWEEN = (0.5, 0.6, 0.7, 0.8, 0.9)
-"""Shares of a period at which nothing comes again but what the noise remembers."""
+"""Lags in periods at which a correlation can only be due to the noise's memory."""
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -31,7 +31,7 @@ Mask = npt.NDArray[np.bool_]
 def find_replicates(
     prepared: Sequence[Prepared], solution: Solution, policy: Policy
 ) -> list[Remainder]:
-    """What of the residual comes again with the motion, over all periodic runs."""
+    """Find the part of the residual that repeats with the motion, over all periodic runs."""
     product, spread, square, names = 0.0, 0.0, 0.0, []
     least = policy.replicate_share
     left = solution.samples.without_deviations(solution.residuals, solution.noise)
@@ -44,7 +44,7 @@ def find_replicates(
         if len(first) < MIN_PAIRS:
             continue
         level = float(first @ first + second @ second) / (2.0 * len(first))
-        # A noise with a long memory remembers a period, and half of one better still.
+        # Noise with a long memory is correlated over a period, and more over half a period.
         own = float(first @ second) - len(first) * _remembered(residual, counted, shift)
         product += own
         square += level * len(first)
@@ -67,8 +67,11 @@ def find_replicates(
 
 
 def _remembered(residual: Array, counted: Mask, shift: int) -> float:
-    """What of the mean product one period apart is the noise's memory, N^2: the least between half
-    a period and a whole one, where an error that comes again rises and falls."""
+    """Mean product one period apart that is due to the noise's memory, N^2.
+
+    It is the smallest mean product at lags between half a period and a whole one, where a repeating
+    error has both signs.
+    """
     products = []
     for share in BETWEEN:
         lag = max(int(share * shift), 1)

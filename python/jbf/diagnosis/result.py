@@ -1,4 +1,4 @@
-"""What a diagnosis says: verdict, ledger of steps, what remains."""
+"""Result of a diagnosis: verdict, ledger of steps, and residual structure."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from jbf.results import Result
 
 @dataclass(frozen=True, repr=False)
 class Diagnosis(Result):
-    """The answer to "which effect is missing?".
+    """Result of a diagnosis: which effects are missing from the model.
 
     Attributes
     ----------
@@ -33,49 +33,51 @@ class Diagnosis(Result):
         Conclusions that the motions of these runs do not allow, in words.
     machine
         Terms of a drive's own machine that the runs need: inertia or mass, weight, offset. They are
-        part of the model from the start, and no missing effects.
+        part of the model from the start and are not missing effects.
     effects
-        What was added and rests on its own evidence, in the order found.
+        Added effects with sufficient evidence of their own, in the order of acceptance.
     alternatives
-        For each added effect, those that would fit as well in its place, the likeliest first.
+        For each added effect, those with which it is confounded, the most likely first.
     weights
-        For each added effect its posterior weight and theirs, at equal odds before.
+        For each added effect, its posterior weight and those of its alternatives, at equal prior
+        odds.
     steps
-        The ledger, from the bare law on.
+        The ledger, beginning with the bare law.
     failures
-        Where the bare law failed, strongest first.
+        Lack of fit of the bare law, strongest first.
     unexplained
-        Structure that remains.
+        Residual structure that no effect explains.
     next_experiment
-        A sentence, where another run would decide.
+        One sentence, where another run would settle the question.
     fit
         The final fit; `model` is its model.
     before, after
         Comparison of the bare law and of the final model with the runs.
     not_tried
-        Effects that go with the law but that these runs cannot show, and why.
+        Effects that are compatible with the law but not testable in these runs, with the reason.
     unseen
-        Effects that could be there at a usual strength, and that these runs would still not show.
+        Effects that are not detectable in these runs at a usual strength.
     level
-        What an effect had to gain to be named, and how seldom noise makes one gain that.
+        Threshold for the gain of an effect, and how often noise exceeds it.
     power
-        How strong each effect that is not in the model would have had to be for these runs to show
-        it; empty where something remains that is no noise.
+        Strength from which each effect that is not in the model would be detected in these runs;
+        empty where residual structure remains.
     experiment
-        The motion of the next run, where a run would part rivals or show what could hide.
+        The motion of the next run, where a run would discriminate rivals or show undetectable
+        effects.
     policy
-        The numbers that decided the verdict.
+        Numbers that determined the verdict.
     findings
-        What the recording did, run by run, and what was done about it.
+        Recording artefacts by run, and their corrections.
     confounders
-        Effects that the model has because it predicts runs left out better with them, and that are
-        not named: the runs disagree on their parameters.
+        Effects in the model that improve its held-out predictions but are not named, because the
+        runs disagree on their parameters.
     laws
-        Where the data chose the law: those that the rig allows, the one taken first.
+        Laws that the rig allows, the selected one first, where the law was selected from the data.
     simpler_law
-        Another law that predicts runs left out no worse than the final model, with no more
-        parameters and only those effects that are no friction (a zero, a mass, a weight); None
-        where there is none, or nothing made it worth a search.
+        Another law with a held-out error no larger than that of the final model, no more
+        parameters, and only effects that are not friction (offset, mass, weight). None where no
+        such law was found or a search was not necessary.
     """
 
     verdict: Verdict
@@ -105,8 +107,10 @@ class Diagnosis(Result):
 
     @property
     def negligible(self) -> tuple[str, ...]:
-        """Effects that are significant beside the final model and too small to be worth reporting
-        (`indifference` of the policy)."""
+        """Effects that are significant but below the minimum effect size.
+
+        They are tested in addition to the final model; the size is `indifference` of the policy.
+        """
         trials = next((s.trials for s in reversed(self.steps) if s.trials), ())
         return tuple(t.effect for t in trials if t.outcome == "negligible")
 
@@ -116,7 +120,7 @@ class Diagnosis(Result):
         return self.fit.model
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON, as the file contract has it."""
+        """Return a JSON-serialisable dict as specified by the file contract."""
         return {
             **self.model.told_units(),
             "verdict": self.verdict,
@@ -145,5 +149,5 @@ class Diagnosis(Result):
         }
 
     def report(self, path: PathLike) -> None:
-        """As `save_html`."""
+        """Write the HTML report; the same as `save_html`."""
         self.save_html(path)

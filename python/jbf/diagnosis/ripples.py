@@ -1,12 +1,13 @@
-"""Ripple at a place of its own in each run: waves over the way that stand out of the innovations.
+"""Test for ripple: a periodic force over the travel, with a different phase in each run.
 
-A drive that is logged set point by set point, its counter at zero each time, has the pitch of its
-screw or its teeth in every run, and in each at another phase. No effect of the catalogue has a
-phase a run: whatever phases the runs at hand had, of the next run's they say nothing, and a model
-with them predicts no run that it has not seen. So this is structure that is told, and no effect.
+A drive may be logged set point by set point, with its counter reset to zero each time. Every run
+then shows the pitch of the screw or of the teeth, each at another phase. No effect of the catalogue
+has a phase for each run: the phases of the present runs do not predict that of the next run, so
+such a model has no predictive value. The ripple is therefore reported as residual structure.
 
-Of each run's innovations the spectrum over its own way is taken (Fisher 1929; ordinates add from
-run to run whatever the phases). Where the runs share a phase, `cogging` and `pitch_ripple` say so.
+The spectrum of each run's innovations over its travel is computed (Fisher 1929). Ordinates are
+summed over runs independently of the phases. Where the runs share a phase, the effects `cogging`
+and `pitch_ripple` describe it.
 """
 
 from __future__ import annotations
@@ -26,21 +27,29 @@ from jbf.estimation.samples import Samples
 Array = npt.NDArray[np.float64]
 
 LEAST_PERIODS = 8.0
-"""Periods that the way of a run must hold: what is longer belongs to the patterns along axes."""
+"""Smallest number of periods in the travel of a run.
+
+Longer periods are tested as patterns along axes.
+"""
 BINS_A_PITCH = 4.0
-"""Bins of the way in the shortest pitch that is looked for."""
+"""Number of travel bins in the shortest pitch that is tested."""
 MOST_BINS = 2**16
 PADDING = 4
-"""Spectral lines to the width of one."""
+"""Number of spectral lines per line width."""
 ONE_PHASE = 0.5
-"""Share of the waves' power from which on one phase in all runs says them."""
+"""Share of the ripple's power from which one common phase explains it."""
 LEAST_RUNS = 3
 IN_MOST = 2.0 / 3.0
-"""Share of the runs, the weakest, that must have the wave, too: a hum is at this pitch in a few."""
+"""Share of the runs, the weakest, that must also show the ripple.
+
+A tone has this pitch in a few runs only.
+"""
 IN_MOST_CHANCE = 1e-3
 AS_MUCH = 0.8
-"""Share of the square of a pitch from which on a frequency says as much: half a line's width off
-loses a fifth of it."""
+"""Share of a pitch's sum of squares from which a frequency explains the ripple equally well.
+
+At half a line width from its centre a line loses a fifth of its power.
+"""
 
 
 def find_ripples(
@@ -50,9 +59,10 @@ def find_ripples(
     residuals: Sequence[Array],
     policy: Policy,
 ) -> list[Remainder]:
-    """The clearest wave over the way whose phase differs by run, if there is one.
+    """Find the clearest ripple over the travel whose phase differs between runs.
 
-    Of a force itself, and of one in the direction of motion.
+    Two forms are tested: a force, and a force in the direction of motion. The list has at most one
+    element.
     """
     prepared = campaign.prepared
     if campaign.rig.bearing is not None or len(prepared) < LEAST_RUNS:
@@ -84,14 +94,14 @@ def _is_a_tone(
     share: float,
     policy: Policy,
 ) -> bool:
-    """Whether one frequency in all runs says about as much as one pitch: at one speed it does."""
+    """Whether one frequency explains about as much as one pitch, as it does at constant speed."""
     times = [p.run.time_s - p.run.time_s[0] for p in campaign.prepared]
     period = _pitch(times, innovations, samples, policy)
     return period is not None and _waves(times, residuals, samples, period)[0] > AS_MUCH * share
 
 
 def _way(p: Prepared) -> Array:
-    """Where the run is, m (of a joint rad), from where it began."""
+    """Travel since the start of a run, m (for a joint rad)."""
     found: Array = p.motion.angle_rad - p.motion.angle_rad[0]
     return found
 
@@ -99,7 +109,7 @@ def _way(p: Prepared) -> Array:
 def _pitch(
     ways: Sequence[Array], innovations: Sequence[Array], samples: Samples, policy: Policy
 ) -> float | None:
-    """The pitch whose lines, summed over the runs, are no chance; None where none is."""
+    """The pitch whose lines, summed over the runs, are significant; None without such a pitch."""
     spans = np.array([float(np.ptp(w)) for w in ways])
     longest = float(np.max(spans))
     steps = np.concatenate([np.abs(np.diff(w)) for w in ways])
@@ -107,7 +117,7 @@ def _pitch(
         return None
     fine = max(float(np.median(steps[steps > 0.0])), longest / MOST_BINS)
     length = PADDING * (int(longest / fine) + 1)
-    # Waves in a metre.
+    # Waves per metre.
     waves = np.arange(length // 2 + 1) / (length * fine)
     total, degrees = np.zeros(len(waves)), np.zeros(len(waves))
     for way, e, counted, span in zip(ways, innovations, samples.counted, spans, strict=True):
@@ -124,7 +134,7 @@ def _pitch(
     if not band.any():
         return None
     chance = np.ones(len(waves))
-    # Chi-square's tail; where it underflows the excess decides.
+    # Upper tail of chi-square; where it underflows, the excess over the expectation decides.
     chance[band] = special.gammaincc(0.5 * degrees[band], 0.5 * total[band])
     k = int(np.argmax(np.where(chance <= chance.min(), total - degrees, -np.inf)))
     if chance[k] * band.sum() > policy.tone_chance:
@@ -136,7 +146,7 @@ def _pitch(
 def _in_most(
     ways: Sequence[Array], innovations: Sequence[Array], samples: Samples, pitch: float
 ) -> bool:
-    """Whether the runs but the third that have most of a wave have it beyond chance, too."""
+    """Whether the weaker two thirds of the runs also show the ripple significantly."""
     lines = []
     for way, e, counted in zip(ways, innovations, samples.counted, strict=True):
         level = float(np.sum(e[counted] ** 2))
@@ -150,8 +160,14 @@ def _in_most(
 def _waves(
     ways: Sequence[Array], residuals: Sequence[Array], samples: Samples, pitch: float
 ) -> tuple[float, float, float]:
-    """The share of the mean square that the waves have, their median size, N, and the share of
-    their power that one wave in all runs would have."""
+    """Size of a ripple of given pitch.
+
+    Returns
+    -------
+    tuple of float
+        Share of the mean square, median amplitude over the runs in N, and the share of the power
+        that a ripple with one common phase has.
+    """
     pairs, rest = [], []
     for way, r, counted in zip(ways, residuals, samples.counted, strict=True):
         turns = np.exp(2j * np.pi * way[counted] / pitch)

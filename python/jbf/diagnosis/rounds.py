@@ -1,4 +1,4 @@
-"""Rounds of selection, one effect after another, until no candidate leads."""
+"""Rounds of selection that add one effect at a time, until no candidate is accepted."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ class Selected:
     Attributes
     ----------
     candidates
-        The fits to the campaign with the terms of the observation model that were accepted.
+        The fits to the campaign with the accepted terms of the observation model.
     present
         The effects that were accepted.
     steps
-        The ledger, one step a round.
+        The ledger, one step per round.
     refused
-        Effects that fit better and predict runs left out no better.
+        Effects that fit better but do not improve the held-out predictions.
     """
 
     candidates: Candidates
@@ -53,12 +53,11 @@ class Selected:
 
 
 def select(candidates: Candidates) -> Selected:
-    """Add effects and terms of the observation model, the largest evidence first, until none is
-    accepted.
+    """Add effects and terms of the observation model, the largest evidence first.
 
-    The start model is the law with the machine of a drive. If none is accepted and the residual has
-    structure, all candidates are fitted once (the score of a strong effect at its null may be
-    small), and then pairs of them.
+    The selection ends when no further one is accepted. The start model is the law with the machine
+    of a drive. If no effect is accepted and the residual has structure, all candidates are fitted
+    once (the score of a strong effect at its null may be small), and then pairs of them.
     """
     policy = candidates.policy
     present, steps = start_model(candidates), []
@@ -109,7 +108,7 @@ def select(candidates: Candidates) -> Selected:
 
 
 def _evidence_of_leader(candidates: Candidates, present: Names, found: Round) -> float:
-    """Evidence for the leading effect; its whole gain if independent units confirmed it."""
+    """Evidence for the leading effect; its full gain if independent units confirmed it."""
     leader = next(t for t in found.trials if t.effect == found.leader)
     if leader.evidence > 0.0:
         return leader.evidence
@@ -124,8 +123,10 @@ def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...
 
 
 def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
-    """The model with the leading candidate, and without what that makes needless; with one that is
-    tied with it, if that leaves fewer effects."""
+    """Add the leading candidate and remove effects that it makes unnecessary.
+
+    A candidate that is tied with the leader is used instead if this results in fewer effects.
+    """
     tied = [t.effect for t in found.trials if t.outcome == "ties"]
     best: Names | None = None
     for name in (found.leader, *tied) if present else (found.leader,):
@@ -134,7 +135,7 @@ def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
         grown = reconsider(candidates, (*present, name), found.unconfirmed)
         if best is None or (
             len(grown) < len(best)
-            # A tied candidate has not been confirmed by runs left out.
+            # A tied candidate has not been confirmed by held-out runs.
             and candidates.left_out_rms(grown) <= candidates.left_out_rms(best)
         ):
             best = grown
@@ -143,9 +144,10 @@ def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
 
 
 def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
-    """The model with the pair of effects that explains most, if it is needed.
+    """Add the pair of effects that explains most, if it is needed.
 
-    Beside a model that lacks two effects, neither may have evidence alone: what remains is smooth.
+    Where two effects are missing, neither may have evidence alone, because the residual remains
+    smooth.
     """
     policy = candidates.policy
     if len(present) + 2 > policy.most_effects:
@@ -174,7 +176,7 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
 
 
 def _promising(candidates: Candidates, present: Names) -> list[str]:
-    """The candidates with the largest scores next to a model."""
+    """The candidates with the largest scores relative to a model."""
     near = candidates.converge(present)
     names = [n for n in candidates.names if n not in present and may_come(n, present)]
     candidates.score_all([(*present, name) for name in names], near)
@@ -184,7 +186,7 @@ def _promising(candidates: Candidates, present: Names) -> list[str]:
 
 
 def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:
-    """What a search that ends with a leader in hand leaves unsaid."""
+    """Report as residual structure that the maximum number of effects was reached with a leader."""
     base, richer = candidates.converge(present), candidates.converge((*present, leader))
     unit = candidates.campaign.rig.quantities.force
     where = (
@@ -195,7 +197,7 @@ def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:
 
 
 def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> Step:
-    """A line of the ledger: a model, its errors, and the candidates tried beside it."""
+    """Create a step of the ledger: a model, its errors, and the candidates tried with it."""
     solution = candidates.converge(effects)
     noise_n = noise_floor(candidates.campaign.prepared, solution.samples)
     left_out_n = candidates.left_out_rms(effects)
@@ -204,7 +206,7 @@ def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> S
 
 
 def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolation, ...]:
-    """Errors of the runs beyond all others, predicted by a fit to those alone."""
+    """Errors of the runs that exceed the range of all others, predicted by a fit to the others."""
     if not candidates.beyond:
         return ()
     unit, names = candidates.campaign.rig.quantities, candidates.campaign.samples.runs
@@ -222,14 +224,14 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
 
 
 def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    """What a candidate saw that helps where it was fitted, or in places, and not elsewhere.
+    """Report a candidate that fits better, overall or in parts, but does not predict better.
 
-    Beside the instants at which friction jumps it is none: a clock that is off by less than a
-    sample, by another time in each run, makes those errors.
+    Improvements next to the instants at which friction jumps are not counted. They can be due to a
+    clock error of less than a sample that differs between runs.
     """
     policy, fitted = candidates.policy, candidates.one_more(present)
     base = candidates.converge(present)
-    # What a delay would move is set aside, as where it is fitted itself.
+    # Exclude the samples that a delay would move, as in the fit of the delay itself.
     delay = fitted.get(DELAY)
     away = base.samples if delay is None else delay.found().samples
     found = []

@@ -1,9 +1,9 @@
-"""Selection: rounds that add the effect the data ask for, and question those that are there.
+"""Stepwise selection: rounds that add an effect with evidence and review the effects present.
 
-In a round every candidate is tried beside what the model already holds, in order of cost: a score
-test, a ranking, a converged fit. The leader is added if runs that it was not fitted to agree. Then
-the other effects are questioned again: one that is no longer needed goes, one that another would
-replace better is exchanged.
+In a round every candidate is tried in addition to the present effects, in order of cost: a score
+test, a ranking, a converged fit. The leader is added if held-out runs confirm it. The other effects
+are then reviewed: an unnecessary effect is removed, and an effect is exchanged where another one
+has more evidence in its place.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
 
 AHEAD = 3
-"""Candidates that gained most at a first look, of which one may lead."""
+"""Number of candidates, by gain after a few steps, that may set the leader's evidence."""
 LESS = 0.95
-"""Share of an RMS below which another is less for anybody who reads the ledger."""
+"""Ratio of two RMS values below which a reader of the ledger regards one as smaller."""
 CHANCE = "gains no more than chance would"
 SLIGHT = "gains more than noise would, but no more than what recordings do to a record"
 SMOOTH = "fits better, but by no more than so smooth a residual strays: too few independent samples"
@@ -44,8 +44,19 @@ SMOOTH = "fits better, but by no more than so smooth a residual strays: too few 
 
 @dataclass(frozen=True)
 class Ranked:
-    """A candidate beside a model: its evidence, and the solution that has it; where it was not
-    followed, the most evidence that it could have."""
+    """A candidate relative to a model.
+
+    Attributes
+    ----------
+    evidence
+        Evidence of the candidate.
+    effect
+        Its name.
+    solution
+        The solution with this evidence.
+    most
+        Largest evidence that it could reach, where its fit was not continued; infinite otherwise.
+    """
 
     evidence: float
     effect: str
@@ -55,8 +66,17 @@ class Ranked:
 
 @dataclass(frozen=True)
 class Round:
-    """One round of trials beside a model; `unconfirmed` are the candidates that had more evidence
-    than the leader, and predicted runs left out no better."""
+    """One round of trials relative to a model.
+
+    Attributes
+    ----------
+    trials
+        The candidates tried, largest evidence first.
+    leader
+        The effect to add; None where none is accepted.
+    unconfirmed
+        Candidates with more evidence than the leader that held-out runs did not confirm.
+    """
 
     trials: tuple[Trial, ...]
     leader: str | None
@@ -64,13 +84,14 @@ class Round:
 
 
 def try_candidates(candidates: Candidates, present: Names, follow: Follow = "promising") -> Round:
-    """Fit every candidate beside the effects present, and say which should be added.
+    """Fit every candidate in addition to the present effects and select the one to add.
 
     Parameters
     ----------
     follow
-        The candidates that are fitted: those that could lead by a first look, those that show in
-        their score test, or all of them: of a strong effect the score at its null may say nothing.
+        The candidates to fit: those that could lead after a few steps (`promising`), those with a
+        sufficient score (`shown`), or all. For a strong effect, the score at its null may be
+        uninformative.
     """
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force
@@ -117,7 +138,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         trials.append(Trial(name, rms, float(gain), outcome, reason))
     behind = max((r.most for r in ranked if np.isfinite(r.most)), default=-np.inf)
     if behind > best:
-        # What it was left behind for does not lead.
+        # The leader that these candidates were compared with was not accepted.
         return try_candidates(candidates, present, "shown")
     if leader is None:
         tried = [r for r in ranked if r.effect not in unconfirmed]
@@ -129,10 +150,10 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
 def _by_units(
     candidates: Candidates, present: Names, ranked: Sequence[Ranked], trials: list[Trial]
 ) -> tuple[str | None, list[Trial]]:
-    """The candidate with the largest gain by the likelihood alone that independent units confirm.
+    """The candidate with the largest likelihood gain that independent units confirm.
 
     Where the residual is smooth, few of its samples are independent, and a slow or constant effect
-    has no evidence; runs or strokes are independent whatever the residual is.
+    has little evidence. Runs or strokes are independent in any case.
     """
     base = candidates.converge(present)
     gains = {
@@ -154,8 +175,7 @@ def _by_units(
 
 
 def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
-    """Whether independent units are predicted better with an effect than without, by more than
-    chance."""
+    """Whether an effect improves the prediction of independent units significantly."""
     return candidates.confirmation(rest, name).units_confirm(candidates.level.chance)
 
 
@@ -170,20 +190,24 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 
 
 def _found_its_way(candidates: Candidates, present: Names, name: str, base: Solution) -> bool:
-    """Whether the model without an effect fits better from where the fit with it ended: then the
-    gain was that of a way past a valley, and not the effect's."""
+    """Whether the model without an effect improves when refitted from the fit with the effect.
+
+    If so, the gain came from leaving a local minimum and not from the effect.
+    """
     better = candidates.refit_from(present, (*present, name))
     return likelihood_gain(better, base) > candidates.policy.contender
 
 
 def _leaves_more(found: Ranked, least_n: float, policy: Policy) -> bool:
-    """Whether a candidate leaves much more than another that has evidence, too."""
+    """Whether a candidate has a much larger RMS than another one that also has evidence."""
     return found.solution.rms_n > policy.leader_rms * least_n
 
 
 def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow) -> list[Ranked]:
-    """Every candidate beside the effects present, most evidence first; those that could lead have
-    converged."""
+    """Evaluate every candidate in addition to the present effects, the largest evidence first.
+
+    Candidates that could lead are converged.
+    """
     policy = candidates.policy
     rivals = [n for n in candidates.names if n not in present and may_come(n, present)]
     share = effective_share(base)
@@ -191,7 +215,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     scores = {name: candidates.score_test((*present, name), base) for name in rivals}
     candidates.calibrate(present)
     least = policy.least_score * price_of(candidates, 1)
-    # Of a smooth error a sample tells less, and anything gains a little.
+    # In a smooth residual a sample carries less information, and any candidate gains a little.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
     first = dict.fromkeys(rivals, -np.inf)
     behind = _left_behind(candidates, present, shown, base) if follow == "promising" else {}
@@ -212,19 +236,19 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
             promised = first[name] + policy.promise * next_step_gain(solution) * share
             if first[name] > line and promised > 0.0:
                 solution = candidates.converge(effects)
-        # At its null an effect leaves the model as it was: no candidate is worse than that.
+        # At its null an effect does not change the model: evidence has this lower bound.
         more = len(candidates.fitted(effects).problem.open) - base.free
         gain = max(evidence(candidates, solution, base), -price_of(candidates, more))
         found.append(Ranked(gain, name, solution, behind.get(name, np.inf)))
     found.sort(key=lambda r: -r.evidence)
-    # One that might lead from a higher peak gets its chance.
+    # Search the other peaks of candidates that might lead from a higher one.
     for i, r in enumerate(found):
         effects = (*present, r.effect)
         likely = max(policy.peaks_share * found[0].evidence, 0.0)
         if many_peaks(effects) and r.evidence > likely and r.effect not in behind:
             solution = candidates.search_peaks(effects)
             found[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
-    # Of two that are one in these runs the one nearer to the record supposes less of the machine.
+    # Of two indistinguishable effects, prefer the one closer to the recording: it assumes less.
     order = {name: i for i, name in enumerate(rivals)}
     return sorted(found, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
 
@@ -232,8 +256,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
 def _left_behind(
     candidates: Candidates, present: Names, shown: Sequence[str], base: Solution
 ) -> dict[str, float]:
-    """After a first look at every candidate: those that could not come near the leader, and the
-    most evidence that each could have."""
+    """Candidates that could not reach the leader after a few steps, with their largest evidence."""
     policy = candidates.policy
     candidates.look_all([(*present, name) for name in shown], base)
     looked = {name: candidates.look((*present, name), base) for name in shown}
@@ -246,7 +269,7 @@ def _left_behind(
 
 
 def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
-    """The effects that have evidence yet, now that the samples are seen in another light."""
+    """The effects that still have evidence after the sample weights or the campaign changed."""
     current = tuple(effects)
     for name in effects:
         if not may_go(name, current):
@@ -261,9 +284,9 @@ def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
 def start_model(candidates: Candidates) -> Names:
     """The terms of a drive's machine that these runs need, estimated together with the law.
 
-    Each term starts from the fit without it: from their starting values all at once, a search may
-    end at a weight of zero. A term without evidence stays if runs are predicted worse without it:
-    where another effect is missing, the residual is so smooth that nothing has evidence.
+    Each term starts from the fit without it: a search from the starting values of all terms may end
+    at a weight of zero. A term without evidence is kept if the held-out error is larger without it.
+    Where another effect is missing, the residual may be too smooth for any term to have evidence.
     """
     present: Names = ()
     policy = candidates.policy
@@ -284,13 +307,15 @@ def start_model(candidates: Candidates) -> Names:
 def reconsider(
     candidates: Candidates, present: Names, unconfirmed: frozenset[str] = frozenset()
 ) -> Names:
-    """Take out effects that are no longer needed; exchange those that another replaces better;
-    until nothing changes: what comes in another's place may make more of them needless.
+    """Remove unnecessary effects and exchange those that another effect replaces better.
+
+    The review is repeated until nothing changes, since an exchange may make further effects
+    unnecessary.
 
     Parameters
     ----------
     unconfirmed
-        Effects that runs left out have just spoken against: none of them comes in by the back door.
+        Effects that held-out runs have just rejected; they are not used as replacements.
     """
     seen = [present]
     while (current := _questioned(candidates, seen[-1], unconfirmed)) not in seen:
@@ -299,7 +324,7 @@ def reconsider(
 
 
 def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
-    """Each of the effects in turn."""
+    """Review each of the effects once."""
     current = present
     for name in present:
         if len(current) < 2 or name not in current or not may_go(name, current):
@@ -312,7 +337,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
             current = rest
             continue
         if name in machine_of(candidates, current) and name != OFFSET:
-            continue  # inertia and weight are no stand-ins for an effect; an offset may be
+            continue  # inertia and weight do not imitate an effect; an offset may
         best, gain = name, candidates.policy.tie
         for other in candidates.names:
             if other in current or other in unconfirmed or not may_come(other, rest):
@@ -326,12 +351,11 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
 
 
 def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float]]:
-    """For each effect its posterior weight and those of the candidates that could stand in its
-    place.
+    """Posterior weights of each effect and of its alternatives, at equal prior odds.
 
-    At equal odds before, among those that have at least `least_weight` beside it alone (Kass &
-    Raftery 1995); the effect first, the others as they weigh. An effect that nothing could replace
-    weighs one.
+    Alternatives are the candidates with at least `least_weight` in a comparison with the effect
+    alone (Kass & Raftery 1995). The effect is first, the others follow by weight. An effect without
+    alternatives has weight one.
     """
     whole = candidates.converge(present)
     found: dict[str, dict[str, float]] = {}

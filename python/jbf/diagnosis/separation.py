@@ -1,8 +1,8 @@
-"""How far two models differ in a motion not yet recorded, once the wrong one is fitted again.
+"""Separation of two models in a motion that is not yet recorded.
 
-What counts is what is left of their difference after a new fit to the old runs and the new one
-together (T-optimality, Atkinson & Fedorov 1975; here to first order): parameters that make up for a
-wrong effect must not be counted as evidence.
+The separation is the part of their difference that remains after the wrong model is refitted to the
+old runs and the new one together (T-optimality, Atkinson & Fedorov 1975; here to first order). The
+part that its parameters can reproduce is not evidence.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from jbf.records.run import Run, run_on
 Array = npt.NDArray[np.float64]
 
 SIMULATED = {*ALWAYS, "angle_rad", "position_m"}
-"""Columns that a motion to be proposed has."""
+"""Columns that a proposed motion has."""
 MOST_SAMPLES, LEAST_SAMPLES = 6000, 200
 """Largest and smallest number of samples of a proposed run."""
 NO_NOISE_N = 1e-100
-"""Less than any noise, N, and more than nothing: records without noise part any two models."""
+"""Positive lower limit of the noise, N, that avoids a division by zero."""
 
 
 class Rival:
-    """A fitted model, and what the runs at hand already know of its parameters."""
+    """A fitted model and the information of the present runs about its parameters."""
 
     def __init__(self, fitted: Fitted) -> None:
         self.problem, self.solution = fitted.problem, fitted.found()
@@ -44,7 +44,7 @@ class Rival:
         self.known: Array = np.asarray(np.linalg.qr(j, mode="r"), dtype=np.float64)
 
     def at(self, motion: Driven) -> tuple[Array, Array]:
-        """Friction, N, and its derivatives by the search's variables, under a motion."""
+        """Friction, N, and its derivatives with respect to the search variables, under a motion."""
         values = self.solution.values
         ((friction, slopes),) = self.problem.chain.jacobian(values, [motion], self.problem.open)
         scale = np.where(self.problem.log, values, 1.0)[self.problem.open]
@@ -53,8 +53,10 @@ class Rival:
     def separation(
         self, own: tuple[Array, Array], truth: tuple[Array, Array], step_s: float
     ) -> float:
-        """What is left, in squares of the noise, of another model's friction when this one is
-        fitted to it and to the old runs."""
+        """Misfit of this model to the friction of another one after refitting, in noise variances.
+
+        The refit uses the new motion and the old runs.
+        """
         noise = self.solution.noise
         gap = noise.innovations(truth[0] - own[0], step_s)
         slopes = noise.innovations(own[1], step_s)
@@ -64,7 +66,7 @@ class Rival:
 
 
 def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits, float]:
-    """Limits without gaps, and the step of a run to be proposed, s."""
+    """Complete the limits, and choose the sampling interval of a proposed run, s."""
     filled = (limits or Limits()).filled(candidates.campaign)
     step_s = float(np.median([p.step_s for p in candidates.campaign.prepared]))
     most_s = filled.duration_s / LEAST_SAMPLES
@@ -74,7 +76,7 @@ def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits
 def motions(
     candidates: Candidates, limits: Limits, step_s: float
 ) -> Iterator[tuple[Excitation, Run, Driven]]:
-    """Every motion that the rig can make, as a run to play."""
+    """Generate every motion that the rig can make, as a run to play."""
     rig = candidates.campaign.rig
     linear = any(p.run.position_m is not None for p in candidates.campaign.prepared)
     for excitation in excitations(limits, step_s, rig.quantities.speed):
@@ -83,7 +85,7 @@ def motions(
 
 
 def played(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:
-    """A motion as a run to play, with the position of a slide or the angle of a shaft."""
+    """Convert a motion to a run to play, with the position of a slide or the angle of a shaft."""
     velocity = excitation.velocity_m_s
     time = np.arange(len(velocity)) * step_s
     path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * step_s)))

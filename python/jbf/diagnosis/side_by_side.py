@@ -1,7 +1,7 @@
-"""Several fits side by side, in threads: while one is between two calls of the core, which works
-without the interpreter's lock, another is inside.
+"""Parallel fits in threads.
 
-Each is a task of its own: the answers are those of one after the other, to the bit.
+The core releases the interpreter lock, so that one fit can run in the core while another is between
+two calls. Each fit is an independent task: the results are bit-identical to sequential ones.
 """
 
 from __future__ import annotations
@@ -21,14 +21,15 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 FEW = 4
-"""Fits at a time at most: of more the interpreter itself, which only one has at a time, is the
-narrow place."""
+"""Largest number of parallel fits; with more, the interpreter lock is the bottleneck."""
 
 
 def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
-    """How many fits of such a campaign go side by side: one where records are so long that the
-    matrices of each fill the memory, or where functions of one's own, which may remember what they
-    were called with, take part."""
+    """Number of parallel fits for a campaign.
+
+    One fit at a time is used where the matrices of long records fill the memory, and where
+    user-defined functions take part, which may have an internal state.
+    """
     own = isinstance(find_law(law), OwnLaw)
     own = own or any(isinstance(find_effect(name), OwnEffect) for name in effects)
     if own or campaign.samples.count > MOST_SEARCHED:
@@ -39,8 +40,10 @@ def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
 
 
 def side_by_side(work: Callable[[T], R], things: Sequence[T], at_once: int) -> Iterator[R]:
-    """`work` on each of `things`, so many at once: the answers in their order. The first exception,
-    and a caller that stops listening, end it."""
+    """Apply `work` to each of `things` in parallel and yield the results in order.
+
+    The first exception, or a caller that stops iterating, cancels the remaining tasks.
+    """
     if at_once <= 1 or len(things) < 2:
         yield from map(work, things)
         return

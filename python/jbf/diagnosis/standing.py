@@ -1,10 +1,9 @@
-"""Which of the effects that were added keep their names where structure remains, and which model
-predicts best.
+"""Decide which added effects are named where structure remains, and which model predicts best.
 
-A name rests on its own evidence: bursts, tones or a cell that is not straight beside it take
-nothing from it, unless that is weak and they are larger. What a confounder stands in for differs
-from run to run, and so do the parameters that the runs ask of it: that takes its name, not its
-place in the model where it helps to predict.
+An effect is judged by its own evidence. Bursts, tones or a nonlinear force sensor do not affect
+its name, unless its evidence is weak and they are larger. The parameters of a confounder differ
+between runs, because the mechanism that it replaces differs. A confounder is not named, but it
+stays in the model where it improves the predictions.
 """
 
 from __future__ import annotations
@@ -24,13 +23,15 @@ Names = tuple[str, ...]
 
 
 def confounders(candidates: Candidates, present: Names, remains: Sequence[Remainder] = ()) -> Names:
-    """The effects whose own parameters the runs do not agree on; and those of weak evidence that
-    explain less than the largest of what remains does: to a part of that they may be a likeness.
+    """Find the effects that are not named because they may imitate something else.
+
+    These are effects on whose parameters the runs disagree, and effects of weak evidence that
+    explain less than the largest residual structure, a part of which they may imitate.
 
     Parameters
     ----------
     remains
-        What stands above the noise beside the effects present.
+        Residual structure of the model with the present effects.
     """
     whole, problem = candidates.converge(present), candidates.fitted(present).problem
     share, policy = effective_share(whole), candidates.policy
@@ -52,7 +53,7 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
 
 
 def best_predicting(candidates: Candidates, present: Names, named: Names) -> Names:
-    """With the confounders or without: which predicts runs left out best."""
+    """The model with or without the confounders, whichever has the smaller held-out error."""
     if named == present:
         return present
     whole, less = (candidates.left_out_rms(names) for names in (present, named))
@@ -66,7 +67,7 @@ REPLACED = "added, and not needed beside what came later"
 
 
 def as_it_ended(steps: Sequence[Step], present: Names, doubted: Names) -> list[Step]:
-    """The ledger, every round of it, with what became of each addition."""
+    """Update the outcome of each addition in all steps of the ledger."""
 
     def ended(trial: Trial) -> Trial:
         if trial.outcome == "added" and trial.effect in doubted:

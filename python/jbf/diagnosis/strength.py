@@ -1,5 +1,8 @@
-"""How an effect of some strength changes the friction of the runs at hand, and how much of that the
-rest of the model cannot make up for, in units of the noise."""
+"""Change of the friction of the present runs by an effect of given strength.
+
+The change is also computed apart from what the rest of the model can reproduce, in units of the
+noise.
+"""
 
 from __future__ import annotations
 
@@ -21,19 +24,25 @@ Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
 DRAWS = 12
-"""Draws of white noise by which it is known how much a gain in some direction counts."""
+"""Number of white-noise draws for the discount factor of a gain in a given direction."""
 
 
 @dataclass(frozen=True)
 class Strength:
-    """A model with one effect more, by how strong that is; 1 at its usual strength.
+    """A model with one additional effect as a function of its strength; 1 at the usual strength.
 
     Attributes
     ----------
+    name
+        Name of the effect.
+    problem
+        The model with the effect.
+    usual
+        Parameter values at the usual strength.
     which, page
-        The parameter by which the strength is told.
+        Index and description of the parameter that represents the strength.
     sizes
-        That one and the others of the effect that are a size, too: each has a null.
+        Indices of this parameter and of all others of the effect that have a null.
     """
 
     name: str
@@ -44,7 +53,7 @@ class Strength:
     sizes: tuple[int, ...]
 
     def values(self, times: float) -> Array:
-        """Parameter values at so many times the usual strength, within bounds."""
+        """Parameter values at a multiple of the usual strength, within bounds."""
         values, pages = self.usual.copy(), list(self.problem.parameters.values())
         for i in self.sizes:
             null, page = pages[i].null, pages[i]
@@ -56,7 +65,7 @@ class Strength:
 
 
 class RunsAtHand:
-    """The runs at hand under the model without the effect: what is left of a change of friction."""
+    """The present runs under the model without the effect, for the unexplained part of a change."""
 
     def __init__(self, candidates: Candidates, present: Names) -> None:
         self.base = candidates.converge(present)
@@ -69,7 +78,7 @@ class RunsAtHand:
         self.samples, self.noise = samples, solution.noise
         self.solution = solution
         r, self.slopes = solution.stacked()
-        # Every run of the campaign tells as much as those that stand for them here.
+        # Scale for the runs that the thinned records do not include.
         more = self.base.samples.count / max(samples.count, 1)
         level = float(r @ r) / max(len(r), 1) / max(effective_share(solution), 1e-3)
         self.scale = np.sqrt(more / max(level, 1e-300))
@@ -78,16 +87,18 @@ class RunsAtHand:
         moved = self.slopes[:, size > 0.0] / size[size > 0.0]
         self.tangent: Array = np.asarray(np.linalg.qr(moved)[0])
         self.friction_n = self.samples.rms(self.now)
-        # The last of each effect: at which strength, what it changes, and what samples count.
+        # Cache of the last result of each effect: strength, change, and sample weights.
         self._last: dict[str, tuple[float, list[Array], list[Array] | None]] = {}
 
     def change(self, model: Strength, times: float) -> list[Array]:
-        """What an effect changes, N, one array a run; where its model has no weight, nothing."""
+        """Change by an effect, N, one array per run; zero at samples without weight."""
         return self._at(model, times)[0]
 
     def shares(self, model: Strength, times: float) -> list[Array] | None:
-        """By how much less than without it samples count with an effect that moves jumps, 0 to 1,
-        one array a run; None where it leaves them as they are."""
+        """Sample weights with an effect relative to those without it, 0 to 1, one array per run.
+
+        None where the effect does not change the weights; effects that move jumps do.
+        """
         return self._at(model, times)[1]
 
     def _at(self, model: Strength, times: float) -> tuple[list[Array], list[Array] | None]:
@@ -110,8 +121,13 @@ class RunsAtHand:
         return [gap * share for gap, share in zip(gaps, shares, strict=True)], shares
 
     def shown(self, changes: Sequence[Array]) -> Array:
-        """Of changes of the friction, one (n,) or (n, k) a run, what the model cannot make up for,
-        in units of the noise."""
+        """The part of changes of the friction that the model cannot reproduce, in units of the noise.
+
+        Parameters
+        ----------
+        changes
+            Changes of the friction, N, one (n,) or (n, k) array per run.
+        """
         columns = [c if c.ndim == 2 else c[:, None] for c in changes]
         empty = [np.zeros(len(c)) for c in columns]
         _, seen = self.samples.stacked(empty, columns, self.noise)
@@ -119,8 +135,10 @@ class RunsAtHand:
         return left
 
     def not_forgiven(self, changes: Sequence[Array]) -> float:
-        """The share of what is seen of changes that is left once the noise is described anew, in
-        which a smooth change passes for colour, 0 to 1."""
+        """Share of the gain of a change that remains after the noise model is refitted, 0 to 1.
+
+        A refitted noise model takes a smooth change for coloured noise.
+        """
         empty = [np.zeros((len(c), 0)) for c in changes]
         seen, _ = self.samples.stacked(changes, empty, self.noise)
         own, _ = self.samples.stacked(self.solution.residuals, empty, self.noise)
@@ -129,7 +147,7 @@ class RunsAtHand:
         square = float(left @ left)
         if square <= 0.0:
             return 1.0
-        # Apart from what these very residuals happen to have of it.
+        # Remove the component of the change that these residuals contain by chance.
         chance = float(own @ left) / square
         way = [c - j @ step for c, j in zip(changes, self.solution.jacobian, strict=True)]
         noise = [r - chance * w for r, w in zip(self.solution.residuals, way, strict=True)]
@@ -144,8 +162,10 @@ class RunsAtHand:
         return float(np.clip(gains[1] / max(gains[0], 1e-300), 0.02, 1.0))
 
     def counts(self, change: Array) -> tuple[float, ...]:
-        """By how much a gain in this direction may count, in noise as white as it can be: its
-        long-run variance is itself estimated, and never taken for less than white noise's."""
+        """Possible discount factors of a gain in this direction in white noise.
+
+        The long-run variance is itself an estimate, limited below by that of white noise.
+        """
         counts = [int(np.count_nonzero(w > 0.0)) for w in self.samples.weight]
         ends = np.cumsum(counts)[:-1]
         ways = np.split(change, ends)
@@ -157,7 +177,7 @@ class RunsAtHand:
 
 
 def strength_of(candidates: Candidates, present: Names, name: str) -> Strength | None:
-    """A model as a function of an effect's strength; None of an effect without a null."""
+    """Return the model as a function of an effect's strength; None for an effect without a null."""
     candidates.converge(present)
     base = candidates.fitted(present).named_values()
     problem = candidates.fitted((*present, name)).problem

@@ -1,10 +1,12 @@
-"""Is the friction as high in one stroke as in the next? Of a surface that wears, sheds debris or is
-lubricated afresh each stroke has a level of its own, that no parameter of a law has.
+"""Test whether the level of the friction is the same in all strokes.
 
-An analysis of variance: between strokes of a run, what the friction is there as a share of the
-model's; within them, how the two halves of a stroke differ. Of a right model, and of a wrong one
-that is alike in all strokes, both tell the same variance, whatever the memory of the noise; their
-ratio is Fisher's F.
+With a surface that wears, sheds debris or is relubricated, each stroke has its own level, which no
+parameter of a law describes.
+
+The test is an analysis of variance. Between strokes of a run it uses the ratio of recorded and
+predicted friction; within strokes, the difference between their two halves. For a correct model,
+and for a wrong model with equal errors in all strokes, both estimate the same variance, whatever
+the memory of the noise. Their ratio has Fisher's F distribution.
 """
 
 from __future__ import annotations
@@ -25,13 +27,13 @@ Array = npt.NDArray[np.float64]
 Strokes = npt.NDArray[np.intp]
 
 LEAST_STROKES = 3
-"""Of a run with fewer nothing is asked."""
+"""Smallest number of strokes of a run that is tested."""
 LEAST_SAMPLES = 8
-"""Of half a stroke; shorter ones tell nothing of themselves."""
+"""Smallest number of samples of half a stroke that is tested."""
 
 
 def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
-    """That the level of the friction differs from stroke to stroke, if it does."""
+    """Report that the level of the friction differs between strokes, where it does."""
     friction = problem.predict(solution.values)
     left = solution.samples.without_deviations(solution.residuals, solution.noise)
     between = within = moved = 0.0
@@ -71,8 +73,10 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
 
 
 def stroke_of(p: Prepared) -> Strokes:
-    """The number of the stroke that a sample is in, -1 where it is not known to move: strokes end
-    where the motion turns round."""
+    """Number of the stroke of each sample; -1 where it is not known to move.
+
+    A stroke ends where the motion reverses.
+    """
     motion = p.motion
     moving = np.flatnonzero(p.slides)
     found = np.full(len(motion.velocity_m_s), -1, dtype=np.intp)
@@ -85,8 +89,11 @@ def stroke_of(p: Prepared) -> Strokes:
 def _halves(
     stroke: Strokes, friction: Array, residual: Array, counted: npt.NDArray[np.bool_]
 ) -> Iterator[list[list[float]]]:
-    """Of each stroke its two halves: the square of the friction there, N^2, and its product with
-    the residual."""
+    """Sums for the two halves of each stroke.
+
+    Each half has the sum of squares of the friction, N^2, and the sum of its products with the
+    residual.
+    """
     for k in range(int(np.max(stroke, initial=-1)) + 1):
         rows = np.flatnonzero((stroke == k) & counted)
         if len(rows) < 2 * LEAST_SAMPLES:

@@ -1,5 +1,4 @@
-"""Structure at a frequency: spectral lines that stand out of the white spectrum of the innovations
-(Fisher 1929)."""
+"""Test for tones: spectral lines above the white spectrum of the innovations (Fisher 1929)."""
 
 from __future__ import annotations
 
@@ -17,9 +16,9 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 SHORTEST = 64
-"""Samples below which a run has no spectrum to speak of."""
+"""Smallest number of samples of a run whose spectrum is tested."""
 LEAST_TURNS = 8.0
-"""Turns that a line must make within the run: slow structure belongs to the patterns."""
+"""Smallest number of periods of a line within a run; slower structure is tested as patterns."""
 
 
 def find_tones(
@@ -29,7 +28,7 @@ def find_tones(
     residuals: Sequence[Array],
     policy: Policy,
 ) -> list[Remainder]:
-    """Spectral lines in the innovations, with their size in the residuals, if there are any."""
+    """Find spectral lines in the innovations, with their amplitude in the residuals."""
     lines: list[tuple[float, float, str]] = []
     power = 0.0
     for p, counted, e, r in zip(prepared, samples.counted, innovations, residuals, strict=True):
@@ -67,7 +66,7 @@ def find_tones(
 
 
 def _words(lines: list[tuple[float, float, str]], runs: int, unit: str) -> str:
-    """One tone in many runs, or each with its own."""
+    """Describe one common tone, or the tone of each run."""
     middle = float(np.median([x[0] for x in lines]))
     same = [x for x in lines if abs(x[0] - middle) < 0.02 * middle + 0.02]
     scope = "in all runs" if len(lines) == runs else "in " + ", ".join(x[2] for x in lines)
@@ -78,10 +77,10 @@ def _words(lines: list[tuple[float, float, str]], runs: int, unit: str) -> str:
 
 
 def _refine(time: Array, r: Array, counted: Mask, near: float, width: float) -> tuple[float, float]:
-    """Frequency and amplitude of the sine that fits best near a spectral line.
+    """Frequency and amplitude of the best-fitting sine near a spectral line.
 
-    Below half a line's width, and less than that from the Nyquist frequency, a sine cannot be told
-    from a constant or from its alias.
+    The frequency is kept at least half a line width from zero and from the Nyquist frequency.
+    Closer than that, a sine cannot be distinguished from a constant or from its alias.
     """
     nyquist = 0.5 / float(np.median(np.diff(time)))
     grid = near + width * np.linspace(-1.0, 1.0, 41)

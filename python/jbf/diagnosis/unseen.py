@@ -1,4 +1,4 @@
-"""What could hide in the runs at hand, and the run that would show most of it."""
+"""Effects that are not detectable in the present runs, and the run that would show most of them."""
 
 from __future__ import annotations
 
@@ -27,12 +27,14 @@ Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
 STRENGTHS = (0.6, 1.0, 1.5)
-"""What an effect may be of its usual strength."""
+"""Multiples of the usual strength that are taken as equally likely."""
 
 
 def unseen(candidates: Candidates, present: Names, powers: Iterable[Power]) -> Names:
-    """Candidates that could be at work at their usual strength and not be found in these runs: what
-    the law's own parameters can absorb, the noise covers, or only samples show that do not count.
+    """Candidates that are not detectable in these runs at their usual strength.
+
+    The law's own parameters can absorb them, the noise covers them, or they show only in samples
+    that are not counted.
     """
     hidden = {p.effect for p in powers if p.hidden}
     found = []
@@ -41,7 +43,7 @@ def unseen(candidates: Candidates, present: Names, powers: Iterable[Power]) -> N
         if name not in hidden or set(page.columns) - SIMULATED:
             continue
         if "transmitted" in page.needs and not _changes(candidates, present, name):
-            # It changes nothing beside this model, whatever the motion.
+            # It has no influence in this model, whatever the motion.
             continue
         found.append(name)
     return tuple(found)
@@ -58,7 +60,7 @@ def _changes(candidates: Candidates, present: Names, name: str) -> bool:
 def propose_to_see(
     candidates: Candidates, present: Names, hidden: Sequence[str], limits: Limits | None = None
 ) -> Experiment | str:
-    """The run that would show most of what could hide in the runs at hand."""
+    """Propose the run that would show most of the effects not detectable in the present runs."""
     limits, step_s = filled_limits(candidates, limits)
     candidates.converge(present)
     base = Rival(candidates.fitted(present))
@@ -101,14 +103,21 @@ def propose_to_see(
 
 
 def chance_to_name(evidence: float, price: float) -> float:
-    """How likely an effect is found that is worth so much evidence at its usual strength, and is
-    anything from weak to strong."""
+    """Probability of detecting an effect of uncertain strength.
+
+    Parameters
+    ----------
+    evidence
+        Non-centrality at the usual strength.
+    price
+        Threshold for the gain.
+    """
     missed = special.chndtr(price, 1.0, np.array(STRENGTHS) ** 2 * evidence)
     return float(np.mean(1.0 - missed))
 
 
 def _with_usual(candidates: Candidates, present: Names, name: str) -> tuple[Problem, Array]:
-    """A model with one effect more, at the first of its starting values."""
+    """A model with one additional effect, at the first of its starting values."""
     candidates.converge(present)
     base = candidates.fitted(present).named_values()
     problem = candidates.fitted((*present, name)).problem

@@ -1,5 +1,4 @@
-"""The verdict: pure functions from numbers to words, so that each rule can be read, and tested, as
-a table."""
+"""Rules of the verdict as pure functions of numbers, which can be tested as a table."""
 
 from __future__ import annotations
 
@@ -11,16 +10,16 @@ Verdict = Literal["adequate", "missing", "ambiguous", "unexplained"]
 
 
 def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
-    """What is said of a campaign.
+    """Return the verdict on a campaign.
 
     Parameters
     ----------
     effects
-        How many effects were added.
+        Number of effects that were added.
     alternatives
-        How many of them another effect would replace as well.
+        Number of those that are confounded with another effect.
     remains
-        True where structure remains that no effect explains.
+        Whether residual structure remains that no effect explains.
     """
     if remains:
         return "unexplained"
@@ -30,17 +29,18 @@ def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
 
 
 def name_stands(gain: float, disagreement: float | None, policy: Policy) -> bool:
-    """Does an effect keep its name though structure remains?
+    """Whether an effect is named although structure remains.
 
-    It rests on its own evidence: whatever else is there takes nothing from it. But of a confounder
-    each run asks for its own parameters.
+    An effect is judged by its own evidence, independently of other structure. A confounder,
+    however, requires different parameters in each run.
 
     Parameters
     ----------
     gain
-        Of the effect beside the others, in twice the log likelihood of independent samples.
+        Gain of the effect in addition to the others, in twice the log likelihood of independent
+        samples.
     disagreement
-        What parameters of the effect of their own would gain the runs beyond chance, in the same
-        unit; None where the runs agree.
+        Gain of run-specific parameters of the effect beyond chance, in the same unit; None where
+        the runs agree.
     """
     return disagreement is None or gain > policy.clear * disagreement

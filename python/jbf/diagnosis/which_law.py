@@ -1,9 +1,9 @@
-"""Which law at all: every law that a rig allows, by the runs that it was not fitted to.
+"""Selection of the base law: every law that a rig allows, compared by its held-out error.
 
-Beside each stand the nuisances of any machine, a zero, the mass that is moved and a weight: they
-are no friction, and a law that has to make up for them is not the law. The left-out error charges a
-parameter what it costs. Laws that predict equally well, as far as the scatter between stretches of
-the records tells, are tied; of these the one with fewest parameters is taken.
+Each law is fitted together with the nuisance terms of a machine: offset, moved mass and weight.
+These are not friction, and a law must not have to compensate for them. The held-out error penalises
+superfluous parameters. Laws whose errors differ by no more than the scatter between sections of the
+records are tied. The tied law with the fewest parameters is selected.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LAW_SHARE = 0.25
-"""Of the work of a diagnosis, what one law may take to be compared."""
+"""Share of the computing budget of a diagnosis for the comparison of one law."""
 STRETCHES = 40
-"""Parts of a campaign whose mean squares are compared."""
+"""Number of sections of a campaign whose mean squares are compared."""
 
 
 @dataclass(frozen=True)
 class LawTried:
-    """A law, as far as it predicts beside what is no friction.
+    """Predictive performance of a law together with the terms that are not friction.
 
     Attributes
     ----------
     law, parameters
-        Its name, and how many parameters it has.
+        Its name and its number of parameters.
     left_out_rms_n
-        RMS over runs left out of its fit, N, at the samples that count for every law.
+        Held-out RMS, N, at the samples that count for every law.
     tied
-        True where it predicts as well as the best, as far as chance tells.
+        True where its error is not significantly larger than that of the best law.
     """
 
     law: str
@@ -59,7 +59,7 @@ class LawTried:
     tied: bool
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return a JSON-serialisable dict."""
         return {
             "law": self.law,
             "parameters": self.parameters,
@@ -70,14 +70,14 @@ class LawTried:
 
 @dataclass(frozen=True, eq=False)
 class HeldOut:
-    """Errors of prediction of runs that were left out of the fit.
+    """Held-out errors of prediction.
 
     Attributes
     ----------
     errors
-        Record minus prediction, N, one array a run; NaN at samples that do not count.
+        Record minus prediction, N, one array per run; NaN at samples that do not count.
     white
-        Whitened for the errors of the motion, where these are known.
+        Errors whitened for the errors of the motion, where these are known.
     """
 
     errors: list[Array]
@@ -85,7 +85,7 @@ class HeldOut:
 
 
 def allowed(rig: Rig) -> list[str]:
-    """The laws for which a rig has all that they need."""
+    """Laws whose requirements a rig satisfies."""
     found = []
     for name in laws():
         try:
@@ -97,8 +97,11 @@ def allowed(rig: Rig) -> list[str]:
 
 
 def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str]]:
-    """Those of them whose film, where they have one, is not too fast for the records, and why not
-    the others."""
+    """Allowed laws that the records can resolve, and the reasons for excluding the others.
+
+    A law is excluded where its film is too fast for the records, or where steady states do not show
+    its memory.
+    """
     found, refused = [], {}
     for name in allowed(campaign.rig):
         try:
@@ -116,8 +119,14 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
 def which_law(
     campaign: Campaign, clock: Clock, policy: Policy, progress: Progress | None = None
 ) -> tuple[tuple[LawTried, ...], dict[str, str]]:
-    """The laws that the rig allows, the one to take first, then by their left-out error; and those
-    that were not tried to their end, each with the reason."""
+    """Compare the laws that the rig allows by their held-out errors.
+
+    Returns
+    -------
+    tuple
+        The laws, the selected one first and the others by held-out error; and the laws that were
+        not evaluated, with the reasons.
+    """
     names, refused = followed(campaign, clock)
     left: dict[str, HeldOut] = {}
     for i, name in enumerate(names):
@@ -143,15 +152,17 @@ def _compared(
     policy: Policy,
     campaign: Campaign,
 ) -> list[LawTried]:
-    """`compared` with what is known of the motion of a campaign."""
+    """Apply `compared` with the motion errors of a campaign."""
     errors, white = [h.errors for h in left], [h.white for h in left]
     share = policy.least_share(campaign.motion_share)
     return compared(names, parameters, errors, policy, white=white, least_share=share)
 
 
 def _within(campaign: Campaign, law: str, clock: Clock) -> HeldOut | None:
-    """Left-out errors of a law beside what is no friction; None where its share of the work is not
-    enough for them."""
+    """Held-out errors of a law with the terms that are not friction.
+
+    None where its share of the computing budget is not sufficient.
+    """
     own = replace(campaign, work=campaign.work.part(LAW_SHARE))
     try:
         candidates = Candidates(settled_campaign(own, law, clock), law, clock)
@@ -164,8 +175,8 @@ def _within(campaign: Campaign, law: str, clock: Clock) -> HeldOut | None:
 def left_out(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
     """Errors of prediction of every run by a fit to the others.
 
-    For a law with a bristle they include the samples at which it depends on the unknown state in
-    which a run began: another law predicts these, and who uses the law must do without that state.
+    For a law with a bristle they include the samples of the initial-state transient. Another law
+    predicts these samples, and a user of the law does not know the initial state.
     """
     solution, problem = candidates.converge(effects), candidates.fitted(effects).problem
     samples = solution.samples
@@ -184,7 +195,7 @@ def left_out(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
 
 
 def _with_starts(samples: Samples, every: Samples) -> Samples:
-    """Samples with those of another selection that come before the first of theirs in a run."""
+    """Add the samples of another selection that precede the first selected sample of each run."""
     counted = []
     for own, other in zip(samples.counted, every.counted, strict=True):
         before = np.arange(len(own)) < (int(np.argmax(own)) if own.any() else 0)
@@ -202,15 +213,15 @@ def compared(
     white: Sequence[Sequence[Array]] | None = None,
     least_share: float = 0.0,
 ) -> list[LawTried]:
-    """Models by their held-out errors, best first, and which of them are tied with the best.
+    """Rank models by their held-out errors, best first, and determine ties with the best.
 
     Parameters
     ----------
     left
-        Held-out errors of each model, N, one array a run; NaN at samples that do not count.
+        Held-out errors of each model, N, one array per run; NaN at samples that do not count.
     white
-        The same whitened for the errors of the motion, where these are known: they decide, since
-        an elastic law would smooth the errors of the acceleration next to a reversal.
+        `left` whitened for the errors of the motion, where these are known. They decide, since an
+        elastic law would smooth the errors of the acceleration next to a reversal.
     least_share
         Share of the mean square by which models must differ.
     """
@@ -223,7 +234,7 @@ def compared(
         own = [float(np.sqrt(np.nanmean(rows))) for rows in plain]
         return [LawTried(n, k, e, True) for n, k, e in zip(names, parameters, own, strict=True)]
     rms, decisive = np.sqrt(plain[:, shared].mean(axis=1)), decisive[:, shared]
-    # Neighbouring samples err together: stretches are what is independent.
+    # Errors of neighbouring samples are correlated; sections are nearly independent.
     parts = np.array_split(decisive, min(STRETCHES, decisive.shape[1]), axis=1)
     means = np.array([part.mean(axis=1) for part in parts]).T
     level = decisive.mean(axis=1)
@@ -237,9 +248,11 @@ def compared(
 
 
 def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) -> LawTried | None:
-    """Another law that predicts no worse than a model with effects, and has no more parameters;
-    None where there is none. What several effects mend, one law may say; those that are no friction
-    stay beside it."""
+    """Find another law that predicts no worse than a model with effects and has no more parameters.
+
+    One law may replace several effects. Effects that are not friction are kept. None where no such
+    law exists.
+    """
     policy, whole = candidates.policy, candidates.campaign
     kept = tuple(effect for effect in effects if effect in TERMS)
     most = len(candidates.fitted(effects).problem.open)
@@ -250,7 +263,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
         count = len(other.fitted(kept).problem.open)
         if name == candidates.law or count > most:
             continue
-        # Far off in the fit is far off elsewhere.
+        # A law with a much larger fit error is not a better predictor.
         far = policy.leader_rms * candidates.converge(effects).rms_n
         try:
             errors = left_out(other, kept) if other.converge(kept).rms_n < far else None
@@ -263,6 +276,6 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     tried = _compared(names, counts, left, policy, whole)
     here = next(t for t in tried if t.law == "")
     others = [t for t in tried if t.law and t.tied]
-    # Of two that say the same the one with fewer parameters, whichever comes out ahead by chance.
+    # Of equivalent laws prefer the one with the fewest parameters, whichever is ahead by chance.
     better = [t for t in others if t.parameters < most or t.left_out_rms_n <= here.left_out_rms_n]
     return min(better, key=lambda t: t.parameters, default=None)

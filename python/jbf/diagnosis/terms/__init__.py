@@ -1,8 +1,9 @@
 """Terms of the observation model: what the recording adds to the output of a model.
 
-Each module estimates one kind of term beside a model and returns it as a `Proposal`, whose evidence
-is comparable with that of an effect. The selection (`jbf.diagnosis.rounds`) adds the term with the
-largest evidence if no effect is accepted; some terms (`COMPETING`) also compete with the effects.
+Each module estimates one kind of term for a given model and returns it as a `Proposal`, whose
+evidence is comparable with that of an effect. The selection (`jbf.diagnosis.rounds`) adds the term
+with the largest evidence if no effect is accepted; some terms (`COMPETING`) also compete with the
+effects.
 
 | module | terms |
 | --- | --- |
@@ -30,8 +31,11 @@ from jbf.estimation.campaign import Campaign
 Names = tuple[str, ...]
 
 COMPETING: tuple[Term, ...] = (errors_of_motion, random_effect)
-"""Terms that compete with the effects: errors of the motion, since effects that filter a force or a
-motion explain them; random effects, since an effect of what differs between runs resembles one."""
+"""Terms that compete with the effects.
+
+Effects that filter a force or a motion can explain errors of the motion. An effect of a quantity
+that differs between runs resembles a random effect.
+"""
 TERMS: tuple[Term, ...] = (
     errors_of_motion,
     random_effect,
@@ -41,13 +45,16 @@ TERMS: tuple[Term, ...] = (
     variance_by_run,
     heavy_tails,
 )
-"""All terms, in the order in which they are preferred at equal evidence. The error of a model that
-lacks an effect resembles most of them: they are estimated where no effect is accepted."""
+"""All terms, in order of preference at equal evidence.
+
+The error of a model that lacks an effect resembles most of them. They are therefore estimated where
+no effect is accepted.
+"""
 
 
 @dataclass(frozen=True)
 class TermUpdate:
-    """A campaign with other terms, and the effects that remain beside them."""
+    """A campaign with changed terms, and the effects that remain in the model."""
 
     campaign: Campaign
     effects: Names
@@ -56,14 +63,19 @@ class TermUpdate:
 def best_term_update(
     candidates: Candidates, present: Names, min_evidence: float | None = None
 ) -> TermUpdate | None:
-    """The campaign with the term that has the largest evidence beside a model, or without a random
-    effect that the model no longer needs; None if no term changes.
+    """Return the campaign with the term of the largest evidence, or with one random effect fewer.
+
+    A random effect is removed where the model no longer needs it. None if no term changes.
 
     Parameters
     ----------
+    candidates
+        The fits.
+    present
+        Effects of the model.
     min_evidence
-        Evidence for the effect that is accepted, with which some terms compete; None if no effect
-        is.
+        Evidence for the accepted effect, with which some terms compete; None if no effect is
+        accepted.
     """
     whole = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING

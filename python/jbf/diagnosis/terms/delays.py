@@ -1,7 +1,7 @@
-"""Delay of the force by run, and drift of the clock by which it was read.
+"""Time delay of the force by run, and drift of the clock of its channel.
 
-The force is compared with the motion at the instants at which it was read. A delay that all runs
-share is the effect `time_delay`; a force that is early in all runs is part of the recording.
+The force is compared with the motion at the instants at which it was read. A delay common to all
+runs is the effect `time_delay`; a force that is early in all runs is a recording artefact.
 """
 
 from __future__ import annotations
@@ -33,12 +33,14 @@ Array = npt.NDArray[np.float64]
 
 LATE, DRIFT = "late_channel", "drifting_clock"
 HINT = 0.05
-"""Probability of a drift by chance below which it is estimated by iteration."""
+"""Significance level below which a drift is estimated by iteration."""
 
 
 def delays(model: Model) -> Proposal | None:
-    """Delays by run or a drift of the clock, whichever has the larger evidence; None if the runs
-    show neither."""
+    """Propose delays by run or a clock drift, whichever has the larger evidence.
+
+    None if the runs show neither.
+    """
     campaign = model.campaign
     if not campaign.force_has_clock or campaign.samples.motion is not None:
         return None
@@ -53,7 +55,7 @@ def delays(model: Model) -> Proposal | None:
     for found in estimates:
         price = price_of_term(model.policy)
         if found.drift == 0.0 and np.mean(found.late_s) > 0.0:
-            # The mean delay is that of the effect, and must gain as much.
+            # The mean delay corresponds to an effect and must reach the threshold of one.
             price += model.price_of_effect
         price -= model.price_of_effect * max(model.reference.free - found.solution.free, 0)
         shifted = found.campaign.with_findings(_findings(known_delays(campaign), found))
@@ -68,22 +70,27 @@ def known_delays(campaign: Campaign) -> dict[str, float]:
 
 
 def explained_by_delays(effects: Sequence[str]) -> tuple[str, ...]:
-    """The effects that delays by run may explain: those of the instrument, and those that move the
-    instants of jumps."""
+    """The effects that delays by run may explain.
+
+    These are effects of the instrument, and effects that move the instants of jumps.
+    """
     pages = {name: find_effect(name) for name in effects}
     return tuple(n for n, e in pages.items() if e.stage == "instrument" or e.moves_jumps)
 
 
 def _estimates(model: Model) -> list[Shifted]:
-    """The runs shifted by several estimates: jointly with the model, along one clock, and by the
-    delays at which the squares of each run are smallest."""
+    """Estimate the shifts of the runs by several methods.
+
+    The shifts are estimated jointly with the model, as the drift of one clock, and as the delays
+    with the smallest sums of squares.
+    """
     problem, solution, policy = model.problem, model.solution, model.policy
     start = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
     estimates = []
     if lateness_step(problem, solution).chance < policy.deviation_chance:
         estimates.append(fit_delays_by_run(problem, start))
     if not known_delays(problem.campaign):
-        # The parameters of the model follow a drift slowly.
+        # The parameters of the model adapt slowly to a drift.
         if special.chdtrc(1, drift_step(problem, solution).square) < HINT:
             estimates.append(fit_clock_drift(problem, start))
         coarse = fit_delays_by_search(problem, solution, policy)
@@ -93,8 +100,10 @@ def _estimates(model: Model) -> list[Shifted]:
 
 
 def _significant(found: Shifted, policy: Policy) -> bool:
-    """Whether a drift, or the differences between the delays of runs, exceed chance; a delay that
-    is equal in all runs is the effect's, unless the force is early."""
+    """Whether a drift, or the differences between the delays of runs, are significant.
+
+    A delay that is equal in all runs belongs to the effect, unless the force is early.
+    """
     problem, solution = found.problem, found.solution
     if found.drift != 0.0:
         # The residual of a wrong model is not white: half of Wald's statistic is used.
@@ -114,13 +123,13 @@ def _significant(found: Shifted, policy: Policy) -> bool:
 def _gain(found: Shifted, other: Solution, share: float) -> float:
     """Gain of shifted runs over another model in twice the log marginal likelihood.
 
-    The delays that differ between runs are a random effect: their number of parameters is in the
-    determinant of its covariance.
+    The delays that differ between runs are a random effect: their number of parameters is included
+    in the determinant of its covariance.
 
     Parameters
     ----------
     share
-        Number of independent samples a sample counts for.
+        Number of independent samples per sample.
     """
     here = found.solution
     prepared = found.campaign.prepared

@@ -9,10 +9,10 @@ from jbf.estimation.refine import with_motion_errors_again
 
 
 def errors_of_motion(model: Model) -> Proposal | None:
-    """Noise, scale and smoothness of the motion's errors, estimated again for a model with other
-    effects; None if the noise is not clearly smaller than that for which they were estimated.
+    """Re-estimate the motion's errors (noise, scale, smoothness) for a model with other effects.
 
-    The gain is relative to the errors that the likelihood has so far.
+    The gain is relative to the present errors in the likelihood. None if the noise is not clearly
+    smaller than that for which they were estimated.
     """
     before = model.campaign.samples.motion
     if before is None:

@@ -1,4 +1,4 @@
-"""Residual-error model: variance that depends on the force or on the run, and heavy tails.
+"""Residual-error model: heteroscedastic noise by force or by run, and heavy tails.
 
 The samples get weights, 0 to 1, relative to where the noise is smallest.
 """
@@ -30,23 +30,26 @@ HUBER = 2.5
 TAILS = 4.0
 """Standard deviations beyond which innovations are counted as tails."""
 LEAST_TAILS = 5.0
-"""Number of innovations in the tails from which on these are heavy."""
+"""Smallest number of innovations in the tails for these to be heavy."""
 LEAST = 200
-"""Number of samples from which on a variance is estimated."""
+"""Smallest number of samples for which a variance is estimated."""
 ERROR = 1.9
-"""Relative standard error of a size by the median of third differences, times the square root of
-the number of samples: 1.17 for independent ones (Rousseeuw & Croux 1993); these share readings."""
+"""Relative standard error of a robust standard deviation, times the root of the sample count.
+
+The estimate is the median of absolute third differences. The value is 1.17 for independent
+differences (Rousseeuw & Croux 1993) and larger here, since these share readings.
+"""
 START_FREEDOM = 5.0
 """Degrees of freedom of Student's t distribution at the start of its fit."""
 
 
 def variance_by_force(model: Model) -> Proposal | None:
-    """A variance that increases with the square of the force."""
+    """Propose a variance that increases with the square of the force."""
     return _weighted(model, "noise_with_force", force_weights, 1)
 
 
 def variance_by_run(model: Model) -> Proposal | None:
-    """A variance that differs between runs."""
+    """Propose a variance that differs between runs."""
     runs = len(model.campaign.prepared)
     return _weighted(model, "noise_by_run", run_weights, max(runs - 1, 1))
 
@@ -57,7 +60,7 @@ def _weighted(
     weights: Callable[[Problem, Solution, Policy], tuple[Weights, Finding] | None],
     parameters: int,
 ) -> Proposal | None:
-    """The campaign with weights by a variance function, unless it has them."""
+    """Propose weights by a variance function; None if the campaign already has them."""
     problem, solution, campaign, policy = (
         model.problem,
         model.solution,
@@ -85,9 +88,9 @@ def _weighted(
 
 
 def heavy_tails(model: Model) -> Proposal | None:
-    """Huber's weights, if Student's t distribution is more likely than the normal one.
+    """Propose Huber's weights, if Student's t distribution is more likely than the normal one.
 
-    Not proposed if the steps of a converter are the tails.
+    Not proposed if the heavy tails are due to the steps of a converter.
     """
     problem, solution, campaign, policy = (
         model.problem,
@@ -115,10 +118,12 @@ def heavy_tails(model: Model) -> Proposal | None:
 def force_weights(
     problem: Problem, solution: Solution, policy: Policy
 ) -> tuple[Weights, Finding] | None:
-    """A weight for each sample by a line through the variance over the square of the force; None
-    if the variance does not depend on the force."""
+    """Weights from a linear fit of the variance to the square of the force.
+
+    None if the variance does not depend on the force.
+    """
     samples = solution.samples
-    # The white part alone: the error of a model is smooth.
+    # Use the white part only: the error of a model is smooth.
     e = _white_parts(solution)
     force = [np.abs(f) for f in problem.predict(solution.values)]
     flat_e, flat_f = samples.flat(e), samples.flat(force)
@@ -128,7 +133,7 @@ def force_weights(
     middle = 0.5 * (edges[1:] + edges[:-1])
     which = np.clip(np.searchsorted(edges, flat_f) - 1, 0, FORCE_BINS - 1)
     counts = np.bincount(which, minlength=FORCE_BINS)
-    # Many forces are the same if the shaft rests.
+    # Bins may be empty where many forces are equal, as at rest.
     full = np.flatnonzero(counts)
     counts, middle = counts[full], middle[full]
     sizes = np.array([robust_size(flat_e[which == k]) for k in full])
@@ -153,7 +158,7 @@ def run_weights(
 ) -> tuple[Weights, Finding] | None:
     """A weight for the samples of each run; None if the noise does not differ between runs.
 
-    Both the white part and the innovations must differ: a smooth channel has no white noise, and
+    Both the white part and the innovations must differ. A smooth channel has no white noise, and
     the innovations of a wrong model are larger than the noise.
     """
     samples = solution.samples
@@ -163,7 +168,7 @@ def run_weights(
         np.array([robust_size(x[c]) for x, c in zip(v, samples.counted, strict=True)])
         for v in (e, innovations)
     )
-    # Equal readings of a coarse converter have no differences.
+    # Equal readings of a coarse converter have zero differences.
     rounding = np.array([p.converter_step_n for p in problem.campaign.prepared]) / np.sqrt(12.0)
     white, whole = np.maximum(white, rounding), np.maximum(whole, rounding)
     counts = np.array([int(c.sum()) for c in samples.counted])
@@ -181,8 +186,11 @@ def run_weights(
 
 
 def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding, float] | None:
-    """A weight against heavy tails for each sample, and the gain of Student's t distribution over
-    the normal one in twice the log likelihood; None if the tails are not heavy."""
+    """Weights against heavy tails, and the gain of Student's t distribution.
+
+    The gain is relative to the normal distribution, in twice the log likelihood. None if the tails
+    are not heavy.
+    """
     samples = solution.samples
     e = samples.innovations(solution.residuals, solution.noise)
     flat = samples.flat(e)
@@ -202,8 +210,10 @@ def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding
 
 
 def _student_gain(innovations: Array, sigma: float) -> float:
-    """Twice the log likelihood of Student's t distribution, less that of the normal one, each with
-    its most likely parameters (Lange, Little & Taylor 1989)."""
+    """Gain of Student's t distribution over the normal one in twice the log likelihood.
+
+    Each has its most likely parameters (Lange, Little & Taylor 1989).
+    """
 
     def minus_twice(x: Array) -> float:
         freedom, scale = np.exp(x)
@@ -218,7 +228,7 @@ def _student_gain(innovations: Array, sigma: float) -> float:
 
 
 def _white_parts(solution: Solution) -> list[Array]:
-    """The white part of each residual, from its third differences, with the variances known."""
+    """White part of each residual from its third differences, scaled by the known variances."""
     levels = solution.samples.level or [np.ones(len(r)) for r in solution.residuals]
     found = []
     for residual, level in zip(solution.residuals, levels, strict=True):
@@ -228,7 +238,7 @@ def _white_parts(solution: Solution) -> list[Array]:
 
 
 def _uneven(sizes: Array, counts: npt.NDArray[np.int_], policy: Policy) -> bool:
-    """Whether standard deviations differ by a relevant ratio, and by more than chance."""
+    """Whether standard deviations differ significantly and by a relevant ratio."""
     if float(sizes.min()) <= 0.0 or sizes.max() <= policy.uneven_noise * sizes.min():
         return False
     error = ERROR / np.sqrt(counts)

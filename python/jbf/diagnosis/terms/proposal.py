@@ -1,4 +1,4 @@
-"""A term of the observation model at its estimate, and the criterion by which it is accepted."""
+"""A term of the observation model at its estimate, and the criterion for its acceptance."""
 
 from __future__ import annotations
 
@@ -20,12 +20,15 @@ from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 KINDS = 10
-"""Number of terms among which the probability of a false one is shared: offset, drift, gain and oil
-by run, delay by run, clock drift, quantiser, variance by force and by run, heavy tails."""
+"""Number of kinds of terms that share the probability of a false one.
+
+These are offset, drift, gain and oil by run, delay by run, clock drift, quantiser, variance by
+force and by run, and heavy tails.
+"""
 
 
 EVALUATIONS = 8
-"""Evaluations of a fit with a term."""
+"""Number of evaluations of a fit with a term."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +44,7 @@ class Proposal:
     gain
         Increase of twice the log marginal likelihood of the independent samples.
     price
-        Penalty: the increase at which the term is accepted, less that of the effects which it
-        replaces.
+        Threshold for the gain, less the thresholds of the effects that the term replaces.
     """
 
     campaign: Campaign
@@ -59,7 +61,7 @@ class Proposal:
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A fitted model beside which a term is estimated.
+    """A fitted model for which a term is estimated.
 
     Attributes
     ----------
@@ -68,8 +70,10 @@ class Model:
     reference_problem, reference
         The fit that the term is compared with: this one, or that of a model with more effects,
         which the term would replace.
+    policy
+        Numbers of the decision.
     price_of_effect
-        Price of the first parameter of an effect.
+        Threshold of the first parameter of an effect.
     """
 
     problem: Problem
@@ -86,40 +90,43 @@ class Model:
 
 
 class Term(Protocol):
-    """Estimates one kind of term beside a model."""
+    """Estimator of one kind of term for a given model."""
 
     def __call__(self, model: Model) -> Proposal | None:
-        """The term at its estimate; None if the runs do not show it."""
+        """Estimate the term; None if the runs do not show it."""
 
 
 def price_of_term(policy: Policy, parameters: int = 1) -> float:
-    """Critical value of the likelihood-ratio test: the upper quantile of chi-square at the
-    probability of one kind of term."""
+    """Critical value of the likelihood-ratio test for a term.
+
+    It is the upper quantile of chi-square at the false-term probability of one kind.
+    """
     return float(special.chdtri(parameters, policy.deviation_chance / KINDS))
 
 
 def independent_fraction(after: Solution, before: Solution) -> float:
-    """Number of independent samples that a sample counts for in the gain of a term, 0 to 1; the
-    same measure as for an effect (`share_of_gain`)."""
+    """Number of independent samples per sample in the gain of a term, 0 to 1.
+
+    It is the same measure as for an effect (`share_of_gain`).
+    """
     left, was = (s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before))
     ways = [b - e for b, e in zip(was, left, strict=True)]
     return min(effective_share(after), 1.0 / sure_inflation(ways, left, after.samples.steps_s))
 
 
 def is_accepted(proposal: Proposal | None, model: Model, min_evidence: float = 0.0) -> bool:
-    """Whether a term has more than the minimum evidence, and runs left out of the fit are not
-    predicted worse."""
+    """Whether a term exceeds the minimum evidence without a larger held-out error."""
     if proposal is None or proposal.evidence <= max(min_evidence, 0.0):
         return False
     return not predicts_worse(proposal, model)
 
 
 def predicts_worse(proposal: Proposal, model: Model) -> bool:
-    """Whether runs left out of the fit are predicted worse with a term, by more than the
-    policy's ratio and the standard error of its mean over the runs.
+    """Whether the held-out error is larger with a term.
 
-    Every run has the same weight: where runs deviate from one another, the largest deviation must
-    not decide alone. Delays and the bias of a quantiser are those of the whole fit.
+    The increase must exceed the policy's ratio by more than the standard error of its mean over the
+    runs. Every run has the same weight: with between-run variance, the largest deviation must not
+    decide alone. Delays and the quantiser bias are those of the whole fit.
     """
     fits = ((proposal.problem, proposal.solution), (model.reference_problem, model.reference))
     rms = [
@@ -135,7 +142,6 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
 
 
 def refitted(problem: Problem, near: Solution, samples: Samples) -> Solution:
-    """A few steps of a fit to samples with other weights or correlations, with the noise that it
-    leaves."""
+    """Fit a few steps to samples with other weights or correlations, and re-estimate the noise."""
     values = search(problem, samples, near.values, near.noise, EVALUATIONS).values
     return problem.solution(values, samples, noise_at(problem, samples, values))

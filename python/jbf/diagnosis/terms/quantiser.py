@@ -1,4 +1,4 @@
-"""Mean reading of a converter whose steps are as large as the noise.
+"""Quantisation bias of the mean reading of a converter whose steps are as large as the noise.
 
 The difference between the mean reading and the force is a periodic function of the force (Widrow
 1956). Averaging does not remove it.
@@ -24,16 +24,18 @@ from jbf.estimation.solution import Solution
 Array = npt.NDArray[np.float64]
 
 EVALUATIONS = 8
-"""Evaluations of each fit to corrected readings."""
+"""Number of evaluations of each fit to corrected readings."""
 MOST_ITERATIONS = 8
 """Largest number of corrections and fits."""
 NO_BIAS = 0.8
-"""Standard deviation of the noise, in steps, beside which the mean reading has no bias."""
+"""Standard deviation of the noise, in steps, from which the mean reading is unbiased."""
 
 
 def quantiser(model: Model) -> Proposal | None:
-    """Readings without the bias of their steps; None if the converter is fine enough, or the bias
-    changes by less than the policy's limit."""
+    """Propose readings without quantisation bias.
+
+    None if the converter is fine enough, or the bias changes by less than the policy's limit.
+    """
     solution = model.solution
     corrected = without_bias(model.problem, solution, model.policy)
     if corrected is None:
@@ -51,10 +53,10 @@ def quantiser(model: Model) -> Proposal | None:
 def without_bias(
     problem: Problem, solution: Solution, policy: Policy
 ) -> tuple[Campaign, Problem, Solution] | None:
-    """The campaign without the bias of its steps, and the model fitted to it.
+    """The campaign without quantisation bias, and the model fitted to it.
 
-    The fit to biased readings predicts another force, which has another bias: correction and fit
-    are repeated until the bias changes no more.
+    The fit to biased readings predicts another force, which has another bias. Correction and fit
+    are repeated until the bias no longer changes.
     """
     found = None
     for _ in range(MOST_ITERATIONS):
@@ -70,7 +72,10 @@ def without_bias(
 
 
 def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
-    """The campaign corrected once, with the noise before the converter by least squares."""
+    """Correct the campaign once.
+
+    The noise before the converter is estimated by least squares.
+    """
     campaign = problem.campaign
     steps = {f.run: f.size for f in campaign.findings if f.kind == "steps"}
     if not steps:

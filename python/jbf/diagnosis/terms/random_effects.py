@@ -1,7 +1,7 @@
 """Random effects between runs: offset, drift and gain of the sensor, temperature of the oil.
 
-A run deviates from the campaign by a Gaussian random effect whose standard deviation the runs
-themselves determine (`estimation.between_runs`).
+The deviation of a run from the campaign is a Gaussian random effect. Its standard deviation is
+estimated from the runs (`estimation.between_runs`).
 """
 
 from __future__ import annotations
@@ -30,12 +30,14 @@ from jbf.records.findings.finding import Finding
 Array = npt.NDArray[np.float64]
 
 LEAST_RUNS = 3
-"""Number of runs from which on a standard deviation between runs is estimated."""
+"""Smallest number of runs for which a between-run standard deviation is estimated."""
 
 
 def random_effect(model: Model) -> Proposal | None:
-    """The random effect that is most significant beside those already in the model; None if none
-    exceeds chance, and beside errors of the motion."""
+    """Propose the most significant random effect that is not yet in the model.
+
+    None if none is significant, or if the likelihood has errors of the motion.
+    """
     problem, solution, campaign = model.problem, model.solution, model.campaign
     if campaign.samples.motion is not None:
         return None
@@ -52,8 +54,10 @@ def random_effect(model: Model) -> Proposal | None:
 
 
 def without_random_effect(model: Model) -> Campaign | None:
-    """The campaign without the random effect that explains least beside the others; None if each of
-    them increases the marginal likelihood."""
+    """The campaign without the random effect that explains least in addition to the others.
+
+    None if each of them increases the marginal likelihood.
+    """
     problem, solution, campaign = model.problem, model.solution, model.campaign
     between = campaign.samples.between
     if between is None:
@@ -87,9 +91,9 @@ def _log_determinant(solution: Solution) -> float:
 def _most_significant(
     problem: Problem, solution: Solution, samples: Samples, chance: float
 ) -> tuple[BetweenRuns, Finding] | None:
-    """The random effects of the samples and the most significant of the others.
+    """The random effects of the samples and the most significant additional one.
 
-    One at a time: a missing random effect resembles another.
+    Only one is added at a time, since a missing random effect resembles another.
     """
     if len(samples.runs) < LEAST_RUNS:
         return None
@@ -108,7 +112,7 @@ def _most_significant(
     if best is None:
         return None
     _, name, unit, sd, column = best
-    # The deviations of the runs are no noise.
+    # Exclude the between-run deviations from the noise.
     sigma = robust_size(_within_runs(samples, solution, column))
     kind, words = _words(name, sd, unit)
     runs = ", ".join(samples.runs)
@@ -121,7 +125,7 @@ def _most_significant(
 
 
 def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[Array]]]:
-    """Name, unit and derivative of the force by each random effect, one (n,) array a run."""
+    """Name, unit and derivative of the force by each random effect, one (n,) array per run."""
     said = problem.campaign.rig.quantities
     found = [("zero", said.force, [np.ones(len(r)) for r in solution.residuals])]
     times = [p.run.time_s for p in problem.campaign.prepared]
@@ -149,8 +153,14 @@ def _within_runs(samples: Samples, solution: Solution, column: list[Array]) -> A
 def _spread(
     samples: Samples, solution: Solution, column: list[Array], sigma: float
 ) -> tuple[float, float, float] | None:
-    """Standard deviation between runs, its probability by chance, and the ratio of Cochran's
-    statistic to its degrees of freedom (`spread_between`); None if it cannot be estimated."""
+    """Estimate the between-run standard deviation (`spread_between`).
+
+    Returns
+    -------
+    tuple or None
+        The standard deviation, its significance (p-value), and the ratio of Cochran's statistic to
+        its degrees of freedom; None if it cannot be estimated.
+    """
     if sigma**2 == 0.0:
         return None
     estimates, precisions = [], []

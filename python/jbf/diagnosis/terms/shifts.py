@@ -1,4 +1,4 @@
-"""Runs whose force is shifted in time, and the model fitted to them: estimation of the shifts."""
+"""Time alignment: estimation of the time shifts of the force, with refits of the model."""
 
 from __future__ import annotations
 
@@ -26,21 +26,33 @@ Names = tuple[str, ...]
 DELAY = "time_delay"
 TAU = "time_delay.tau_s"
 AHEAD_S = 20e-3
-"""Delay left uncorrected while the common delay is estimated, s; or one sampling period, if that
-is longer."""
+"""Delay left uncorrected while the common delay is estimated, s.
+
+At least one sampling period is used.
+"""
 EVALUATIONS = 12
-"""Steps of a fit to runs that were shifted."""
+"""Number of steps of a fit to shifted runs."""
 LARGEST_DRIFT = 2e-3
-"""Largest relative drift between two clocks; between those of two quartz crystals it is 1e-4."""
+"""Largest relative drift between two clocks; two quartz crystals differ by 1e-4."""
 STEPS = 10
-"""Steps of Gauss and Newton in the lateness of the runs and the model together, at most,"""
+"""Largest number of joint Gauss-Newton steps in the delays and the model parameters."""
 SETTLED = 0.1
-"""until one is so small a share of its standard error."""
+"""Size of a step, in standard errors, below which the iteration has converged."""
 
 
 @dataclass(frozen=True, eq=False)
 class Shifted:
-    """Runs that were shifted, by how much, and the model on them."""
+    """Runs with shifted forces, and the model fitted to them.
+
+    Attributes
+    ----------
+    problem, solution
+        The fit.
+    late_s
+        Delay of each run that was corrected, in the middle of the run, s.
+    drift
+        Relative drift of the force clock that was corrected.
+    """
 
     problem: Problem
     solution: Solution
@@ -49,15 +61,15 @@ class Shifted:
 
     @property
     def campaign(self) -> Campaign:
-        """The runs as they were shifted."""
+        """The shifted runs."""
         return self.problem.campaign
 
 
 def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
-    """Whether the clocks of a logger can be so far apart.
+    """Whether delays and drift are within the possible range of a logger's clocks.
 
-    A larger delay or drift is what the slopes of a force that does not follow the motion make of
-    noise, or of the error of a wrong model.
+    Larger estimates are artefacts: of noise, where the slopes of the force do not follow the
+    motion, or of the error of a wrong model.
     """
     return abs(drift) <= LARGEST_DRIFT and all(
         abs(late) + 0.5 * abs(drift) * p.run.duration_s <= LATEST * p.run.duration_s
@@ -66,7 +78,7 @@ def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
 
 
 def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
-    """The campaign with each run's force compared so much earlier."""
+    """The campaign with each run's force shifted to earlier times."""
     prepared = problem.campaign.prepared
     return _settled(
         problem, [p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)]
@@ -95,7 +107,7 @@ def refitted(
     known: dict[str, float],
     near: Solution,
 ) -> tuple[Problem, Solution]:
-    """A law with effects, a few steps on, on runs that were shifted."""
+    """Fit a law with effects to shifted runs by a few steps."""
     again = Problem(campaign, problem.law, problem.clock, effects)
     start = np.array([known[name] for name in again.names])
     samples = again.samples_at(start)
@@ -105,17 +117,18 @@ def refitted(
 
 
 def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
-    """Runs shifted on, each by what its force is late beside the model that is fitted with it;
-    where that leaves no less, as they were.
+    """Estimate the delay of each run jointly with the model.
+
+    Returns `start` where the fit does not improve, or where a delay is not plausible.
 
     Parameters
     ----------
     first
-        The runs that shifts are counted from.
+        The runs relative to which shifts are measured.
     start
-        The runs shifted by as much as is known.
+        The runs shifted by the known delays.
     """
-    # The error of late forces is smooth: taken for colour of the noise, it would be forgiven.
+    # The error of a delayed force is smooth and would be taken for coloured noise.
     now = replace(start, solution=replace(start.solution, noise=WHITE))
     white = True
     for _ in range(STEPS):
@@ -126,14 +139,14 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
             white = False
             now = _coloured(now)
             continue
-        # Where runs differ in it, a delay that they share is the recording's as well.
+        # Where delays differ between runs, a common delay is also attributed to the recording.
         known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
         later_s = np.clip(step.late_s, -LINEAR_S, LINEAR_S) + known.get(TAU, 0.0)
         late_s = now.late_s + later_s
         late_s[~step.told] = step.mean_s(late_s)
         apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
         if apart_s > RANGES[0][0] or not possible_clocks(first, late_s, start.drift):
-            # What a run alone lacks (a mass) may look like a lateness, of any size.
+            # Another deviation of one run (a mass) may appear as a delay of any size.
             return start
         campaign = moved(first, late_s, start.drift)
         effects = without_delay(now.problem.effects)
@@ -145,8 +158,10 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
 
 
 def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
-    """Runs shifted on as one clock has it that was started with each, its drift fitted together
-    with the model; where that leaves no less, as they were."""
+    """Estimate the drift of a clock that starts with each run, jointly with the model.
+
+    Returns `start` where the fit does not improve, or where the drift is not plausible.
+    """
     lasts_s = np.array([p.run.duration_s for p in first.campaign.prepared])
     most = LINEAR_S / float(np.max(lasts_s))
     now = replace(start, solution=replace(start.solution, noise=WHITE))
@@ -175,15 +190,17 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
 
 
 def _coloured(shifted: Shifted) -> Shifted:
-    """The same with the noise that is left by now."""
+    """Re-estimate the noise of shifted runs from the present residuals."""
     problem, values, samples = shifted.problem, shifted.solution.values, shifted.solution.samples
     noise = noise_at(problem, samples, values)
     return replace(shifted, solution=problem.solution(values, samples, noise))
 
 
 def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
-    """The runs shifted to where their squares are smallest (`lateness`), repeatedly; None if the
-    delays do not differ, do not grow, and are not negative."""
+    """Shift the runs repeatedly to the delays with the smallest sums of squares (`lateness`).
+
+    None if the delays do not differ, do not drift, and are not negative.
+    """
     campaign = problem.campaign
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
@@ -191,12 +208,12 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
         found = lateness(problem, solution, look, policy.deviation_chance)
         if found is None:
             break
-        # If the runs differ in it, a delay that they share belongs to the recording as well.
+        # Where delays differ between runs, a common delay is also attributed to the recording.
         known = dict(zip(problem.names, solution.values.tolist(), strict=True))
         shared = known.get(TAU, 0.0) if found.spread_s > 0.0 else 0.0
         later_s, drifted = late_s + np.array(found.late_s) + shared, drift + found.drift
         if look > 0 and found.drift != 0.0 and found.spread_s == 0.0:
-            # A clock that drifts was corrected in the middle of the runs.
+            # The drift was already corrected at the middle of the runs.
             later_s = late_s
         if not possible_clocks(first, later_s, drifted):
             break
@@ -208,11 +225,11 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
 
 
 def fit_common_delay(problem: Problem, found: Shifted) -> Shifted:
-    """The runs shifted by what all of them are late besides.
+    """Estimate the additional delay common to all runs.
 
-    A law takes a delay of all runs for its own memory, nearly: how late each is tells how they
-    differ, and little of what they share. That is fitted together with the law, on runs shifted
-    too little, so that none is early.
+    A law can take a common delay for its own memory. The delays of the runs therefore determine
+    their differences well, but not their mean. The mean is fitted together with the law, on runs
+    shifted by less than the estimate, so that no force is early.
     """
     steps = [p.step_s for p in problem.campaign.prepared]
     ahead_s = max(AHEAD_S, float(np.median(steps)))

@@ -1,7 +1,8 @@
 """Strength from which an effect is distinguishable from every other effect.
 
-The change of the record that a rival's parameters cannot reproduce, as a sum of squares in units of
-the noise variance, is the expected difference between the two gains. The difference of the gains is
+The unexplained part of an effect is the change of the record that a rival's parameters cannot
+reproduce. Its sum of squares, in units of the noise variance, is the expected difference between
+the two gains. The difference of the gains is
 normally distributed with a variance of four times its mean. An effect is identified alone where it
 is detected and no rival comes close to its gain.
 
@@ -136,8 +137,7 @@ def times_alone(
     """
 
     def lacking(times: float) -> float:
-        # Close rivals share the same unexplained part: where the closest is excluded, so are the
-        # others.
+        # Close rivals leave the same part unexplained: only the closest one matters.
         told = min(
             (chance_apart(times * left, least) for left, least in rivals.values()), default=1.0
         )

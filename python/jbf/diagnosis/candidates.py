@@ -140,8 +140,8 @@ class Candidates:
         float
             Gain in twice the log likelihood that one Gauss-Newton step predicts from the null of
             the added effects, with the parameters of the law free; the largest of all starts.
-            Infinite where the null cannot be reached by a step, or where an effect moves or smooths
-            jumps.
+            Infinite where the null cannot be reached by a step, or where an effect moves or spreads
+            jumps or has a free initial state.
         """
         fitted = self.fitted(effects)
         if fitted.score is None:
@@ -153,8 +153,7 @@ class Candidates:
             }
             nulls = {n: p.null for n, p in pages.items() if p.null is not None}
             reach = bool(nulls) and all(np.isfinite(null) for null in nulls.values())
-            # A shift of a jump by less than one sample changes no sample: the null predicts
-            # nothing.
+            # A jump that moves by less than a sample changes no sample: the null predicts nothing.
             if not reach or any(find_effect(name).moves_jumps for name in added):
                 fitted.score = np.inf
             else:
@@ -162,8 +161,8 @@ class Candidates:
                 starts = fitted.problem.starts({**known, **nulls})
                 told = score_test(fitted.problem, starts, near, added)
                 fitted.score, fitted.directions, fitted.stepped = told
-                # Likewise where jumps are smoothed: the samples next to them may dominate the
-                # information. Likewise for a free initial state: most of its gain lies far from the
+                # Likewise where jumps are spread: the samples next to them may be the most
+                # informative. Likewise for a free initial state: most of its gain lies far from the
                 # null.
                 if spreads_jumps(added) or begins_anywhere(added):
                     fitted.score = np.inf
@@ -220,7 +219,7 @@ class Candidates:
         seeds: list[Mapping[str, float]] = [{}]
         if near is not None:
             law = self._values_of(near)
-            # The law may have compensated for a missing effect and be a poor start. For effects
+            # The law may be a poor start, since it compensated for a missing effect. For effects
             # with many peaks, the peak found without the new effect is not a useful start.
             anew = many_peaks(near.effects)
             kept = {} if anew else {n: v for n, v in law.items() if "." in n}

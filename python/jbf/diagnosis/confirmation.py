@@ -79,8 +79,7 @@ class Confirmation:
         prepared
             The runs, whose strokes are the units where there are too few runs.
         """
-        # Compare on common samples: a model that excludes samples next to its jumps predicts none
-        # there.
+        # Compare on common samples: a model may exclude those next to its jumps.
         counted = least_weights(simpler.samples, richer.samples).counted
         errors = [
             errors_by_run(simpler, left, apart=True, counted=counted),
@@ -204,7 +203,8 @@ def left_out_confirms(
     Where the evidence is weak, the held-out predictive density must confirm it. Errors alone carry
     little information where the other runs cannot determine a parameter, for example where one run
     dominates the estimate of the law's own parameters. Where the evidence is strong, any gain in
-    mean square suffices, or a better prediction of most of the runs.
+    mean square suffices, or a better prediction of most of the runs. A candidate that increases the
+    held-out RMS by more than `policy.left_out_worse` is never confirmed.
 
     Parameters
     ----------

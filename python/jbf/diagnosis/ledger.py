@@ -19,13 +19,13 @@ class Trial:
     rms_n
         Fit RMS with it, N.
     evidence
-        Twice the gain in log likelihood, less the expected gain by chance and by the candidate's
-        parameters; above zero the candidate improves the model.
+        Twice the gain in log likelihood, less the acceptance threshold for the candidate's
+        parameters; above zero the model with the candidate is better.
     outcome
-        `added`, `ties`, `rejected`, `negligible` (significant, but below the minimum effect size),
-        `no gain` (no more than expected by chance), `confounder` (added, but the runs disagree on
-        its parameters), or `replaced` (added, and removed when a later effect was better in its
-        place).
+        `added`, `ties`, `rejected`, `negligible`, `no gain`, `confounder` or `replaced`.
+        `negligible`: significant, but below the minimum effect size. `no gain`: no more than
+        expected by chance. `confounder`: added, but the runs disagree on its parameters.
+        `replaced`: added, and removed when a later effect was better in its place.
     reason
         Reason for the outcome.
     """

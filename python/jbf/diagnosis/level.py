@@ -114,7 +114,10 @@ class Level:
 
     @property
     def significant(self) -> float:
-        """Gain of one parameter that neither noise nor recording artefacts produce."""
+        """Gain of one parameter that neither noise nor recording artefacts produce.
+
+        It is the larger of `critical` and `white` plus the artefact margin.
+        """
         return max(self.critical, self.white + self.imperfection)
 
     def price(self, parameters: int, samples: int) -> float:

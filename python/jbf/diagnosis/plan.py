@@ -139,8 +139,7 @@ def plan(
         (e, played(rig, e, step_s, linear=linear))
         for e in excitations(limits, step_s, rig.quantities.speed)
     ]
-    # A sample of the motions, slow and fast, at each load and temperature, shows which effects
-    # apply.
+    # A few of the motions, slow and fast, at each load and temperature, determine the effects.
     few = motions[:: max(len(motions) // 7, 1)]
     named = [replace(run, name=f"{i}") for i, (_, run) in enumerate(few)]
     candidates = as_recorded(model, named, noise_n, policy)

@@ -1,7 +1,7 @@
 """Power: strength from which an effect is detectable in runs like these.
 
-An effect of given strength changes the friction. The part of this change that the law's own
-parameters cannot reproduce, as a sum of squares in units of the noise variance, is the
+An effect of given strength changes the friction. The law's own parameters can reproduce a part of
+this change. The sum of squares of the other part, in units of the noise variance, is the
 non-centrality of the likelihood ratio (Wald 1943). The power of the test is the probability that
 the likelihood ratio exceeds the threshold. The part that another effect can also reproduce does not
 help to distinguish the two.
@@ -46,7 +46,7 @@ LOOKS = 14
 POWERS = (1.0, 8.0)
 """Range of the exponents with which the non-centrality may grow with strength."""
 AGREES = 0.05
-"""Relative difference in strength at which the search ends; the remainder is interpolated."""
+"""Relative difference in strength at which the search ends; the power law gives the rest."""
 NEARLY_ALL = 0.97
 """Share of the gain above which a refitted noise model is considered to absorb no part of it."""
 BEYOND = 1.2

@@ -230,7 +230,7 @@ def _with_law(
     named = tuple(name for name in present if name not in doubted)
     steps = as_it_ended(steps, present, doubted)
     if doubted and not remainder_of(candidates, named):
-        # The structure was due to the confounders: without them the model is adequate.
+        # No structure remains without the confounders: remove them.
         present, remains = named, refused
     missing = tuple(name for name in named if name not in machine)
     asked = (*missing, OFFSET)

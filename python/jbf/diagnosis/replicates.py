@@ -1,8 +1,8 @@
 """Test for structure without an axis: errors that repeat with a repeated motion.
 
-Noise is independent between periods; a model error is not. The correlation of the residual with
-itself one period later is therefore the share of its mean square that is not noise (a lack-of-fit
-test with replicates).
+Noise is independent between periods; a model error is not. The autocorrelation of the residual at
+a lag of one period is therefore the share of its mean square that is not noise. This is a
+lack-of-fit test with replicates.
 """
 
 from __future__ import annotations

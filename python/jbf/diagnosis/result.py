@@ -75,9 +75,9 @@ class Diagnosis(Result):
     laws
         Laws that the rig allows, the selected one first, where the law was selected from the data.
     simpler_law
-        Another law with a held-out error no larger than that of the final model, no more
-        parameters, and only effects that are not friction (offset, mass, weight). None where no
-        such law was found or a search was not necessary.
+        Another law whose held-out error and number of parameters do not exceed those of the final
+        model. It has only effects that are not friction (offset, mass, weight). None where no such
+        law was found or a search was not necessary.
     """
 
     verdict: Verdict

@@ -165,8 +165,8 @@ def _waves(
     Returns
     -------
     tuple of float
-        Share of the mean square, median amplitude over the runs in N, and the share of the power
-        that a ripple with one common phase has.
+        Share of the mean square; median amplitude over the runs, N; share of the ripple's power
+        that one common phase explains.
     """
     pairs, rest = [], []
     for way, r, counted in zip(ways, residuals, samples.counted, strict=True):

@@ -57,7 +57,7 @@ def select(candidates: Candidates) -> Selected:
 
     The selection ends when no further one is accepted. The start model is the law with the machine
     of a drive. If no effect is accepted and the residual has structure, all candidates are fitted
-    once (the score of a strong effect at its null may be small), and then pairs of them.
+    once, and then pairs of them. The score of a strong effect at its null may be small.
     """
     policy = candidates.policy
     present, steps = start_model(candidates), []

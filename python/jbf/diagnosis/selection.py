@@ -34,7 +34,7 @@ Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
 
 AHEAD = 3
-"""Number of candidates, by gain after a few steps, that may set the leader's evidence."""
+"""Number of candidates with the largest gains that are considered as leaders."""
 LESS = 0.95
 """Ratio of two RMS values below which a reader of the ledger regards one as smaller."""
 CHANCE = "gains no more than chance would"

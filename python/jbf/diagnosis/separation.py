@@ -1,8 +1,8 @@
 """Separation of two models in a motion that is not yet recorded.
 
-The separation is the part of their difference that remains after the wrong model is refitted to the
-old runs and the new one together (T-optimality, Atkinson & Fedorov 1975; here to first order). The
-part that its parameters can reproduce is not evidence.
+The wrong model is refitted to the old runs and the new one together. The separation is the part of
+the difference that remains (T-optimality, Atkinson & Fedorov 1975; here to first order). The part
+that its parameters can reproduce is not evidence.
 """
 
 from __future__ import annotations

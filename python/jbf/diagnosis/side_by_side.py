@@ -27,8 +27,8 @@ FEW = 4
 def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
     """Number of parallel fits for a campaign.
 
-    One fit at a time is used where the matrices of long records fill the memory, and where
-    user-defined functions take part, which may have an internal state.
+    One fit at a time is used where the matrices of long records fill the memory. User-defined
+    functions are not run in parallel either, since they may have an internal state.
     """
     own = isinstance(find_law(law), OwnLaw)
     own = own or any(isinstance(find_effect(name), OwnEffect) for name in effects)

@@ -25,8 +25,9 @@ Names = tuple[str, ...]
 def confounders(candidates: Candidates, present: Names, remains: Sequence[Remainder] = ()) -> Names:
     """Find the effects that are not named because they may imitate something else.
 
-    These are effects on whose parameters the runs disagree, and effects of weak evidence that
-    explain less than the largest residual structure, a part of which they may imitate.
+    The first kind are effects on whose parameters the runs disagree. The second kind are effects of
+    weak evidence that explain less than the largest residual structure; they may imitate a part of
+    it.
 
     Parameters
     ----------

@@ -121,7 +121,7 @@ class RunsAtHand:
         return [gap * share for gap, share in zip(gaps, shares, strict=True)], shares
 
     def shown(self, changes: Sequence[Array]) -> Array:
-        """The part of changes of the friction that the model cannot reproduce, in units of the noise.
+        """The part of friction changes that the model cannot reproduce, in units of the noise.
 
         Parameters
         ----------

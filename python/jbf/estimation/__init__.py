@@ -1,9 +1,9 @@
-"""Estimation: a model and runs in; parameters with their errors out.
+"""Parameter estimation: from a model and runs to parameters with standard errors.
 
-Comes in: a `Campaign` (runs made ready once), a law, effects. Goes out: `Fit`, `Bootstrap`,
-`TrajectoryFit`. `samples` says which samples count and how much, `noise` what the instrument adds,
-`problem` encodes parameters and predicts, `minimum` searches, `uncertainty` gives the errors;
-`determined` is the rule by which a parameter is held.
+Input: a `Campaign` (runs prepared once), a law and effects. Output: `Fit`, `Bootstrap`,
+`TrajectoryFit`. `samples` defines the samples that count and their weights; `noise` is the noise
+model of the instrument. `problem` encodes parameters and predicts; `minimum` searches;
+`uncertainty` computes standard errors. `determined` is the rule by which a parameter is held.
 
 May import: `jbf.records`, `jbf.models`, `jbf._core`.
 """

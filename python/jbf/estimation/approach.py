@@ -1,8 +1,7 @@
-"""The approach to a minimum: starting points are ranked, and the best followed as if the noise were
-white.
+"""Approach to a minimum: rank the starting points and follow the best one, assuming white noise.
 
-It may be interrupted after a first look, which tells what a model promises for a quarter of the
-work.
+The approach may be interrupted after a first look, which estimates the log-likelihood gain of a
+model for a quarter of the computation.
 """
 
 from __future__ import annotations
@@ -26,28 +25,33 @@ from jbf.models.catalogue import find_effect
 Array = npt.NDArray[np.float64]
 
 TRIAL_EVALUATIONS = 6
-"""Steps given to each starting point before the best goes on alone: with half of them an effect
-whose null is a flat place stays there."""
+"""Evaluations spent on each starting point before only the best one is followed.
+
+With half of them, an effect whose null is a flat region of the objective stays at its null.
+"""
 FOLLOWED = 2
-"""How many of the starting points are given them where candidates are ranked."""
+"""Number of starting points that receive these evaluations when candidates are ranked."""
 MANY = 24
-"""Starting points that are all tried on all runs; of more"""
+"""Largest number of starting points that are all evaluated on all runs."""
 LIKELY = 6
-"""one of so many, after a look at one run: the one that goes fastest goes through every speed."""
+"""Fraction (one in this number) of a larger set that is kept; at least `MANY` are kept.
+
+They are ranked on a single run: the one with the highest speed, which covers all speeds.
+"""
 LOOKED = 3
-"""Steps of a first look, from the best start that the first seed has."""
+"""Evaluations of a first look, which begins at the best starting point of the first seed."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """What a few steps of a fit beside a smaller model have seen, in twice the log likelihood.
+    """Result of a few steps of a fit compared with a smaller model, in log-likelihood gain.
 
     Attributes
     ----------
     gain
-        What they have gained.
+        Log-likelihood gain (2 x difference of log likelihood) reached so far.
     promised
-        What the linear model at the best of them promises.
+        Log-likelihood gain predicted by the linear model at the best of the visited points.
     """
 
     values: Array
@@ -57,17 +61,17 @@ class Look:
 
 
 class Approach:
-    """A search from the best of all starting points, as if the noise were white.
+    """Search from the best of all starting points, assuming white noise.
 
     Parameters
     ----------
     seeds
-        Known values by name; starting values fill each one up.
+        Known values by name; starting values fill up each seed.
     each
-        Follow the best of each seed, not the best of all.
+        Follow the best starting point of each seed instead of the best of all.
     stepped
-        One start more: where a step from a smaller model leads. Starting values suit a strong
-        effect, and may be on the far side of a hill from a weak one.
+        One additional starting point: the end of a step from a smaller model. Starting values suit
+        a strong effect; a weak one may lie on the far side of a maximum of the objective.
     """
 
     def __init__(
@@ -88,12 +92,12 @@ class Approach:
 
     @cached_property
     def _nearest(self) -> Array:
-        """The best start from the first seed, or from a smaller model."""
+        """Best starting point of the first seed, or the step from a smaller model."""
         return min([*self._likely(0), *self._stepped], key=self._square)
 
     @cached_property
     def starts(self) -> list[Array]:
-        """Where to start from, best first."""
+        """Starting points, best first."""
         groups = [self._likely(k) for k in range(len(self._groups))]
         if self._each:
             groups = [[min(group, key=self._square)] for group in groups]
@@ -101,7 +105,7 @@ class Approach:
         return sorted(every, key=self._square)
 
     def _likely(self, k: int) -> list[Array]:
-        """Of many starts of a seed, those that predict one run better than most do."""
+        """Starting points of seed k, reduced to the best ones on one run if there are many."""
         if k not in self._kept:
             self._kept[k] = self._likeliest(self._groups[k])
         return self._kept[k]
@@ -119,18 +123,18 @@ class Approach:
         return [group[i] for i in order[: max(MANY, len(group) // LIKELY)]]
 
     def _square(self, values: Array) -> float:
-        """Sum of squares of weighted residuals, N^2, asked once for each start."""
+        """Sum of squares of weighted residuals, N^2, computed once for each starting point."""
         key = values.tobytes()
         if key not in self._squares:
             self._squares[key] = self.few.square(values)
         return self._squares[key]
 
     def look(self, near: Solution) -> Look:
-        """A few steps from the first seed's best start, beside the solution of a smaller model."""
+        """Take a few steps from the best start of the first seed; compare with a smaller model."""
         problem, few, visited = self.problem, self.few, self.visited
         some = few.campaign.samples
         search(few, some, self._nearest, WHITE, LOOKED, visited=visited)
-        # The search that follows goes the same way, and has not joined it.
+        # The subsequent search takes the same path and must not count as having joined this one.
         visited.ended.clear()
         places = list(visited.places.values())
         lowest = min(places, key=lambda place: place.square)
@@ -141,7 +145,7 @@ class Approach:
         lines = visited.lines_at(lowest.values) if few is problem else None
         visited.lowest = None
         if near.noise.colour > 0.0:
-            # What little a sharp feature takes away is much beside a smooth noise.
+            # Next to smooth noise, a small reduction by a sharp feature is a large gain.
             if lines is None:
                 return Look(lowest.values, gain, np.inf, None)
             before = float(np.sum(near.stacked()[0] ** 2))
@@ -151,7 +155,7 @@ class Approach:
         return Look(lowest.values, gain, most, lines)
 
     def solution_of(self, look: Look, near: Solution) -> Solution:
-        """A first look as a solution, under the noise of the smaller model."""
+        """Return a first look as a solution, with the noise of the smaller model."""
         problem, lines = self.problem, look.lines
         samples = problem.samples_at(look.values, lines)
         values = problem.wrapped(look.values)
@@ -165,18 +169,18 @@ class Approach:
         steps: int = TRIAL_EVALUATIONS,
         method: Method = "dogbox",
     ) -> Solution:
-        """Search on.
+        """Continue the search.
 
         Parameters
         ----------
         evaluations
-            Where to stop; enough to rank candidates, or to converge.
+            Maximum number of evaluations; enough to rank candidates, or to converge.
         least
-            A sum of squares, N^2, that the first steps must come below: a search that leads nowhere
-            is not followed.
+            Sum of squares, N^2, that the first steps must fall below; otherwise the search is not
+            continued.
         followed, steps, method
-            How many starting points are given how many steps before the best goes on alone, and
-            how.
+            Number of starting points tried, evaluations for each of them before only the best one
+            is followed, and method of these first searches.
         """
         problem, few, visited = self.problem, self.few, self.visited
         some, starts = few.campaign.samples, self.starts
@@ -188,16 +192,16 @@ class Approach:
             for start in trials:
                 short.append(search(few, some, start, WHITE, steps, method, visited))
                 if peaks:
-                    # Two ways that meet may part again for different peaks.
+                    # Two searches that meet may separate again towards different maxima.
                     visited.ended.clear()
             best = min(short, key=lambda found: visited.square(few, some, found.values))
         end = replace(best, converged=False, message="not followed")
         if len(starts) == 1 or _square(problem, few, visited, best.values) < least:
             if not best.converged or method != "dogbox":
-                # It goes on where one of those before ended.
+                # The search continues where an earlier one ended.
                 visited.ended.clear()
                 best = search(few, some, best.values, WHITE, evaluations, visited=visited)
-            # The whole has its minimum near that of its part.
+            # The minimum for all samples is near that for the thinned samples.
             end = replace(best, converged=best.converged and few is problem)
         values, lines = end.values, visited.lines_at(end.values) if few is problem else None
         samples = problem.samples_at(values, lines)
@@ -215,7 +219,7 @@ def approach(
     steps: int = TRIAL_EVALUATIONS,
     method: Method = "dogbox",
 ) -> Solution:
-    """Both parts of an approach at once."""
+    """Run a complete approach: rank the starting points, then follow the best one."""
     way = Approach(problem, seeds)
     return way.follow(evaluations, followed=followed, steps=steps, method=method)
 
@@ -225,7 +229,7 @@ def _log_ratio(before: float, after: float) -> float:
 
 
 def _square(problem: Problem, few: Problem, visited: Visited, values: Array) -> float:
-    """Sum of squares of weighted residuals of the whole, N^2."""
+    """Sum of squares of weighted residuals over all samples, N^2."""
     if few is problem:
         return visited.square(problem, problem.campaign.samples, values)
     return problem.square(values)

@@ -1,10 +1,10 @@
-"""What differs from run to run and is no effect: the zero of the cell, the oil's warmth.
+"""Run-to-run deviations that are not effects, such as the load cell's zero or the oil temperature.
 
-A run has its own deviation from the campaign, Gaussian about nothing with a spread that the runs
-themselves tell: a random effect (Laird & Ware 1982). The residuals of a run are then correlated in
-the directions of those deviations. Whitened by that correlation, likelihood, score tests and errors
-are what they are without it; and what is left of a test is taken with the deviations' best linear
-predictions removed.
+Each run deviates from the campaign by a zero-mean Gaussian amount whose spread is estimated from
+the runs: a random effect (Laird & Ware 1982). The residuals of a run are then correlated in the
+directions of these deviations. After whitening by this correlation, likelihood, score tests and
+standard errors have their usual form. The residuals that remain after a test are taken with the
+best linear predictions of the deviations removed.
 """
 
 from __future__ import annotations
@@ -22,14 +22,15 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BetweenRuns:
-    """Deviations of the runs.
+    """Random effects: deviations of the runs from the campaign.
 
     Attributes
     ----------
     names
-        What deviates, shape (q,).
+        Names of the random effects, shape (q,).
     directions
-        What a deviation of one standard deviation adds to each run's friction, N, one (n, q) a run.
+        Contribution of one standard deviation of each random effect to the friction of each run, N;
+        one (n, q) array a run.
     sigma_n
         Standard deviation of the innovations, N.
     """
@@ -39,11 +40,11 @@ class BetweenRuns:
     sigma_n: float
 
     def only(self, which: Sequence[int]) -> BetweenRuns:
-        """Those of some of the runs."""
+        """Return the random effects of a selection of runs."""
         return replace(self, directions=tuple(self.directions[i] for i in which))
 
     def without(self, name: str) -> BetweenRuns | None:
-        """The others; None if there are none."""
+        """Return the random effects except `name`; None if no other exists."""
         kept = [k for k, own in enumerate(self.names) if own != name]
         if not kept:
             return None
@@ -53,8 +54,10 @@ class BetweenRuns:
     def whitened(
         self, run: int, stacked: Sequence[Array], weight: Array, step_s: float, noise: Noise
     ) -> list[Array]:
-        """Innovations of a run, weighted and without its gaps, free of the correlation that its
-        deviations make."""
+        """Innovations of a run with the correlation due to its random effects removed.
+
+        The innovations are weighted and exclude the gaps of the run.
+        """
         u, size = self._basis(run, weight, step_s, noise)
         share = (1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None]
 
@@ -68,8 +71,10 @@ class BetweenRuns:
     def log_determinant(
         self, weight: Sequence[Array], steps_s: Sequence[float], noise: Noise
     ) -> float:
-        """Of the runs' correlation: what their freedom to deviate costs in twice the log
-        likelihood."""
+        """Log determinant of the correlation of the runs due to the random effects.
+
+        It is the penalty, in twice the log likelihood, for the freedom of the runs to deviate.
+        """
         sizes = [
             self._basis(i, w, step, noise)[1]
             for i, (w, step) in enumerate(zip(weight, steps_s, strict=True))
@@ -79,7 +84,7 @@ class BetweenRuns:
     def predicted(
         self, run: int, residual: Array, weight: Array, step_s: float, noise: Noise
     ) -> Array:
-        """The best linear prediction of what a run's deviations add to its friction, N."""
+        """Best linear prediction of the random effects in a run's friction, N."""
         directions = self.directions[run]
         keep = weight > 0.0
         n = noise.innovations(directions * weight[:, None], step_s)[keep] / self.sigma_n

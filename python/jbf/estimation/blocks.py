@@ -1,4 +1,7 @@
-"""Blocks of samples that are longer than what is left remembers: what turns its sign as one."""
+"""Blocks of samples longer than the correlation time of the residual, for sign randomisation.
+
+All samples of a block change sign together.
+"""
 
 from __future__ import annotations
 
@@ -10,18 +13,20 @@ from jbf.estimation.samples import Samples
 Places = npt.NDArray[np.intp]
 
 SHORTEST_BLOCK_S = 1.0
-"""Blocks are no shorter, s: longer than any memory that passes for noise;"""
+"""Minimum length of a block, s: longer than any correlation time that is treated as noise."""
 MEMORIES = 4.0
-"""and so many times as long as what is left remembers."""
+"""Minimum length of a block in correlation times of the residual."""
 
 
 def blocks_of(samples: Samples, share: float) -> Places:
-    """Where blocks begin among the samples that have weight, all runs in a row; none spans two.
+    """Start indices of blocks among the samples with weight, with all runs concatenated.
+
+    No block spans two runs.
 
     Parameters
     ----------
     share
-        How many independent samples one is worth: the fewer, the longer they remember.
+        Number of independent samples per sample; smaller for a longer correlation time.
     """
     found, before = [], 0
     for weight, step in zip(samples.weight, samples.steps_s, strict=True):

@@ -1,12 +1,11 @@
-"""The errors of a fit by fitting again: the parametric bootstrap (Efron, Annals of Statistics 7,
-1979).
+"""Parametric bootstrap of a fit (Efron, Annals of Statistics 7, 1979).
 
-A fit takes its standard errors from the curvature of the likelihood: right where predictions are
-nearly straight in the parameters and the noise is the friction's own. Of a drive that rings neither
-holds: its likelihood has peak beside peak, and what the record of the motion gets wrong it
-amplifies. Here the fitted model records the same runs many times, with noise on friction, speed and
-angle as the records have it; each is fitted as the measured ones were, and the answers scatter as
-they do.
+A fit takes its standard errors from the curvature of the likelihood. They are correct where
+predictions are nearly linear in the parameters and the noise is that of the friction. Neither
+holds for a drive that rings: its likelihood has many adjacent maxima, and it amplifies errors of
+the recorded motion. Here the fitted model simulates the same runs many times, with the recorded
+noise on friction, speed and angle. Each simulated set is fitted as the measured runs were, and
+the scatter of the estimates gives the errors.
 """
 
 from __future__ import annotations
@@ -37,34 +36,35 @@ from jbf.threads import one_blas_thread
 Array = npt.NDArray[np.float64]
 
 LEAST_REPEATS = 19
-"""The middle 68 % of fewer answers are too few to tell a width."""
+"""Minimum number of repeats: with fewer, the central 68 % does not give a width."""
 MOST_REPEATS = 100_000
-"""More would take for ever, and tell nothing more."""
+"""Maximum number of repeats; more take too long and add no information."""
 
 
 @dataclass(frozen=True, repr=False)
 class Bootstrap(Result):
-    """Answers of repeated fits.
+    """Estimates of repeated fits to simulated records.
 
     Attributes
     ----------
     fit
-        The fit with each standard error half as wide as what holds the middle 68 % of the answers,
-        and no smaller than the fit's own; what is larger than its parameter leaves that held.
+        The fit with each standard error equal to half the width of the central 68 % of the
+        estimates, and at least the standard error of the fit itself. A parameter is held if its
+        error exceeds the limit of `determined`.
     values
-        Parameter name to the answers, shape (repeats,).
+        Parameter name to its estimates, shape (repeats,).
     """
 
     fit: Fit
     values: dict[str, Array]
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON: the fit, and every answer."""
+        """Return the fit and all estimates as a dictionary for JSON."""
         return {**self.fit.to_dict(), "answers": {n: v.tolist() for n, v in self.values.items()}}
 
 
 def check_repeats(repeats: int, name: str = "repeats") -> None:
-    """An InputError where so few tell no error."""
+    """Raise an InputError if the number of repeats is too small or too large."""
     if whole_number(repeats, name) < LEAST_REPEATS:
         raise InputError(
             problem=f"{name} {repeats} is too few to tell an error",
@@ -86,22 +86,23 @@ def bootstrap(
     start: Mapping[str, float] | None = None,
     progress: Callable[[str, int, int], None] | None = None,
 ) -> Bootstrap:
-    """Fit simulated records of the same runs, and take the errors from how the answers scatter.
+    """Fit simulated records of the same runs and take the errors from the scatter of the estimates.
 
     Takes `repeats` times as long as the fit.
 
     Parameters
     ----------
     fitted
-        What :func:`jbf.fit` made of `runs`.
+        Result of :func:`jbf.fit` for `runs`.
     repeats
-        How often. An error from 19 answers is known to a quarter, from 40 to a fifth.
+        Number of simulated sets. An error from 19 estimates is uncertain by a quarter, from 40 by a
+        fifth.
     seed
-        The same seed gives the same answers.
+        Seed of the random numbers; equal seeds give equal results.
     start
-        What :func:`jbf.fit` was started from, if it was.
+        Starting values that were given to :func:`jbf.fit`, if any.
     progress
-        Called with a message, fits done and fits in all.
+        Called with a message, the number of completed fits and the total number of fits.
 
     Raises
     ------
@@ -146,8 +147,10 @@ def bootstrap(
 
 
 def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
-    """Standard deviation of the innovations of each run, N; of all together where a run has few
-    samples."""
+    """Standard deviation of the innovations of each run, N.
+
+    For a run with fewer than 100 samples, that of all runs together.
+    """
     samples = campaign.samples
     whole = samples.innovations(fitted.residuals, fitted.noise)
     pieces = [e[counted] for e, counted in zip(whole, samples.counted, strict=True)]
@@ -158,24 +161,23 @@ def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
 def recorded_again(
     prepared: Prepared, friction_n: Array, noise: Noise, sigma_n: float, random: np.random.Generator
 ) -> Run:
-    """The run as its instruments would show it once more, were the prediction right."""
+    """Simulate a new recording of the run by its instruments, if the prediction were correct."""
     error = noise.coloured(random.normal(0.0, sigma_n, len(prepared.run)), prepared.step_s)
     return read_again(prepared, friction_n + error, random)
 
 
 def read_again(prepared: Prepared, friction_n: Array, random: np.random.Generator) -> Run:
-    """The run with this reading of its friction, and its motion as its instruments would show it
-    once more.
+    """Simulate a new recording of the motion by the run's instruments, with the given friction.
 
-    A column that is not believed tells nothing, and stays as it was: to be left aside again. So
-    does a force whose sign nobody knows: the motion read once more may know it, and a model that
-    took it for the other one had recorded a bad sample there.
+    A column that is disregarded carries no information and is kept unchanged, so that it is
+    disregarded again. A force whose sign is unknown is kept as well. The simulated motion may
+    determine the sign, and a model that assumed the other sign would have recorded a bad sample.
     """
     run, motion = prepared.run, prepared.motion
     n = len(run)
     read = prepared.friction_n
     friction = np.where(np.isfinite(read) & motion.sign_known, friction_n, read)
-    # The recorded errors of the speed with other signs: as large as they were, where they were.
+    # Recorded errors of the speed with random sign: equal in size and position.
     off = (run.velocity_m_s - motion.velocity_m_s) * random.choice([-1.0, 1.0], n)
     moving = ~motion.resting
     velocity = np.where(moving, motion.velocity_m_s + off, run.velocity_m_s)
@@ -195,8 +197,11 @@ def read_again(prepared: Prepared, friction_n: Array, random: np.random.Generato
 def _path_again(
     recorded: Array, true: Array, moving: npt.NDArray[np.bool_], random: np.random.Generator
 ) -> Array:
-    """A path read off an encoder whose lines lie elsewhere; off a scale without lines, with its
-    errors turned round."""
+    """Simulate a new reading of a path.
+
+    For an encoder, its lines are shifted by a random phase. For a scale without lines, the sign of
+    the recorded errors is random.
+    """
     off = recorded - true
     step = encoder_step(recorded[moving])
     if step > 0.0:
@@ -209,16 +214,16 @@ def _path_again(
 
 
 def with_error(value: ParameterValue, answers: Array, page: Parameter) -> ParameterValue:
-    """The value with the error that its answers show."""
+    """Return the parameter value with the standard error given by the scatter of its estimates."""
     if value.stderr is None:
         return value
     off = answers - value.value
     if page.period is not None:
         off -= page.period * np.round(off / page.period)
-    # Of the middle of the answers: those that ended on a far peak would make it any size.
+    # Central 68 %: estimates that ended on a distant maximum would dominate a standard deviation.
     low, high = np.quantile(off, [0.15866, 0.84134])
-    # No estimate is surer than the curvature has it (Cramer 1946, ch. 32), and few answers may lie
-    # closer together than they should.
+    # No error is smaller than that by the curvature (Cramer 1946, ch. 32); a small number of
+    # estimates may scatter too little by chance.
     error = max(float(0.5 * (high - low)), value.stderr)
     note = undetermined(page, value.value, error)
     return replace(value, stderr=None if note else error, note=note, held=note is not None)

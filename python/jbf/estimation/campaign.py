@@ -1,4 +1,4 @@
-"""A rig and its runs, made ready once for many fits."""
+"""A rig and its runs, prepared once for many fits."""
 
 from __future__ import annotations
 
@@ -35,23 +35,34 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEFT_OF_BIAS = 0.3
-"""Share of the bias of coarse steps that is left where it was taken off: the noise and the force by
-which it is known are estimates."""
+"""Fraction of the quantisation bias that remains after its correction.
+
+The noise and the force from which the bias is computed are estimates.
+"""
 LOADS_DIFFER = 0.05
-"""Loads that differ by less than this share are one load."""
+"""Loads that differ by less than this fraction count as one load."""
 TEMPERATURES_DIFFER_K = 2.0
-"""Temperatures that differ by less, K, are one: it changes an oil by a tenth, dry friction by a
-hundredth or two, and a thermometer sits where the friction is not."""
+"""Temperatures that differ by less than this, K, count as one.
+
+Such a difference changes an oil's viscosity by a tenth and dry friction by one or two hundredths.
+A thermometer is also not located at the friction contact.
+"""
 SMOOTHS_FORCE = frozenset((
     "sensor_hysteresis", "sensor_lag", "time_delay", "backlash", "drive_compliance",
 ))  # fmt: skip
-"""Effects that filter a force or a motion. They are not tried where errors of the acceleration are
-a large part of the residual: they would smooth these."""
+"""Effects that filter a force or a motion.
+
+They are not tried where errors of the acceleration are a large part of the residual, because they
+would smooth these errors.
+"""
 NEEDS_RECORDED_FORCE = SMOOTHS_FORCE | {"inertia_leak", "sensor_nonlinearity", "sensor_drift"}
-"""Effects that are not tried without a recorded force. Play and springs act between what is driven
-and what is read; of a coast-down they would explain how its acceleration was smoothed."""
+"""Effects that are not tried without a recorded force.
+
+Backlash and compliance act between the driven part and the sensor. In a coast-down they would
+explain how its acceleration was smoothed.
+"""
 MOTION_SHARE = 0.1
-"""Mean share of the motion's errors in the variance that is a large part."""
+"""Mean fraction of the variance above which the errors of the motion count as a large part."""
 NEEDS_TIME = frozenset((
     "inertia_leak", "sensor_hysteresis", "sensor_lag", "time_delay", "sensor_drift", "backlash",
     "drive_compliance", "thermal_thinning", "film_memory", "wear_in", "warm_up", "dwell_stiction",
@@ -59,24 +70,24 @@ NEEDS_TIME = frozenset((
 ))  # fmt: skip
 """Effects that are not tried on steady states."""
 NOISE_SPAN = 3.29
-"""Standard deviations between the quantiles of white noise at 5 % and at 95 %."""
+"""Interval between the 5 % and 95 % quantiles of white noise, in standard deviations."""
 
 
 @dataclass(frozen=True, eq=False)
 class Campaign:
-    """A rig and its runs, ready.
+    """A rig and its prepared runs.
 
     Attributes
     ----------
     prepared
-        The runs.
+        The prepared runs.
     samples
-        The samples at which the runs tell the sign of the friction.
+        The samples at which the runs determine the sign of the friction.
     most_noise_n
-        The most that the noise on the friction can be, N, by what comes again in the records; None
-        where nothing does.
+        Upper limit of the noise on the friction, N, from parts of the records that repeat; None if
+        no part repeats.
     work
-        What fits to it may cost yet; shared by every campaign that is made of this one.
+        Remaining budget for fits, shared by all campaigns derived from this one.
     """
 
     rig: Rig
@@ -88,14 +99,14 @@ class Campaign:
 
     @classmethod
     def prepare(cls, rig: Rig, runs: Sequence[Run]) -> Campaign:
-        """Estimate each run's motion once; a run that was given twice is one run, and one in which
-        nothing moves is left out where another moves.
+        """Prepare each run, including the estimate of its motion.
+
+        A duplicate of a run is dropped. A run without motion is left out if another run has motion.
 
         Raises
         ------
         InputError
-            No run at all, a run without friction, none in which anything moves, or a force that is
-            zero throughout.
+            No run, a run without friction, no run with motion, or a force that is zero throughout.
         """
         runs = list_of_runs(runs)
         if not runs:
@@ -120,28 +131,28 @@ class Campaign:
 
     @property
     def named(self) -> str:
-        """What a message calls it: the file of its first run."""
+        """Name of the campaign in messages: the file of its first run."""
         first = self.prepared[0].run
         return str(first.path or first.name)
 
     @property
     def motions(self) -> list[Driven]:
-        """The core's copies of the motions."""
+        """Motions of the runs as objects of the compiled core."""
         return [p.core for p in self.prepared]
 
     @property
     def has_angle(self) -> bool:
-        """True where every run has the shaft's angle."""
+        """Whether every run has the angle of the shaft."""
         return all(has_angle(self.rig, p.run) for p in self.prepared)
 
     @property
     def steady(self) -> bool:
-        """Whether a run holds steady states in the place of a course in time."""
+        """Whether a run holds steady states instead of a time series."""
         return any(p.run.steady for p in self.prepared)
 
     @property
     def force_has_clock(self) -> bool:
-        """Whether the force was read in time: not one of steady states, nor of a deceleration."""
+        """Whether the force was recorded over time; false for steady states and decelerations."""
         return not self.steady and coasting(self.rig) is None
 
     @property
@@ -152,12 +163,12 @@ class Campaign:
 
     @property
     def motion_uncertain(self) -> bool:
-        """Whether the motion's errors are a large part of the variance."""
+        """Whether the errors of the motion are a large part of the variance."""
         return self.motion_share > MOTION_SHARE
 
     @property
     def has_loads(self) -> bool:
-        """True where the loads differ, within a run or from run to run."""
+        """Whether the load varies, within a run or between runs."""
         usual = self.rig.load.normal_n if self.rig.load is not None else None
         loads = [recorded_load(self.rig, p.run) for p in self.prepared]
         means = [usual if load is None else float(np.median(load)) for load in loads]
@@ -168,8 +179,7 @@ class Campaign:
 
     @cached_property
     def temperature_range_c(self) -> tuple[float, float] | None:
-        """The lowest and the highest of the recorded temperatures, C; None where not every run has
-        one."""
+        """Lowest and highest recorded temperature, C; None if a run has no temperature."""
         every = [recorded_temperature(p.run) for p in self.prepared]
         known = [celsius for celsius in every if celsius is not None]
         if not known or len(known) < len(every):
@@ -178,14 +188,14 @@ class Campaign:
 
     @property
     def temperatures_k(self) -> float | None:
-        """How far they go, K, within runs and from run to run."""
+        """Range of the recorded temperatures over all runs, K; None if a run has no temperature."""
         if self.temperature_range_c is None:
             return None
         low, high = self.temperature_range_c
         return high - low
 
     def lacking(self, effect: Effect) -> str | None:
-        """What these runs do not hold of what an effect needs, in words; None where nothing."""
+        """Why these runs cannot show an effect, as text; None if they meet all its requirements."""
         needs = effect.needs
         if coasting(self.rig) is not None and effect.name in NEEDS_RECORDED_FORCE:
             return "no force was recorded"
@@ -217,24 +227,24 @@ class Campaign:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What the recording did, run by run."""
+        """Recording artefacts of all runs, run by run."""
         return (*(f for p in self.prepared for f in p.examined.findings), *self.more_findings)
 
     def with_findings(self, findings: Sequence[Finding]) -> Campaign:
-        """The campaign with findings that took a model to see."""
+        """Return the campaign with additional findings that required a model."""
         return replace(self, more_findings=(*self.more_findings, *findings))
 
     @property
     def step_n(self) -> float:
-        """The largest step of a converter that is as large as the noise, N; zero without one."""
+        """Largest quantisation step that is comparable with the noise, N; zero if there is none."""
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
 
     def steps_rms_n(self, residual_rms_n: float) -> float:
-        """What a converter's steps make of mean readings and no model takes off, RMS in N; zero
-        without one.
+        """RMS of the quantisation error of mean readings that no model removes, N.
 
-        Noise smooths it; how large that is the readings say. A residual of this RMS holds what
-        the model lacks, too, and is no less than the noise.
+        It is zero without a quantisation step. The noise smooths the quantisation error and is
+        estimated from the readings. The given residual RMS also contains lack of fit, and is
+        therefore an upper limit of the noise.
         """
         if self.step_n <= 0.0:
             return 0.0
@@ -247,11 +257,11 @@ class Campaign:
         return curve_rms_n(self.step_n, min(noise_n, residual_rms_n))
 
     def without(self, masks: Sequence[Mask]) -> Campaign:
-        """The campaign with more samples set aside, one mask a run."""
+        """Return the campaign with additional samples excluded, one mask a run."""
         return replace(self, samples=self.samples.within([~m for m in masks]))
 
     def only(self, which: Sequence[int]) -> Campaign:
-        """The campaign of some of the runs: the instruments, and so the noise, are the same."""
+        """Return the campaign of a selection of runs, with the same instruments and noise."""
         return replace(
             self,
             prepared=tuple(self.prepared[i] for i in which),
@@ -260,17 +270,17 @@ class Campaign:
 
 
 def _span(load: Array) -> float:
-    """How far a load goes within a run, N, beyond what its own noise does."""
+    """Range of a load within a run, N, with the contribution of its noise removed."""
     low, high = np.quantile(steady_load(load), [0.05, 0.95])
     noise = NOISE_SPAN * noise_of(load)
     return float(np.sqrt(max(float(high - low) ** 2 - noise**2, 0.0)))
 
 
 def _each(rig: Rig, runs: Mapping[int, Run]) -> tuple[dict[int, Prepared], list[Finding]]:
-    """The runs that move, and a finding on each of the others.
+    """Prepare all runs; return those with motion, and a finding for each of the others.
 
-    Each is looked at anew where the others tell of their logger: at what rate it read the force, or
-    other errors of the motion's readings.
+    A run is prepared again where the other runs give information on the logger: its sampling
+    rate of the force, or other starting values for the errors of the motion's readings.
     """
     found: dict[int, Prepared] = {}
     refused: list[NoMotion] = []
@@ -296,7 +306,7 @@ def _each(rig: Rig, runs: Mapping[int, Run]) -> tuple[dict[int, Prepared], list[
 
 
 def _without_motion(run: Run, error: NoMotion) -> Finding:
-    """A finding on a run that is left out."""
+    """Finding for a run that is left out because nothing moves in it."""
     words = f"{error.problem}: the run is left out"
     return Finding(
         "no_motion", "velocity_m_s", run.name, float(len(run)), "samples", "left out", words

@@ -1,8 +1,9 @@
-"""What a converter's steps make of a mean reading.
+"""Quantisation bias of a mean reading.
 
-Of a force f with Gaussian noise of s the mean of readings in steps q is off by
-`(q / pi) exp(-2 (pi s / q)^2) sin(2 pi f / q)`, its first and largest harmonic (Widrow 1956): a
-curve of the force that no sample averages out, and that comes again with the motion.
+The mean of readings with step q of a force f with Gaussian noise of standard deviation s is
+biased. The first and largest harmonic of the bias is
+`(q / pi) exp(-2 (pi s / q)^2) sin(2 pi f / q)` (Widrow 1956). This function of the force is not
+reduced by averaging, and repeats with the motion.
 """
 
 from __future__ import annotations
@@ -15,33 +16,33 @@ from scipy import optimize
 
 Array = npt.NDArray[np.float64]
 MOST_NOISE = 3.0
-"""Noise of so many steps hides them: more is not asked for."""
+"""Largest noise that is considered, in steps; above it the quantisation is not visible."""
 
 
 HARMONICS = 3
-"""Harmonics of the bias that are counted: those beyond need noise below a tenth of a step."""
+"""Number of harmonics of the bias; higher ones matter only for noise below a tenth of a step."""
 
 
 def origin_n(step_n: float, readings_n: Array) -> float:
-    """How far the readings lie from whole multiples of their step, N."""
+    """Offset of the readings from whole multiples of their step, N."""
     turn = 2.0 * np.pi / step_n
     return float(np.angle(np.nanmean(np.exp(1j * turn * readings_n))) / turn)
 
 
 def bias_n(step_n: float, noise_n: float, force_n: Array) -> Array:
-    """By how much the mean reading is off, shape (n,), N.
+    """Quantisation bias of the mean reading, shape (n,), N.
 
-    A converter that rounds down is one that rounds to the nearest, with a zero that is off by half
-    a step: of the mean reading that a model with that zero expects, both are off alike.
+    A converter that rounds down equals one that rounds to the nearest with a zero offset of half a
+    step. The bias is the same for both, relative to the mean reading of a model with that zero.
 
     Parameters
     ----------
     step_n
-        The converter's step, N.
+        Quantisation step of the converter, N.
     noise_n
-        Standard deviation of the noise before it, N.
+        Standard deviation of the noise before the converter, N.
     force_n
-        The force above a reading of the converter, shape (n,), N.
+        Difference between the force and a reading of the converter, shape (n,), N.
     """
     turn, ratio = 2.0 * np.pi * force_n / step_n, np.pi * noise_n / step_n
     waves = (
@@ -52,12 +53,12 @@ def bias_n(step_n: float, noise_n: float, force_n: Array) -> Array:
 
 
 def curve_rms_n(step_n: float, noise_n: float) -> float:
-    """RMS of that curve, N.
+    """RMS of the quantisation bias over the force, N.
 
     Parameters
     ----------
     step_n
-        The converter's step, N.
+        Quantisation step of the converter, N.
     noise_n
         Standard deviation of the noise on the force before it is converted, N.
     """
@@ -68,16 +69,16 @@ def curve_rms_n(step_n: float, noise_n: float) -> float:
 def noise_before(step_n: float, moves_n: Array) -> float:
     """Standard deviation of the noise before the converter, N.
 
-    By how often a reading is the one before it: two values a Gaussian distance d apart, anywhere
-    within the steps, give one reading with the probability `E max(0, 1 - |d| / q)`. Third
-    differences would take the steps themselves for noise.
+    It follows from the fraction of readings that equal the preceding one. Two values a Gaussian
+    distance d apart, at a random position within the steps, give the same reading with probability
+    `E max(0, 1 - |d| / q)`. Third differences would count the quantisation steps as noise.
 
     Parameters
     ----------
     step_n
-        The converter's step q, N.
+        Quantisation step q of the converter, N.
     moves_n
-        From each reading to the next, of a force that moves slowly, shape (n,), N.
+        Differences between successive readings of a slowly varying force, shape (n,), N.
     """
     if not len(moves_n):
         return 0.0
@@ -94,7 +95,7 @@ def noise_before(step_n: float, moves_n: Array) -> float:
 
 
 def _same(noise: float) -> float:
-    """Probability that two readings are one, with noise in steps."""
+    """Probability that two successive readings are equal; the noise is given in steps."""
     apart = math.sqrt(2.0) * noise
     spread = apart * math.sqrt(2.0 / math.pi) * -math.expm1(-0.5 / apart**2)
     return math.erf(1.0 / (apart * math.sqrt(2.0))) - spread

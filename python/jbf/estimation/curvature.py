@@ -1,8 +1,8 @@
-"""Does the curvature of the likelihood at a fit tell how sure its parameters are?
+"""Check of whether the curvature of the likelihood at a fit gives valid standard errors.
 
-A standard error says that the log likelihood falls by one half, one standard error away, all else
-following: so it does where it is a parabola. Looked for there, it may not: where a drive rings,
-peak stands beside peak, and the width of one of them is no error.
+One standard error away from the estimate, with the other parameters following, the log likelihood
+falls by one half if it is a parabola. The check evaluates it there. Where a drive rings, the
+likelihood has many adjacent maxima, and the width of one of them is not a standard error.
 """
 
 from __future__ import annotations
@@ -22,27 +22,27 @@ from jbf.models.parameter_value import ParameterValue
 Array = npt.NDArray[np.float64]
 
 BENT = 0.3
-"""How far the rise at one standard error may be off one."""
+"""Permitted deviation from one of the rise of the deviance at one standard error."""
 
 
 def doubtful_errors(
     problem: Problem, solution: Solution, parameters: Mapping[str, ParameterValue]
 ) -> tuple[str, ...]:
-    """Names of the parameters whose standard error is no error; of held ones nothing is said."""
+    """Names of the parameters, other than held ones, whose standard error is not valid."""
     known = spread(problem, solution)
     x = problem.encode(solution.values)
     sd = np.where(known.separate, known.sd, np.nan)
     for k, i in enumerate(problem.open):
-        # What stands at a bound does not move along with another.
+        # A parameter at a bound does not follow another parameter.
         page = problem.parameters[problem.names[i]]
         if bound_note(page, float(solution.values[i]), known.error(k)) is not None:
             sd[k] = np.nan
     low, high = problem.encode(problem.lower), problem.encode(problem.upper)
     found = []
-    # Catalogued as having many: one standard error away may still be the same peak.
+    # Effects catalogued with many maxima: one standard error away may still be the same maximum.
     many = {effect for effect in problem.effects if find_effect(effect).peaks}
     for k, i in enumerate(problem.open):
-        # Where the likelihood is highest with this parameter one standard error off.
+        # Position of the maximum of the likelihood with this parameter one standard error away.
         way = known.correlation[:, k] * sd
         if parameters[problem.names[i]].held:
             continue

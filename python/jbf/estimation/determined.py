@@ -1,7 +1,7 @@
-"""Whether runs determined a parameter: the one rule, in numbers and words.
+"""The rule that decides whether the runs determine a parameter, with its notes.
 
-What they did not determine is held. Its value is what predicts, and no answer to how large the
-parameter is; the note says why.
+A parameter that is not identifiable is held. Its value is used for prediction only, and is not an
+estimate of the parameter; the note states the reason.
 """
 
 from __future__ import annotations
@@ -15,32 +15,34 @@ from jbf.estimation.jumps import active_effects
 from jbf.models.catalogue import Parameter
 
 HELD = "held fixed"
-"""The note of a parameter that was not fitted."""
+"""Note of a parameter that was not fitted."""
 STATED = "stated, not fitted: given, or taken from the runs"
-"""The note of a number that no fit finds."""
+"""Note of a number that is not a fitted parameter."""
 NEVER_MOVED = "never moved: these runs do not depend on it"
 NOT_SEPARATE = "not separately known: another parameter does the same in these runs"
 NO_EFFECT = "at its null: no effect"
 AT_BOUND = 1e-6
-"""A value is at its bound where it is off it by less than this share of the width in the
-logarithm, or of its own size or error."""
+"""Tolerance within which a value counts as at its bound.
+
+It is a fraction of the logarithmic distance between the bounds, or of the value or its error.
+"""
 ONE_SIDED = 2.0
-"""So many standard errors above its value a scale may still be."""
+"""Standard errors added to the value of a scale for its upper limit."""
 
 
 def undetermined(
     page: Parameter, value: float, error: float, *, moved: bool = True, separate: bool = True
 ) -> str | None:
-    """Why the runs did not determine a fitted parameter; None where they did.
+    """Why the runs did not determine a fitted parameter; None if they did.
 
     Parameters
     ----------
     value, error
-        In the parameter's unit; the error is nan where there is none.
+        Value and standard error in the parameter's unit; the error is nan if it is unknown.
     moved
-        Whether anything in these runs depends on it.
+        Whether anything in these runs depends on the parameter.
     separate
-        Whether no other parameter does the same.
+        Whether the parameter can be distinguished from all other parameters.
     """
     if not moved:
         return NEVER_MOVED
@@ -51,7 +53,7 @@ def undetermined(
 
 
 def bound_note(page: Parameter, value: float, error: float) -> str | None:
-    """That a value stands at one of its bounds, if it does."""
+    """Return a note if a value is at one of its bounds, otherwise None."""
     for side, bound, wish in (("lower", page.lower, "less"), ("upper", page.upper, "more")):
         if _near(page, value, bound, error):
             return f"at its {side} bound {bound:g}: the runs ask for {wish}"
@@ -59,8 +61,11 @@ def bound_note(page: Parameter, value: float, error: float) -> str | None:
 
 
 def _near(page: Parameter, value: float, bound: float, error: float) -> bool:
-    """A linear parameter is judged by its own size and error, not by the width between its bounds,
-    which is often many times what any machine has."""
+    """Whether a value is at a bound.
+
+    A linear parameter is compared with its own size and error. The distance between its bounds is
+    often many times the value of any machine.
+    """
     if page.log:
         off = abs(np.log(value) - np.log(bound))
         return bool(off < AT_BOUND * (np.log(page.upper) - np.log(page.lower)))
@@ -69,13 +74,16 @@ def _near(page: Parameter, value: float, bound: float, error: float) -> bool:
 
 
 def _larger_than_itself(page: Parameter, value: float, error: float) -> str | None:
-    """Of a scale, which has no sign to lose: an error above its value leaves nothing of it. A
-    signed parameter may well be nought, give or take."""
+    """Return a note if the error of a scale exceeds its value, otherwise None.
+
+    A scale has no sign, so such an error leaves its size undetermined. A signed parameter may
+    well be zero within its error.
+    """
     if not (page.log or page.lower == 0.0) or not error > abs(value):
         return None
     said = f"its error, {error:.2g}, is larger than itself: these runs "
     most = value + ONE_SIDED * error
-    # Of a logarithm so far out the error is no interval on either side.
+    # For a logarithmic parameter with such an error, no interval holds on either side.
     if page.log or most >= page.upper:
         return f"{said}do not tell its size"
     return f"{said}tell only that it is below {most:.2g}"
@@ -88,12 +96,12 @@ def idle_effects(
     errors: Mapping[str, float] | None = None,
     fixed: Collection[str] = (),
 ) -> tuple[str, ...]:
-    """The effects that a fit left at their null, where they change nothing.
+    """Effects that a fit left at their null, where they change nothing.
 
     Parameters
     ----------
     pages, values
-        By the parameters' full names, in one order.
+        Catalogue entries by full parameter name, and values in the same order.
     errors
         Standard errors by full name, where they are known.
     fixed
@@ -109,10 +117,10 @@ def idle_effects(
 
 
 def at_null(page: Parameter, value: float, error: float = math.nan, *, fixed: bool = False) -> bool:
-    """Whether a value stands at its parameter's null.
+    """Whether a value is at its parameter's null.
 
-    A fit comes to a null that is a bound, or to the bound next to an infinite one, and stops there.
-    A null between the bounds stops no fit: what it finds there it found, with an error.
+    A fit stops at a null that is a bound, or at the bound next to an infinite null. A null between
+    the bounds does not stop a fit: an estimate there is an ordinary estimate with an error.
     """
     if page.null is None or fixed:
         return value == page.null

@@ -1,9 +1,10 @@
 """Residuals that contain errors of the estimated motion.
 
-A residual is the noise of the reading plus the sensitivity of the model to the motion times the
-error of the motion. The errors of the motion are correlated in time, and their posterior is known:
-generalised least squares with this covariance gives unbiased parameters (the errors are of
-Berkson's kind, since the motion is a posterior mean) and standard errors that contain them.
+A residual is the noise of the reading plus the error of the motion times the sensitivity of the
+model to it. The errors of the motion are correlated in time, and their posterior is known.
+Generalised least squares with this covariance gives unbiased parameters, and standard errors that
+contain the errors of the motion. The errors are of Berkson type, since the motion is a posterior
+mean.
 
 References
 ----------
@@ -27,22 +28,23 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ErrorsInMotion:
-    """Errors of the motion in the residuals of some runs.
+    """Errors of the motion in the residuals of a set of runs.
 
     Attributes
     ----------
     errors
         Errors of the motion of each run; None where they are not known.
     sensitivity
-        Derivatives of the prediction by position, velocity and acceleration, one (n, 3) array a
-        run.
+        Derivatives of the prediction with respect to position, velocity and acceleration, one
+        (n, 3) array a run.
     noise
-        Standard deviation of the force's noise, in the unit of the residuals.
+        Standard deviation of the noise of the force, in the unit of the residuals.
     scale
         Standard errors of the motion, relative to those in `errors`.
     by_delay
-        Derivative of the prediction by a delay of the force that all runs share, one (n,) array a
-        run; None where the forces are not late. What a delay explains is projected out.
+        Derivative of the prediction with respect to a time delay of the force that all runs share,
+        one (n,) array a run; None if the forces have no delay. The part of the residuals that a
+        delay explains is projected out.
     """
 
     errors: tuple[MotionErrors | None, ...]
@@ -52,7 +54,7 @@ class ErrorsInMotion:
     by_delay: tuple[Array, ...] | None = None
 
     def only(self, which: Sequence[int]) -> ErrorsInMotion:
-        """The errors of some of the runs."""
+        """Return the errors of a selection of runs."""
         return replace(
             self,
             errors=tuple(self.errors[i] for i in which),
@@ -67,12 +69,14 @@ class ErrorsInMotion:
         weights: Sequence[Array],
         which: Sequence[int] | None = None,
     ) -> tuple[Array, Array]:
-        """Independent residuals of standard deviation `noise` and their derivatives, of some runs.
+        """Independent residuals of standard deviation `noise` and their derivatives.
 
         Parameters
         ----------
         weights
             Weight of each sample, 0 to 1; samples without weight are left out.
+        which
+            Indices of the runs to use; None for all runs.
         """
         white = []
         for i in range(len(residuals)) if which is None else which:
@@ -89,8 +93,10 @@ class ErrorsInMotion:
         return whole[:, 0], whole[:, 1:]
 
     def innovations(self, residuals: Sequence[Array], weights: Sequence[Array]) -> list[Array]:
-        """Independent residuals of standard deviation `noise`, one array a run; zero at samples
-        without weight."""
+        """Independent residuals of standard deviation `noise`, one array a run.
+
+        They are zero at samples without weight.
+        """
         found = []
         for run, (residual, weight) in enumerate(zip(residuals, weights, strict=True)):
             white, _ = self._whitened(run, residual[:, None], weight)
@@ -98,7 +104,7 @@ class ErrorsInMotion:
         return found
 
     def deviance(self, residuals: Sequence[Array], weights: Sequence[Array]) -> float:
-        """Minus twice the log likelihood of the residuals, up to a constant."""
+        """Minus twice the log likelihood of the residuals, up to an additive constant."""
         total = 0.0
         for run, (residual, weight) in enumerate(zip(residuals, weights, strict=True)):
             white, log_determinant = self._whitened(run, residual[:, None], weight)
@@ -106,7 +112,7 @@ class ErrorsInMotion:
         return total
 
     def variance_ratio(self, run: int) -> Array:
-        """Ratio of the variance by the motion's errors to the noise's, shape (n,)."""
+        """Ratio of the variance due to the motion's errors to that of the noise, shape (n,)."""
         errors, sensitivity = self.errors[run], self.sensitivity[run]
         if errors is None:
             return np.zeros(len(sensitivity))

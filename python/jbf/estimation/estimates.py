@@ -1,4 +1,4 @@
-"""Fitted parameters, found by name: what every fit shares."""
+"""Access to fitted parameters by name, common to all results of a fit."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from jbf.results import Result
 
 
 class Estimates(Result):
-    """A result that holds parameters with errors.
+    """A result that holds parameters with standard errors.
 
-    ``fit["presliding.sigma"]`` finds one by its full or its short name, and names the nearest
-    where there is none.
+    ``fit["presliding.sigma"]`` returns a parameter by its full or its short name. The error for an
+    unknown name lists the nearest names.
     """
 
     parameters: dict[str, ParameterValue]
 
     @property
     def values(self) -> dict[str, float]:
-        """Name to value."""
+        """Values by parameter name."""
         return {name: p.value for name, p in self.parameters.items()}
 
     @property
     def stderr(self) -> dict[str, float | None]:
-        """Name to standard error, None where there is none."""
+        """Standard errors by parameter name; None where no error is known."""
         return {name: p.stderr for name, p in self.parameters.items()}
 
     def __getitem__(self, name: str) -> ParameterValue:
@@ -43,10 +43,10 @@ class Estimates(Result):
             return False
 
     def facts(self) -> Mapping[str, Any]:
-        """What `to_dict` says beside the parameters."""
+        """Entries of `to_dict` in addition to the parameters."""
         return {}
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return the result as a dictionary for JSON."""
         named = {name: p.to_dict() for name, p in self.parameters.items()}
         return {**self.facts(), "parameters": named}

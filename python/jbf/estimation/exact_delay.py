@@ -1,11 +1,11 @@
-"""The delay of a record, told by its jumps.
+"""Exact time delay of a record, determined by its jumps.
 
-A search draws the late force in lines between samples: that has a slope, so it finds its way, and
-samples beside a jump count for little. They tell the delay best, though: whether a sample was read
-before a reversal or after it shows in every one of them. So once the search has ended the chain is
-read so long before each sample, and the likelihood of the delay is scanned: a sample close to a
-reversal is a mixture of both sides of the jump, the others follow the delay along the valley that
-the search found.
+The search interpolates the delayed force linearly between samples. The likelihood then has a
+slope that a search can follow, but samples next to a jump have little weight. These samples
+determine the delay best: each shows whether it was read before or after a reversal. After the
+search, the model is therefore evaluated one delay before each sample, and the likelihood of the
+delay is scanned. A sample close to a reversal is a mixture of both sides of the jump. The other
+samples follow the delay along the valley of the objective that the search found.
 """
 
 from __future__ import annotations
@@ -24,31 +24,31 @@ from jbf.models.late_reading import TAU, LateChain
 Array = npt.NDArray[np.float64]
 
 LEAST_STEPS = 0.05
-"""A delay of less than so many steps moves no jump from one sample to another."""
+"""Smallest delay, in sampling intervals, that moves a jump from one sample to another."""
 REACH = 5.0
-"""So many standard errors of the search are scanned to either side, and"""
+"""Range of the scan to either side, in standard errors of the search."""
 LEAST_REACH_STEPS = 0.2
-"""at least so many steps."""
+"""Minimum range of the scan to either side, in sampling intervals."""
 COARSE, FINE = 31, 17
-"""Delays looked at in all of this, and once more round the likeliest of them."""
+"""Number of delays in the first scan, and in a second one around the most likely delay."""
 CLIPPED = 5.0
-"""A residual counts no more than at so many standard deviations."""
+"""Limit of the contribution of a residual, in standard deviations."""
 BLURRED = 3.5
-"""A jump is in doubt within so many standard errors of its instant."""
+"""Distance from a jump within which its side is uncertain, in standard errors of its time."""
 
 
 @dataclass(frozen=True, eq=False)
 class ExactDelay:
-    """The delay that the jumps tell.
+    """Time delay determined by the jumps.
 
     Attributes
     ----------
     values
-        All parameter values, the others moved along with the delay.
+        All parameter values; the others follow the delay.
     sd_s
-        Standard deviation of the delay's likelihood, s: no curvature tells it.
+        Standard deviation of the likelihood of the delay, s, which no curvature gives.
     residuals
-        Record minus what is expected there, N, one array a run.
+        Record minus expected reading at these values, N, one array a run.
     """
 
     values: Array
@@ -59,7 +59,7 @@ class ExactDelay:
 def exact_delay(
     problem: Problem, solution: Solution, spread: Spread, values: Array
 ) -> ExactDelay | None:
-    """The delay by the likelihood of all samples; None where the model has none that is open."""
+    """Estimate the delay by the likelihood of all samples; None if the model has no free delay."""
     if TAU not in problem.names or problem.names.index(TAU) not in problem.open:
         return None
     which = problem.names.index(TAU)
@@ -91,14 +91,14 @@ def exact_delay(
 
 @dataclass(frozen=True, eq=False)
 class _Scan:
-    """The likelihood of a delay, the other parameters following it."""
+    """Likelihood of a delay with the other parameters following it."""
 
     problem: Problem
     chain: LateChain
     friction_n: list[Array]
     values: Array
     way: Array
-    """Change of the search's variables by the delay, 1/s."""
+    """Derivative of the search variables with respect to the delay, 1/s."""
     noise_n: float
     share: float
 
@@ -111,12 +111,12 @@ class _Scan:
         with np.errstate(invalid="ignore", divide="ignore"):
             way = spread.correlation[:, k] * spread.sd / spread.sd[k] / spread.scale[k]
         left = samples.without_deviations(solution.residuals, solution.noise)
-        # A zero or a gain of the run's own is no delay.
+        # A run's own zero or gain must not be taken for a delay.
         friction = [
             p.friction_n - (r - own)
             for p, r, own in zip(problem.campaign.prepared, solution.residuals, left, strict=True)
         ]
-        # Of coloured residuals a sample tells less.
+        # A sample of coloured residuals carries less information.
         counted = [r * c for r, c in zip(left, samples.counted, strict=True)]
         share = independent_share(counted, samples.steps_s)
         noise_n = max(samples.rms(left), 1e-300)
@@ -124,7 +124,7 @@ class _Scan:
         return cls(problem, chain, friction, values, way, noise_n, share)
 
     def along(self, delay_s: float) -> Array:
-        """The values that the parameters take with a delay."""
+        """Values of all parameters for a given delay."""
         late = delay_s - float(self.values[self.chain.tau])
         moved = self.problem.encode(self.values) + self.way * late
         there = self.problem.decode(moved, self.values)
@@ -150,7 +150,7 @@ class _Scan:
         return total
 
     def residuals(self, values: Array, sd_s: float) -> list[Array]:
-        """Record minus what is expected, N."""
+        """Record minus expected reading, N."""
         left = []
         for p in self.problem.campaign.prepared:
             reading = self.chain.read(values, p.run, *p.motion_as_read, sd_s)

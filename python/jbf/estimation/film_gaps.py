@@ -1,9 +1,9 @@
-"""How long a record remembers what nobody recorded: the motion within a gap.
+"""Duration of the film's memory of unrecorded motion in a gap.
 
-A model steps over missing rows in a straight line. Where the shaft turned round or set out
-meanwhile the film behind the gap is another, until it has forgotten: runs of the model that keep
-the speed from before the gap until its end, or have the speed behind it from its beginning, differ
-by what is still remembered.
+The model interpolates linearly over missing rows. If the shaft reversed or started in the gap, the
+film state after it is wrong until the film has forgotten. Two simulations bound this duration: one
+keeps the speed from before the gap until its end; the other has the speed after the gap from its
+beginning. They differ as long as the film remembers.
 """
 
 from __future__ import annotations
@@ -23,20 +23,23 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 GAP = 4.5
-"""A step so many times the usual one hides more of a motion than a line can follow."""
+"""Ratio to the usual sampling interval above which a step is a gap.
+
+A longer step hides more of a motion than a straight line can follow.
+"""
 EDGE = 1e-3
-"""Share of a gap in which an imagined motion changes its speed."""
+"""Fraction of a gap in which a simulated motion changes its speed."""
 
 
 def behind_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
-    """True where a run still remembers a motion that was not recorded, one mask a run.
+    """Mask of the samples at which a run still remembers unrecorded motion, one a run.
 
     Parameters
     ----------
     values
         Parameters of a model that fits roughly.
     least_n
-        A difference of the friction that does not matter, N.
+        Difference of the friction that is negligible, N.
     """
     prepared = problem.campaign.prepared
     found = [np.zeros(len(p.run), dtype=bool) for p in prepared]
@@ -53,12 +56,12 @@ def behind_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
 
 
 def _gaps(p: Prepared) -> npt.NDArray[np.intp]:
-    """The last samples before gaps."""
+    """Indices of the last samples before gaps."""
     return np.flatnonzero(np.diff(p.run.time_s) > GAP * p.step_s)
 
 
 def _through(p: Prepared, *, late: bool) -> Driven:
-    """The motion of a run that changes its speed at the end of each gap (`late`), or its begin."""
+    """Motion of a run whose speed changes at the end of each gap (`late`) or at its beginning."""
     time, gaps = p.run.time_s, _gaps(p)
     length = time[gaps + 1] - time[gaps]
     new = time[gaps + 1] - EDGE * length if late else time[gaps] + EDGE * length

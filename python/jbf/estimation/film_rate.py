@@ -1,9 +1,8 @@
-"""Whether a film can be followed along the records, or answers so fast that they never see it.
+"""Check of whether a film is slow enough to be followed at the sampling rate of the records.
 
-A film that has come to rest long before the next sample is a curve of friction over speed, and
-nothing in the records tells how fast it is. To follow it all the same takes hundreds of steps from
-sample to sample, in every one of the thousands of predictions of a search. Times in milliseconds
-look like that.
+A film that reaches equilibrium long before the next sample is a function of speed, and the records
+do not determine its rate. Integrating it takes hundreds of steps between samples, in each of the
+thousands of predictions of a search. Times given in milliseconds have this symptom.
 """
 
 from __future__ import annotations
@@ -21,21 +20,23 @@ from jbf.models.catalogue import find_law
 from jbf.models.vocabulary import Clock
 
 MOST_STEPS = 200.0
-"""From sample to sample, as a mean over the campaign. By then a film has forgotten what the sample
-before left of it two hundred times over."""
+"""Maximum mean number of steps per sampling interval over the campaign.
+
+At this number, the film has forgotten its state at the previous sample two hundred times over.
+"""
 ANY_STEPS = 1e5
-"""So many in all are taken whatever the records: a prediction has them in some milliseconds."""
+"""Total number of steps that is accepted for any record; a prediction takes some milliseconds."""
 
 
 def check_film(
     campaign: Campaign, law: str, clock: Clock, seed: Mapping[str, float] | None = None
 ) -> None:
-    """An InputError where a law's film is far too fast for these records, wherever a search begins.
+    """Raise an InputError if the film of a law is too fast for these records at every start.
 
     Parameters
     ----------
     seed
-        Values by name that the search starts from.
+        Starting values by name.
     """
     if not find_law(law).has_film:
         return

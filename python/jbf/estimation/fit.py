@@ -1,4 +1,4 @@
-"""Fit a law and named effects to runs, with exact derivatives from the core."""
+"""Fit of a law and named effects to runs, with exact derivatives from the compiled core."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, repr=False)
 class Fit(Estimates):
-    """A fitted model and what the fit says of itself.
+    """A fitted model with its statistics.
 
     Attributes
     ----------
     model
         The fitted model.
     parameters
-        Dotted name to value with standard error; what the runs did not determine is held, and its
-        note says why.
+        Dotted name to value with standard error. A parameter that is not identifiable is held, and
+        its note states the reason.
     correlations
         Shape (k, k), in the order of the `parameters` that are not held.
     rms_n
@@ -59,15 +59,15 @@ class Fit(Estimates):
     residuals
         Record minus prediction, N, one array a run.
     doubtful
-        Names of the parameters whose standard error is no error, because the likelihood is no
-        parabola so far out: :func:`jbf.bootstrap` finds theirs.
+        Names of the parameters whose standard error is not valid, because the likelihood is not a
+        parabola at one standard error. :func:`jbf.bootstrap` computes their errors.
     fixed
         Names of the parameters that were not fitted.
     findings
-        What the recording did to the runs, and what was done about it.
+        Recording artefacts of the runs, and how they were treated.
     noise_floor_n
-        Standard deviation of the noise on the record by the record alone, N; None where it cannot
-        be told.
+        Standard deviation of the noise on the record, estimated from the record only, N; None if it
+        cannot be estimated.
     """
 
     model: Model
@@ -91,11 +91,11 @@ class Fit(Estimates):
             raise ValueError(f"correlations of shape {shape} for {told} parameters not held")
 
     def report(self) -> str:
-        """As `summary`: statistics, parameters with errors, and the strongest correlations."""
+        """Return `summary`: statistics, parameters with errors, and the strongest correlations."""
         return self.summary()
 
     def facts(self) -> Mapping[str, Any]:
-        """What `to_dict` says beside the parameters."""
+        """Entries of `to_dict` in addition to the parameters."""
         return {
             "law": self.model.law,
             "effects": list(self.model.effects),
@@ -110,7 +110,7 @@ class Fit(Estimates):
 
 
 def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
-    """An InputError where a run lacks a column that one of the effects needs."""
+    """Raise an InputError if the runs lack a column or condition that one of the effects needs."""
     effects = list(effects)
     for p in campaign.prepared:
         require_record(campaign.rig, p.run, effects)
@@ -124,7 +124,7 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
 
 
 def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | None = None) -> Fit:
-    """A solution with its errors, as a model; `start` is what the user had it start from."""
+    """Return a solution with standard errors as a fit; `start` holds the user's starting values."""
     known = spread(problem, solution)
     found = put_back(problem, solution, known, start or {})
     delay = exact_delay(problem, solution, known, found.values)
@@ -176,19 +176,20 @@ def fit(
 ) -> Fit:
     """Fit the base law, with named effects, to runs.
 
-    Least squares over all samples at which the sign of the motion is known, with exact
-    derivatives, bounds from the catalogue, starting values from the catalogue or, for a law in
-    newtons, from the data. Weighted by the colour of the noise where the residual shows one and
-    plain least squares agree; with Huber's weights where those predict runs left out better.
+    Least squares over all samples at which the sign of the motion is known, with exact derivatives.
+    Bounds are taken from the catalogue; starting values from the catalogue or, for a law in
+    newtons, from the data. Residuals are weighted by the coloured-noise model where the residual
+    shows colour and plain least squares agrees. Huber's weights are used where they have the
+    smaller held-out error.
 
     Parameters
     ----------
     rig
-        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
+        Bearing, lubricant and load; `Rig()` is sufficient for a law in newtons.
     runs
         Recorded runs with friction.
     effects
-        Names of effects to fit beside the law.
+        Names of effects to fit in addition to the law.
     law, clock
         Base law and its clock.
     start, fixed
@@ -197,11 +198,11 @@ def fit(
     Raises
     ------
     InputError
-        An unknown name, a missing column, runs in which nothing moves, or a film too fast for them.
+        An unknown name, a missing column, runs without motion, or a film too fast for the runs.
     Stopped
-        It was interrupted; it has the best fit so far.
+        The fit was interrupted; the exception holds the best fit so far.
     Unfinished
-        It would have taken too long; it has the best fit so far.
+        The fit exceeded its budget; the exception holds the best fit so far.
     """
     chosen = in_chain_order(effects)
     check_rig(rig, law)

@@ -1,8 +1,8 @@
-"""Runs that go beyond all others, and alternate parts of a run for tests within its own range.
+"""Runs beyond the range of all others, and alternate parts of a run for held-out tests.
 
-A prediction of a faster run by slower ones is an extrapolation and no held-out error: what it says
-depends on the form of the law more than on the fit. Such a run, and a single one, is tested by
-alternate parts of its own, which hold the same kinds of motion as what the fit has.
+The prediction of a fast run from slower ones is an extrapolation. Its error depends on the form
+of the law more than on the fit, and is not a held-out error. Such a run, and a single run, is
+tested on alternate parts of itself, which contain the same kinds of motion as the fitted parts.
 """
 
 from __future__ import annotations
@@ -19,25 +19,25 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 PARTS = 10
-"""Alternate parts of a run: every other one is held out."""
+"""Number of equal parts of a run; every other one is held out."""
 MARGIN = 0.1
-"""Share of the largest value of all runs within which a value is no extrapolation."""
+"""Fraction of the largest value of all runs within which a value is not an extrapolation."""
 SHARE = 0.05
-"""Share of a run's samples from which it goes beyond the others."""
+"""Fraction of a run's samples above which the run is beyond the others."""
 
 
 @dataclass(frozen=True)
 class Beyond:
-    """A run that goes beyond the range of all others.
+    """A run that is beyond the range of all others.
 
     Attributes
     ----------
     run
-        Its place in the campaign.
+        Index of the run in the campaign.
     quantity
-        `speed` (with its sign: also the only run in one direction) or `load`.
+        `speed` (with its sign, so also the only run in one direction) or `load`.
     value, others
-        Its own extreme value, and the nearest one of the others, in the unit of the record.
+        Extreme value of this run, and the nearest one of the other runs, in the unit of the record.
     """
 
     run: int
@@ -53,7 +53,7 @@ def alternate_parts(count: int) -> Mask:
 
 
 def runs_beyond(campaign: Campaign) -> list[Beyond]:
-    """The runs that go beyond the range of all others, the first quantity of each."""
+    """Runs that are beyond the range of all others, each with the first such quantity."""
     found: dict[int, Beyond] = {}
     for quantity, values in _quantities(campaign).items():
         for beyond in _beyond(quantity, values):

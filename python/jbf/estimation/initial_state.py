@@ -1,8 +1,8 @@
-"""The state in which a run began, where no record tells it, and how long a model remembers it.
+"""Initial-state transient: how long a model remembers the unrecorded state at the start of a run.
 
-A film, a contact that bends, and a cell with play begin a run in a state that nobody wrote down. It
-is forgotten as the shaft moves, or as the force turns round. How soon, the model says: runs of it
-that begin in opposite states differ by what is still remembered.
+A film, a contact that deflects, and a load cell with backlash start a run in an unknown state. The
+state is forgotten as the shaft moves, or as the force reverses. The model gives the duration: two
+simulations of a run that start from opposite states differ as long as the state is remembered.
 """
 
 from __future__ import annotations
@@ -22,38 +22,47 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 REMEMBERED = 0.2
-"""Share of the noise below which a difference is forgotten."""
+"""Fraction of the noise below which a difference counts as forgotten."""
 MOST_OF_A_RUN = 0.5
-"""A run that never forgets its beginning is taken as it is: one of a film,"""
+"""Largest fraction of a run that is excluded for a film; otherwise nothing is excluded."""
 MOST_OF_A_STROKE = 0.75
-"""and one of a contact, which may be a single stroke, half of it to bend."""
+"""Largest fraction of a run that is excluded for a contact.
+
+Such a run may be a single stroke, half of which deflects the contact.
+"""
 MOST_OF_ALL = 0.5
-"""Share of a campaign that may go with cells in their play: a run whose force never turns round
-tells nothing of which way its cell was pushed before, and goes whole where others remain."""
+"""Largest fraction of a campaign that is excluded for load cells with backlash.
+
+A run whose force never reverses does not determine the initial side of the backlash. It is
+excluded completely if other runs remain.
+"""
 BEFORE_S = 6.0
-"""How long the imagined motions before a run last."""
+"""Duration of the simulated motions before a run, s."""
 SPEEDS = (1e-3, 0.1, 1.0)
-"""Their speeds, as shares of the run's top speed: where a film was,"""
+"""Speeds of these motions for a film, as fractions of the top speed of the run."""
 WAYS = (-1.0, 1.0)
-"""and where a contact bends or a cell has play, which the force may have reached either way."""
+"""Speeds of these motions for contacts and backlash, which may be on either side at the start."""
 LONGER = 1.5
-"""The film may be slower than this model's: what follows is set aside for so many times as long,"""
+"""Factor on the excluded duration for a film, which may be slower than that of the model."""
 FURTHER = 1.1
-"""and a contact softer, whose way to bend the records tell better."""
+"""Factor on the excluded duration for a contact, which may be softer.
+
+It is smaller because the records determine the deflection of a contact better.
+"""
 
 
 @dataclass(frozen=True)
 class Memory:
-    """What begins a run in a state that no record tells.
+    """A part of the model with an unknown state at the start of a run.
 
     Attributes
     ----------
     speeds
-        Of motions before a run that each leave another state, as shares of its top speed.
+        Speeds of motions before a run that lead to different states, as fractions of its top speed.
     longer
-        How many times as long as they differ is set aside,
+        Factor on the duration of the difference that is excluded.
     most, most_of_all
-        of which share of a run, and of a campaign, at most.
+        Largest excluded fraction of a run, and of a campaign.
     """
 
     speeds: tuple[float, ...]
@@ -63,10 +72,10 @@ class Memory:
 
 
 def memories(law: str, effects: Iterable[str]) -> list[Memory]:
-    """What of a law and its effects remembers how a run began."""
+    """Return the parts of a law and its effects that remember the initial state of a run."""
     page = find_law(law)
     if begins_anywhere(effects):
-        # A film that thickens or breaks down pushes the cell one way or the other.
+        # A film that builds up or breaks down pushes the load cell in one direction or the other.
         return [Memory((*(SPEEDS if page.has_film else ()), *WAYS), FURTHER, np.inf, MOST_OF_ALL)]
     film = [Memory(SPEEDS, LONGER, MOST_OF_A_RUN)] if page.has_film else []
     bent = [Memory(WAYS, FURTHER, MOST_OF_A_STROKE)] if page.has_bristle else []
@@ -74,14 +83,14 @@ def memories(law: str, effects: Iterable[str]) -> list[Memory]:
 
 
 def begins_anywhere(effects: Iterable[str]) -> bool:
-    """True where one of the effects begins a run in a state of its own."""
+    """Whether one of the effects has an unknown initial state of its own."""
     return any(find_effect(name).unknown_start for name in effects)
 
 
 def remembering(
     chain: DrivenChain, values: Array, prepared: Sequence[Prepared], which: Memory, noise_n: float
 ) -> list[Mask]:
-    """True where a run still remembers how it began, one mask a run.
+    """Mask of the samples at which a run still remembers its initial state, one a run.
 
     Parameters
     ----------
@@ -90,7 +99,7 @@ def remembering(
     noise_n
         Noise on the friction, N.
     """
-    # The fit's own motion has starts between samples, these have not: it would differ at each stop.
+    # The motion used by the fit has starts between samples and would differ at each stop.
     begun = []
     for share in which.speeds:
         motions = [core_motion(p.rig, p.run, p.motion, (share, BEFORE_S)) for p in prepared]
@@ -107,12 +116,12 @@ def remembering(
 
 
 def _remembered(p: Prepared, apart: Mask, which: Memory) -> Mask:
-    """The first stretch of motion in which two beginnings are apart, made longer for safety."""
+    """Mask of the first interval in which two initial states differ, extended for safety."""
     index = np.flatnonzero(apart)
     if not len(index):
         return np.zeros(len(apart), dtype=bool)
     time = p.run.time_s
     until = time[index[0]] + which.longer * (time[index[-1]] - time[index[0]])
-    # What lies before the motion (a rest) does not depend on the start.
+    # Samples before the motion (a rest) do not depend on the initial state.
     mask: Mask = (time >= time[index[0]]) & (time <= until)
     return mask if mask.mean() < which.most else np.zeros(len(apart), dtype=bool)

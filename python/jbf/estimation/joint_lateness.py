@@ -1,9 +1,10 @@
-"""How late the force of each run is, or its clock, estimated together with the model that tells it.
+"""Time delays of the forces or of their clock, estimated jointly with the model parameters.
 
-A law gives way to a late force: on a search for where each run's squares are least it keeps what it
-has given, and moves on by and by. One step of Gauss and Newton in the lateness of every run and all
-parameters at once does not: what a parameter can say as well is no lateness, and the covariance
-tells how much of it that is (partitioned regression: Frisch & Waugh 1933).
+A law adapts to a delayed force. A search for the delay of each run at fixed parameters therefore
+keeps what the law has absorbed, and converges slowly. One Gauss-Newton step in the delays of all
+runs and all parameters does not have this defect. The part of a delay that a parameter can also
+explain is not identifiable, and enlarges the covariance (partitioned regression: Frisch & Waugh
+1933).
 """
 
 from __future__ import annotations
@@ -26,27 +27,29 @@ Array = npt.NDArray[np.float64]
 
 DELAY = "time_delay.tau_s"
 Clocks = Literal["by run", "shared", "one", "one, delay"]
-"""By which clocks forces were read: by one of each run's own, with one delay in all runs, or by one
-that was started with each run, where the instrument may delay them all besides."""
+"""Clock models of the forces.
+
+"by run": each run has its own delay. "shared": all runs have one delay. "one": one clock rate, with
+the clock started at each run. "one, delay": the same clock rate and a delay of the instrument.
+"""
 LINEAR_S = 8e-3
-"""A force changes as its slope says over a shift of so much; no sample nearer a reversal tells
-it."""
+"""Time shift over which the force is linear, s; samples closer to a reversal are not used."""
 RANK = 1e-10
-"""Share of the largest singular value below which a direction says nothing."""
+"""Fraction of the largest singular value below which a direction is not identifiable."""
 
 
 @dataclass(frozen=True, eq=False)
 class LatenessStep:
-    """By how much later forces are than they are compared.
+    """Correction of the time delays of the forces.
 
     Attributes
     ----------
     late_s
-        Of each run, s, shape (m,); zero of one that cannot tell it.
+        Additional delay of each run, s, shape (m,); zero where it is not identifiable.
     covariance_s2
-        Of those that can, s^2, as the residual's spread has it.
+        Covariance of the identifiable delays, s^2, from the variance of the residual.
     told
-        Which runs can, to within `LINEAR_S`, shape (m,).
+        Whether each delay is identifiable within `LINEAR_S`, shape (m,).
     """
 
     late_s: Array
@@ -55,19 +58,24 @@ class LatenessStep:
 
     @property
     def square(self) -> float:
-        """Its square, in units of its covariance (Wald's statistic)."""
+        """Square of the step in units of its covariance (Wald statistic)."""
         late = self.late_s[self.told]
         return float(late @ np.linalg.lstsq(self.covariance_s2, late, rcond=RANK)[0])
 
     @property
     def chance(self) -> float:
-        """Probability of so much where every force is compared on time."""
+        """P-value of the step if every force is compared without an additional delay."""
         count = int(np.sum(self.told))
         return float(special.chdtrc(count, self.square)) if count else 1.0
 
     def differ_chance(self, late_s: Array) -> float:
-        """Probability that runs that are late by so much, as they were compared until this step,
-        differ so much by chance."""
+        """P-value of the differences between the total delays of the runs.
+
+        Parameters
+        ----------
+        late_s
+            Delays of the runs applied before this step, s, shape (m,).
+        """
         count = int(np.sum(self.told))
         if count < 2:
             return 1.0
@@ -77,7 +85,7 @@ class LatenessStep:
         return float(special.chdtrc(count - 1, float(late @ inverse @ late)))
 
     def mean_s(self, late_s: Array) -> float:
-        """The mean lateness of the runs that tell theirs, by how surely they do, s."""
+        """Mean of the identifiable delays, weighted by their inverse variance, s."""
         if not np.any(self.told):
             return 0.0
         return float(np.average(late_s[self.told], weights=1.0 / np.diag(self.covariance_s2)))
@@ -85,14 +93,14 @@ class LatenessStep:
 
 @dataclass(frozen=True)
 class DriftStep:
-    """By how much slower than it is taken for the clock of the forces runs.
+    """Correction of the drift of the force clock.
 
     Attributes
     ----------
     drift
-        By how much later forces get in a second.
+        Increase of the delay of the forces per second.
     variance
-        Of that, as the residual's spread has it; infinite where it cannot be told.
+        Variance of the drift from the variance of the residual; infinite if it is not identifiable.
     """
 
     drift: float
@@ -100,28 +108,30 @@ class DriftStep:
 
     @property
     def square(self) -> float:
-        """Its square, in units of its variance (Wald's statistic)."""
+        """Square of the drift in units of its variance (Wald statistic)."""
         return self.drift**2 / self.variance
 
 
 def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
-    """A step of Gauss and Newton in each run's lateness and all parameters of the model, but for a
-    delay that all runs share: that is a part of each one's."""
+    """Gauss-Newton step in the time delay of each run and the parameters of the model.
+
+    A delay parameter that all runs share is excluded, since it is part of each run's delay.
+    """
     own = [k for k, i in enumerate(problem.open) if problem.names[i] != DELAY]
     late, of_late = _step(problem, solution, own, "by run")
-    # Where nothing is left, nothing says how surely.
+    # An exact fit gives no variance.
     told = (np.diag(of_late) > 0.0) & (np.diag(of_late) < LINEAR_S**2)
     return LatenessStep(np.where(told, late, 0.0), of_late[np.ix_(told, told)], told)
 
 
 def delay_step(problem: Problem, solution: Solution) -> tuple[float, float]:
-    """A step of Gauss and Newton in a delay of the force that all runs share, and all parameters.
+    """Gauss-Newton step in a time delay of the force that all runs share, and all parameters.
 
     Returns
     -------
     tuple[float, float]
-        By how much later the forces are than they are compared, s, and its standard error, s;
-        infinite where the runs do not tell it.
+        Additional delay of the forces, s, and its standard error, s; infinite if the delay is not
+        identifiable.
     """
     late, of_late = _step(problem, solution, list(range(len(problem.open))), "shared")
     sd = float(np.sqrt(max(of_late[0, 0], 0.0)))
@@ -129,13 +139,12 @@ def delay_step(problem: Problem, solution: Solution) -> tuple[float, float]:
 
 
 def drift_step(problem: Problem, solution: Solution, beside_delay: bool = False) -> DriftStep:
-    """A step of Gauss and Newton in the drift of one clock that was started with each run, and all
-    parameters of the model.
+    """Gauss-Newton step in the drift of a clock started with each run, and all parameters.
 
     Parameters
     ----------
     beside_delay
-        Whether all runs may be late by a time of the instrument's besides.
+        Whether all runs may additionally have a common delay of the instrument.
     """
     clocks: Clocks = "one, delay" if beside_delay and DELAY not in problem.names else "one"
     late, of_late = _step(problem, solution, list(range(len(problem.open))), clocks)
@@ -145,7 +154,7 @@ def drift_step(problem: Problem, solution: Solution, beside_delay: bool = False)
 
 
 def delay_slope(problem: Problem, values: Array, prepared: Prepared) -> Array:
-    """Derivative of the prediction of a run by a delay of the force, shape (n,)."""
+    """Derivative of the prediction of a run with respect to a delay of the force, shape (n,)."""
     instants = instants_of(prepared)
     force = problem.chain.predict(values, [fine_motion(prepared)])[0]
     return np.asarray(-np.interp(prepared.run.time_s, instants, np.gradient(force, instants)))
@@ -154,7 +163,7 @@ def delay_slope(problem: Problem, values: Array, prepared: Prepared) -> Array:
 def _step(
     problem: Problem, solution: Solution, own: Sequence[int], clocks: Clocks
 ) -> tuple[Array, Array]:
-    """The step in what clocks say of lateness, beside these parameters, and its covariance."""
+    """Step in the delays of a clock model, joint with the parameters, and its covariance."""
     width = len(own)
     later = {
         "by run": len(problem.campaign.prepared),
@@ -172,7 +181,7 @@ def _step(
         right.append(r)
         samples += count
     x, y = np.concatenate(rows), np.concatenate(right)
-    # Forces of any size: their squares must not overflow.
+    # Scale the rows so that the squares of very large forces do not overflow.
     largest = float(max(np.max(np.abs(x), initial=0.0), np.max(np.abs(y), initial=0.0)))
     if largest > 0.0:
         x, y = x / largest, y / largest
@@ -184,7 +193,7 @@ def _step(
     inverse = np.linalg.pinv(x / scale, rcond=RANK)
     covariance = float(left @ left) / max(samples, 1) * (inverse @ inverse.T)
     with np.errstate(over="ignore"):
-        covariance /= np.outer(scale, scale)  # infinite where a clock is not told
+        covariance /= np.outer(scale, scale)  # infinite where a clock is not identifiable
     of_later = covariance[width:, width:]
     return (step / scale)[width:], np.where(np.outer(tells, tells), of_later, 0.0)
 
@@ -192,8 +201,11 @@ def _step(
 def _rows(
     problem: Problem, solution: Solution, by: Sequence[int], clocks: Clocks
 ) -> Iterator[tuple[Array, Array, int]]:
-    """Of each run the innovations, their derivatives by these parameters and, last, by its
-    lateness as clocks say it, in few rows; and how many samples there were."""
+    """Yield the innovations and derivatives of each run in reduced rows, and the sample count.
+
+    The derivatives are with respect to the given parameters and, last, the delays of the clock
+    model.
+    """
     samples = solution.samples
     for i, p in enumerate(problem.campaign.prepared):
         slope = delay_slope(problem, solution.values, p)
@@ -210,6 +222,6 @@ def _rows(
         derivatives = np.column_stack([solution.jacobian[i][:, by], *later])
         r, j = own.stacked([solution.residuals[i]], [derivatives], solution.noise)
         count = len(r)
-        # The residual stays a row of its own where it is longer than its derivatives.
+        # The residual remains a separate row where it is longer than its derivatives.
         r, j = triangular(r, j)
         yield r, j, count

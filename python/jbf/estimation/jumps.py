@@ -1,11 +1,12 @@
-"""Samples next to a jump whose instant is itself fitted, or read for long.
+"""Samples next to a jump whose time is itself fitted, or whose influence lasts.
 
-Friction jumps where the motion turns round. Of those samples a record does not tell the sign, and
-they do not count (`Samples`). An effect that moves the jump elsewhere (a late record, a gap to be
-crossed first) moves the uncertainty with it: there the model has a ramp over a sample where the
-record has a jump somewhere within it. What that costs is known: some half of the change over the
-sample. A fit weighs the sample by it, and no test looks at it. What an effect spreads of a jump is
-weighed by the error of its instant (`reversals`); where that is much of the noise, no test looks.
+Friction jumps at a reversal of the motion. The record does not determine the sign of the samples
+there, and they do not count (`Samples`). An effect that moves the jump (a delayed record, or
+backlash to be crossed first) moves this uncertainty with it. The model then has a ramp over one
+sample where the record has a jump within it. The error is about half of the change over the
+sample: a fit weights the sample by it, and tests exclude the sample. If an effect spreads a jump
+over time, its samples are weighted by the error of the jump's time (`reversals`). Tests exclude
+them where this error is a large part of the noise.
 """
 
 from __future__ import annotations
@@ -25,32 +26,34 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 JUMP = 0.1
-"""A change within a sample by more than this share of the run's largest friction is a jump,"""
+"""Fraction of the run's largest friction above which a change within a sample may be a jump."""
 ALONE = 3.0
-"""if it is so many times a change within two samples before it, and one after: a steep rise that
-the record resolves, such as a mass set going, is none."""
+"""Ratio of a jump to the changes within two samples before it and after it.
+
+A steep rise that the record resolves, such as the acceleration of a mass, is not a jump.
+"""
 
 
 UNSURE = 0.5
-"""Share of the noise from which on an error of the instant is looked at by no test."""
+"""Fraction of the noise above which the error of a jump's time excludes a sample from tests."""
 
 
 def moves_jumps(effects: Iterable[str]) -> bool:
-    """True where one of the effects moves the instants of jumps."""
+    """Whether one of the effects moves the times of jumps."""
     return any(find_effect(name).moves_jumps for name in effects)
 
 
 def spreads_jumps(effects: Iterable[str]) -> bool:
-    """True where one of the effects is read for long after a jump."""
+    """Whether one of the effects spreads a jump over a long time."""
     return any(find_effect(name).spreads_jumps for name in effects)
 
 
 def active_effects(
     effects: Iterable[str], pages: Mapping[str, Parameter], values: Iterable[float]
 ) -> list[str]:
-    """The effects that are not at their null: one of their parameters that have a null is off it.
+    """Effects that are not at their null: at least one parameter with a null differs from it.
 
-    `pages` and `values` are by the parameters' full names, in one order.
+    `pages` and `values` are in the same order, that of the parameters' full names.
     """
     off: dict[str, bool] = {}
     for (name, page), value in zip(pages.items(), values, strict=True):
@@ -63,8 +66,8 @@ def active_effects(
 def jumps(prediction: Array) -> Array:
     """Change of a prediction (N) at samples in or next to a jump, N; zero elsewhere."""
     change = np.abs(np.diff(prediction))
-    # A ramp that lies across a sample takes part of two changes: one neighbour may be its own. The
-    # two jumps at a gap may be as close as that, too.
+    # A ramp across a sample contributes to two changes, so one neighbour may belong to it. The two
+    # jumps at a backlash gap may be equally close.
     around = np.pad(change, 2)
     before, after = (
         np.minimum(around[:-4], around[1:-3]),
@@ -83,8 +86,11 @@ def samples_beside_jumps(
     predictions: Sequence[Array],
     effects: Sequence[str],
 ) -> Samples:
-    """The samples as a model with these effects, none at its null, leaves them, by where its
-    predictions jump; as they are where it neither moves jumps nor spreads them."""
+    """Return the samples with weights adapted to the jumps of the predictions.
+
+    They are unchanged if the effects neither move jumps nor spread them. The effects must not be at
+    their null.
+    """
     moves, spreads = moves_jumps(effects), spreads_jumps(effects)
     if not (moves or spreads):
         return samples
@@ -122,7 +128,7 @@ def _noise_n(p: Prepared, kept: Mask, prediction: Array) -> float:
 
 
 def _share(error_n: Array, noise_n: float) -> Array:
-    """What a sample weighs whose prediction errs by so much beside its noise."""
+    """Weight of a sample whose prediction has this error in addition to the noise."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share: Array = np.where(error_n > 0.0, noise_n / np.hypot(noise_n, error_n), 1.0)
     return share

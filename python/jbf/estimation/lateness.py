@@ -1,9 +1,9 @@
-"""How late the force channel of each run is against its motion, by a model of it.
+"""Time delay of the force channel of each run relative to its motion, estimated with a model.
 
-A channel that is late by another time in each run, or by a clock that runs faster, is a fault of
-the recording and no effect: the force is then compared with the motion at the instant at which it
-was read. The lateness of a run is where the squares of its residuals are least when the model's
-force is shifted along time; the parts of a run tell whether it grows.
+A delay that differs between runs, or a clock with a wrong rate, is a recording artefact and not an
+effect. The force is then compared with the motion at the time at which it was read. The delay of a
+run minimises the squared residuals as the model's force is shifted in time. Parts of a run show
+whether the delay grows.
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 FINE_S = 2.5e-3
-"""The model's force is computed at instants no further apart, s."""
+"""Largest interval between the times at which the model's force is computed, s."""
 PARTS = 3
-"""Parts of a run that tell whether its lateness grows."""
+"""Number of parts of a run from which a growth of the delay is estimated."""
 LEAST_SAMPLES = 60
-"""Samples of a part that can tell it."""
+"""Minimum number of samples of a part for an estimate of its delay."""
 OUTSIDE = 0.01
-"""Likelihood at the ends of the range from which on the lateness may lie outside."""
+"""Likelihood at the ends of the scanned range above which the delay may lie outside it."""
 RANGES = ((40e-3, 2e-3), (8e-3, 0.5e-3))
-"""Lateness looked for and steps of it, s: at first, and once runs were shifted."""
+"""Range and step of the scanned delays, s: for the first scan, and after runs were shifted."""
 
 
 @dataclass(frozen=True)
 class Lateness:
-    """How late the force is.
+    """Time delays of the force.
 
     Attributes
     ----------
     late_s
-        In the middle of each run, s.
+        Delay in the middle of each run, s.
     drift
-        By how much later it gets in a second.
+        Increase of the delay per second.
     spread_s
-        Standard deviation of the lateness between runs, s; zero where they do not differ.
+        Standard deviation of the delay between runs, s; zero if the runs do not differ.
     """
 
     late_s: tuple[float, ...]
@@ -61,25 +61,26 @@ class Lateness:
 
 @dataclass(frozen=True)
 class _Place:
-    """An estimate and its variance; infinite where there is none."""
+    """An estimate and its variance; the variance is infinite if there is no estimate."""
 
     value: float
     variance: float
 
 
 def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> Lateness | None:
-    """How the delays of the runs differ; None if they do not differ beyond chance.
+    """Estimate how the delays of the runs differ; None if they do not differ significantly.
 
-    All samples are used, those next to reversals as well: these determine a delay of less than a
-    sample if the friction is smooth in time, and determine it in steps. A delay common to all runs
-    may be that of the instrument, which is an effect; a force that is early in all runs is not.
+    All samples are used, including those next to reversals. These determine a delay of less than
+    one sample if the friction is smooth in time; otherwise they determine it in steps. A delay
+    common to all runs may be that of the instrument, which is an effect. A force that is early in
+    all runs is a recording artefact.
 
     Parameters
     ----------
     look
-        0 at first; 1 if the runs were shifted before.
+        0 for the first scan; 1 if the runs were shifted before.
     chance
-        Probability at which runs that differ, or a common drift, are chance.
+        Significance level for differences between runs and for a common drift.
     """
     reach, step = RANGES[min(look, len(RANGES) - 1)]
     grid = np.arange(-reach, reach + 0.5 * step, step)
@@ -107,10 +108,11 @@ def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> 
 
 
 def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[Array, Array]]:
-    """Of each run its samples' squared residuals by delay, (len(grid), n), and their times.
+    """Yield the squared residuals of each run by delay, (len(grid), n), and the sample times.
 
-    The residuals are not whitened: a filter that takes the error of a late force for coloured noise
-    would shift it as well. One run at a time: a recording of days would fill the memory.
+    The residuals are not whitened. A filter that describes the error of a delayed force as coloured
+    noise would shift that error as well. Runs are processed one at a time, because a recording of
+    days would fill the memory.
     """
     samples, runs = solution.samples, problem.campaign.prepared
     forces = [problem.chain.predict(solution.values, [fine_motion(p)])[0] for p in runs]
@@ -122,7 +124,7 @@ def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[
     left_over = samples.without_deviations(solution.residuals, solution.noise)
     for i, (p, force) in enumerate(zip(runs, forces, strict=True)):
         instants = instants_of(p)
-        # An offset or a gain of the run is no delay.
+        # An offset or a gain of the run is not a delay.
         read = p.friction_n - (solution.residuals[i] - left_over[i])
         kept = samples.counted[i]
         rows = []
@@ -132,14 +134,16 @@ def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[
         e = np.array(rows)
         size = float(np.median(np.abs(e), axis=1).min()) / 0.6745 if e.size else 0.0
         squares = np.minimum((e / size) ** 2, CLIPPED**2) if size > 0.0 else np.zeros_like(e)
-        # A sample of coloured residuals counts for less.
+        # A sample of coloured residuals carries less information.
         squares *= share
         yield squares, p.run.time_s[kept] - p.run.time_s[0]
 
 
 def _on_time(problem: Problem, solution: Solution, slopes: list[Array]) -> list[Array]:
-    """Residuals less what lateness makes of them, one array a run: to first order in a lateness and
-    its growth, which would else make the noise seem coloured."""
+    """Residuals without the contribution of a delay and its growth, one array a run.
+
+    The contribution is removed to first order; otherwise the noise would appear coloured.
+    """
     samples, left = solution.samples, []
     left_over = samples.without_deviations(solution.residuals, solution.noise)
     for p, residual, slope, counted in zip(
@@ -153,7 +157,7 @@ def _on_time(problem: Problem, solution: Solution, slopes: list[Array]) -> list[
 
 
 def instants_of(p: Prepared) -> Array:
-    """Instants of a run close enough for a shift, s."""
+    """Times of a run that are close enough for an interpolated shift, s."""
     times = max(int(np.ceil(p.step_s / FINE_S)), 1)
     samples = np.arange(len(p.run), dtype=np.float64)
     place = np.linspace(0.0, len(p.run) - 1.0, times * (len(p.run) - 1) + 1)
@@ -162,14 +166,17 @@ def instants_of(p: Prepared) -> Array:
 
 
 def fine_motion(p: Prepared) -> Driven:
-    """A run's motion there."""
+    """Motion of a run at the times of `instants_of`."""
     instants = instants_of(p)
     run = p.run.at(instants, np.interp(instants, p.run.time_s, p.friction_n))
     return core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
 
 
 def _place(grid: Array, costs: Array, count: int) -> _Place:
-    """Mean and variance of the likelihood on the grid: next to jumps squares change in steps."""
+    """Mean and variance of the likelihood on the grid.
+
+    They replace the curvature, since squares change in steps next to jumps.
+    """
     k = int(np.argmin(costs))
     if count < LEAST_SAMPLES or not 0 < k < len(grid) - 1:
         return _Place(0.0, np.inf)
@@ -182,7 +189,7 @@ def _place(grid: Array, costs: Array, count: int) -> _Place:
 
 
 def _drift(grid: Array, squares: Array, time: Array) -> _Place:
-    """The slope of the lateness over the parts of a run."""
+    """Slope of the delay over the parts of a run."""
     edges = np.linspace(0.0, float(time[-1]) if len(time) else 0.0, PARTS + 1)
     middles, values, weights = [], [], []
     for low, high in itertools.pairwise(edges):
@@ -201,7 +208,7 @@ def _drift(grid: Array, squares: Array, time: Array) -> _Place:
 
 
 def _spread(places: list[_Place]) -> tuple[float, float] | None:
-    """Standard deviation between runs, and the probability of so much by chance."""
+    """Standard deviation between runs, and its p-value."""
     known = [p for p in places if np.isfinite(p.variance)]
     if len(known) < 3:
         return None
@@ -212,7 +219,7 @@ def _spread(places: list[_Place]) -> tuple[float, float] | None:
 
 
 def _common(drifts: list[_Place]) -> tuple[float, float] | None:
-    """The drift that all runs share, and the probability of so much by chance."""
+    """Weighted mean over the runs, and its p-value."""
     known = [p for p in drifts if np.isfinite(p.variance)]
     if not known:
         return None

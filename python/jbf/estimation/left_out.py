@@ -1,5 +1,7 @@
-"""The left-out error: prediction of runs that had no part in the fit, each left out once; of many
-runs several at a time."""
+"""Held-out error: prediction of runs that the fit did not use, each held out once.
+
+With many runs, several are held out at a time.
+"""
 
 from __future__ import annotations
 
@@ -22,35 +24,40 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 EVALUATIONS = 12
-"""A refit that starts one Gauss-Newton step from the whole campaign's solution is close."""
+"""Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs."""
 SHORT = 3.0
-"""Standard deviations a parameter by which a step is short: noise makes the rest of the runs ask
-for as much. From the end of a longer one a search goes on."""
+"""Length per parameter, in standard deviations, up to which a step is accepted without a search.
+
+Noise alone causes steps of this length to the remaining runs. A search continues from the end of a
+longer step.
+"""
 STRAIGHT = 0.05
-"""Share of a step's change of the prediction by which that may be off the derivatives' for the step
-to be the whole way."""
+"""Permitted deviation of a predicted change from the linear one, as a fraction of the change.
+
+Within it a step is accepted without further iterations.
+"""
 NOTHING = 0.01
-"""Share of the residual that no prediction needs to be closer than."""
+"""Fraction of the residual below which the accuracy of a prediction does not matter."""
 MOST_FITS = 12
-"""Fits without a run; of more runs groups are left out: so many folds of a cross-validation."""
+"""Maximum number of folds of the cross-validation; with more runs, groups are held out."""
 INSENSITIVE = 1e-4
-"""Runs say nothing of a parameter where they hold less than this share of what is known of it."""
+"""Fraction of the total information on a parameter below which runs do not determine it."""
 
 
 @dataclass(frozen=True)
 class LeftOut:
-    """Samples that had no part in a fit, and what it leaves of their runs.
+    """Samples that a fit did not use, and the residuals of their runs.
 
     Attributes
     ----------
     runs
-        Which runs.
+        Indices of the runs.
     left
-        Which of their samples had no part, one mask a run.
+        Mask of the held-out samples, one a run.
     told
-        Of which parameters the fitted samples tell; the others were held, shape (k,).
+        Which parameters the fitted samples determine, shape (k,); the others were held.
     residuals
-        Record minus prediction, N, of the whole of each run.
+        Record minus prediction of all samples of each run, N.
     """
 
     runs: tuple[int, ...]
@@ -59,7 +66,7 @@ class LeftOut:
     residuals: tuple[Array, ...]
 
     def without(self, runs: Collection[int]) -> LeftOut:
-        """The same of the other runs."""
+        """Return the held-out samples except those of the given runs."""
         kept = [k for k, i in enumerate(self.runs) if i not in runs]
         return LeftOut(
             tuple(self.runs[k] for k in kept),
@@ -70,18 +77,18 @@ class LeftOut:
 
 
 def left_out_rms(problem: Problem, solution: Solution, *, apart: bool = False) -> float:
-    """RMS of `left_out_by_run`, N."""
+    """Held-out RMS: RMS of `left_out_by_run`, N."""
     left = np.concatenate(left_out_by_run(problem, solution, apart=apart))
     return float(np.sqrt(np.sum(left**2) / max(len(left), 1)))
 
 
 def left_out_residuals(problem: Problem, solution: Solution) -> Array:
-    """`left_out_by_run`, all runs in a row."""
+    """Concatenated `left_out_by_run` of all runs."""
     return np.concatenate(left_out_by_run(problem, solution))
 
 
 def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False) -> list[Array]:
-    """`errors_by_run` of the runs left out of the fit (`left_out`)."""
+    """Return `errors_by_run` for the held-out runs (`left_out`)."""
     return list(errors_by_run(solution, left_out(problem, solution), apart=apart).values())
 
 
@@ -97,10 +104,10 @@ def errors_by_run(
     Parameters
     ----------
     counted
-        Those that count where models are compared that set different ones aside.
+        Samples that count, for the comparison of models that exclude different samples.
     apart
-        Less what a run's own deviations from the others explain, where runs are known to have them:
-        for models to be compared, since no model predicts those.
+        Subtract the contribution of a run's random effects, where runs have them. This is for the
+        comparison of models, since no model predicts these deviations.
     """
     samples = solution.samples
     errors: dict[int, Array] = {}
@@ -116,11 +123,11 @@ def errors_by_run(
 
 
 def left_out(problem: Problem, solution: Solution) -> list[LeftOut]:
-    """Runs left out of the fit, one at a time or, of more than `MOST_FITS`, in so many groups.
+    """Hold out each run in turn, or groups of runs if there are more than `MOST_FITS`.
 
-    A parameter that the remaining runs say nothing of goes back to its null (or its starting
-    value) and is held there: what only the left-out run could know must not leak into its
-    prediction. With one run its halves, of alternate parts, take turns.
+    A parameter that the remaining runs do not determine is held at its null (or its starting
+    value). Information that only the held-out run contains must not leak into its prediction. With
+    a single run, two halves of alternate parts are held out in turn.
     """
     count = len(problem.campaign.prepared)
     if count == 1:
@@ -137,8 +144,10 @@ def left_out(problem: Problem, solution: Solution) -> list[LeftOut]:
 
 
 def only_witnesses(problem: Problem, solution: Solution) -> frozenset[int]:
-    """Runs without which the others say nothing of some parameter: no fit to those can predict
-    what it does there, but a fit that has half of the run can."""
+    """Runs that alone determine some parameter.
+
+    A fit to the other runs cannot predict what this parameter does; a fit with half of the run can.
+    """
     count = len(problem.campaign.prepared)
     if count == 1:
         return frozenset()
@@ -153,14 +162,14 @@ def only_witnesses(problem: Problem, solution: Solution) -> frozenset[int]:
 def halves_left_out(
     problem: Problem, solution: Solution, run: int, *, alternate: bool = False
 ) -> list[LeftOut]:
-    """Two halves of one run, which take turns in having no part in a fit to the rest and to all
-    other runs.
+    """Hold out two halves of one run in turn; each fit uses the other half and all other runs.
 
     Parameters
     ----------
     alternate
-        Whether they are alternate parts (`alternate_parts`), which hold the same kinds of motion;
-        else the first and the second half, which tell whether the run is the same throughout.
+        Whether the halves consist of alternate parts (`alternate_parts`), with the same kinds of
+        motion. Otherwise they are the first and second half, which show whether the run is
+        homogeneous.
     """
     samples, known = solution.samples, _known(solution)
     every = [np.ones(len(c), dtype=bool) for c in samples.counted]
@@ -187,23 +196,23 @@ def _known(solution: Solution) -> Array:
 
 
 def _unknown(known: Array, rest: Array) -> Mask:
-    """Of which parameters that rest of what is known says nothing, shape (k,)."""
+    """Mask of the parameters that the remaining information does not determine, shape (k,)."""
     unknown: Mask = rest < INSENSITIVE * known.sum(axis=0)
     return unknown
 
 
 @dataclass(frozen=True)
 class _Told:
-    """What each run tells of the parameters, by the derivatives at a solution.
+    """Information of each run on the parameters, from the derivatives at a solution.
 
     Attributes
     ----------
     known
         Sums of squares of the derivatives, one (k,) a run.
     factors
-        Innovations and derivatives in few rows, a pair a run.
+        Innovations and derivatives in reduced rows, one pair a run.
     innovations
-        How many there are, of each run.
+        Number of innovations of each run.
     """
 
     known: Array
@@ -222,8 +231,7 @@ class _Told:
         return cls(_known(solution), factors, innovations)
 
     def step(self, rest: list[int]) -> tuple[Array, float]:
-        """The Gauss-Newton step to the rest of the runs, and its square in units of what their
-        noise makes of steps."""
+        """Gauss-Newton step to the remaining runs, and its square relative to their noise."""
         r = np.concatenate([self.factors[i][0] for i in rest])
         j = np.concatenate([self.factors[i][1] for i in rest])
         step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
@@ -236,7 +244,7 @@ class _Told:
 def _predicted(
     problem: Problem, solution: Solution, told: _Told, group: list[int], rest: list[int]
 ) -> list[Array]:
-    """Residuals, N, of runs that had no part in the fit to the rest."""
+    """Residuals, N, of runs that were held out of the fit."""
     held = _held(problem, _unknown(told.known, told.known[rest].sum(axis=0)))
     start = _at(problem, solution, held)
     step: Array | None = None
@@ -245,7 +253,7 @@ def _predicted(
         there = problem.encode(solution.values) + way
         step = problem.decode(there, solution.values)
         inside = np.allclose(problem.encode(step), there, rtol=0.0, atol=1e-9)
-        # Of a likelihood with peak beside peak no step tells which one the rest would climb.
+        # With many maxima, a step does not show which one a search in the remaining runs reaches.
         smooth = solution.converged and not any(find_effect(e).peaks for e in solution.effects)
         if inside and smooth and square <= SHORT**2 * len(way):
             residuals = problem.residuals(step, group)
@@ -254,7 +262,7 @@ def _predicted(
     part = _of(problem, problem.campaign.only(rest), held)
     kept = solution.samples.only(rest)
     if step is not None:
-        # A law that misses the data badly is no place to extrapolate from.
+        # The solution of a law that fits badly is not a reliable starting point.
         start = min((step, start), key=lambda v: part.square(v, kept))
     return problem.residuals(_fitted(part, kept, start, solution), group)
 
@@ -266,7 +274,7 @@ def _fitted(part: Problem, kept: Samples, start: Array, solution: Solution) -> A
 
 
 def _straight(solution: Solution, way: Array, group: list[int], residuals: list[Array]) -> bool:
-    """Whether predictions of runs go along a step as their derivatives say."""
+    """Whether the predictions of runs change along a step as their derivatives predict."""
     off, moved, size = 0.0, 0.0, 0.0
     for i, there in zip(group, residuals, strict=True):
         at = solution.samples.counted[i]
@@ -278,10 +286,10 @@ def _straight(solution: Solution, way: Array, group: list[int], residuals: list[
 
 
 def _groups(campaign: Campaign) -> list[list[int]]:
-    """Runs that are left out together, each group with the same kinds of motion as the others.
+    """Groups of runs that are held out together, each with the same kinds of motion as the others.
 
-    The runs are dealt out by direction, top speed and name: in whatever order they are given, the
-    groups are the same.
+    The runs are distributed by direction, top speed and name, so the groups do not depend on the
+    order of the runs.
     """
     speeds = [p.motion.velocity_m_s for p in campaign.prepared]
     order = sorted(
@@ -296,13 +304,13 @@ def _groups(campaign: Campaign) -> list[list[int]]:
 
 
 def _of(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
-    """The same problem on other runs, with more parameters held."""
+    """Return the problem for other runs, with more parameters held."""
     fixed = {**problem.fixed, **held}
     return Problem(campaign, problem.law, problem.clock, problem.effects, fixed)
 
 
 def _held(problem: Problem, unknown: Mask) -> dict[str, float]:
-    """The parameters of which nothing is known, at their null or where a search starts."""
+    """Parameters that are not determined, with their null or starting value."""
     held = {}
     for i in np.asarray(problem.open)[unknown]:
         page = problem.parameters[problem.names[i]]
@@ -312,13 +320,13 @@ def _held(problem: Problem, unknown: Mask) -> dict[str, float]:
 
 
 def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
-    """The whole solution, less what only runs that were left out know."""
+    """The solution with the held parameters set to their fixed values."""
     known = zip(problem.names, solution.values.tolist(), strict=True)
     return np.array([held.get(name, value) for name, value in known])
 
 
 def _halves(problem: Problem, solution: Solution) -> list[LeftOut]:
-    """Two halves of a single run, of alternate parts, each predicted by a fit to the other."""
+    """Hold out two halves of a single run, consisting of alternate parts, in turn."""
     first = alternate_parts(len(solution.samples.counted[0]))
     parts = []
     for half in (~first, first):

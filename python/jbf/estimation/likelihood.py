@@ -1,5 +1,8 @@
-"""What one solution gains over another, in units of twice the log likelihood; and score tests: what
-a step would gain, before it is made."""
+"""Log-likelihood gain of one solution over another, and score tests.
+
+Gains are 2 x the difference of log likelihood. A score test predicts the gain of a step before the
+step is made.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +23,11 @@ from jbf.estimation.solution import Solution
 Array = npt.NDArray[np.float64]
 
 INDEPENDENT = 1e-10
-"""Singular values of a design, as a share of the largest, of directions that are its own."""
+"""Relative singular value above which a direction of a design is independent."""
 
 
 def likelihood_gain(richer: Solution, simpler: Solution) -> float:
-    """Gain in twice the log likelihood, each sample with the smaller of the weights that the two
-    models give it."""
+    """Log-likelihood gain; each sample has the smaller of the weights of the two models."""
     if richer.samples is simpler.samples:
         return simpler.cost - richer.cost
     shared = least_weights(richer.samples, simpler.samples)
@@ -39,7 +41,7 @@ _shares: WeakKeyDictionary[Solution, float] = WeakKeyDictionary()
 
 
 def effective_share(solution: Solution) -> float:
-    """How many independent samples a sample is worth, by the innovations of a solution, 0 to 1."""
+    """Number of independent samples per sample, 0 to 1, from the innovations of a solution."""
     if solution not in _shares:
         samples = solution.samples
         left = samples.weighted_innovations(solution.residuals, solution.noise)
@@ -48,9 +50,11 @@ def effective_share(solution: Solution) -> float:
 
 
 def share_of_gain(richer: Solution, simpler: Solution) -> float:
-    """How much a gain counts for that one solution has over another: less than one where what is
-    left is no white noise, by all its autocorrelations, or by the long-run variance of the score in
-    the direction in which the two differ, whichever is less."""
+    """Factor on a log-likelihood gain for innovations that are not white, at most one.
+
+    It is the smaller of two estimates: one from all autocorrelations, and one from the long-run
+    variance of the score in the direction in which the two solutions differ.
+    """
     share = effective_share(richer)
     samples = least_weights(richer.samples, simpler.samples)
     left, ways = [], []
@@ -64,8 +68,10 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
 
 
 def gain_of_most(richer: Solution, simpler: Solution) -> float:
-    """A gain on which no sample has more than a bounded influence: squares count no further than to
-    a few standard deviations of what the richer one leaves of most."""
+    """Log-likelihood gain in which the influence of each sample is bounded.
+
+    Residuals are clipped at a few robust standard deviations of those of the richer solution.
+    """
     samples = least_weights(richer.samples, simpler.samples)
     own, before = (
         np.concatenate(
@@ -75,21 +81,21 @@ def gain_of_most(richer: Solution, simpler: Solution) -> float:
     )
     size = robust_size(own)
     left = clipped_square(own, size)
-    # Where most is fitted exactly no sample is off.
+    # After an exact fit to most samples, no sample counts as an outlier.
     return len(own) * (clipped_square(before, size) / left - 1.0) if left > 0.0 else np.inf
 
 
 def _whitened(samples: Samples, residual: Array, noise: Noise, run: int) -> Array:
-    """Innovations of a run, free of the correlation that its deviations make."""
+    """Innovations of a run with the correlation due to its random effects removed."""
     return samples.only([run]).stacked([residual], [np.zeros((len(residual), 0))], noise)[0]
 
 
 def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> float:
-    """How many independent samples one sample of these innovations is worth, 0 to 1.
+    """Number of independent samples per sample of the given innovations, 0 to 1.
 
-    Innovations of noise alone are white. Those of a wrong model are not, and n samples of them tell
-    less than n (Bartlett 1946): the autocorrelations are summed until they sink into chance, or
-    are older than any noise.
+    Innovations of noise alone are white. Those of a wrong model are not, and n of them carry the
+    information of fewer samples (Bartlett 1946). The autocorrelations are summed until they are
+    insignificant, or longer than the longest correlation time of noise.
     """
     count = max(sum(len(e) for e in innovations), 1)
     longest = int(LONGEST_MEMORY_S / min(steps)) + 1
@@ -108,26 +114,28 @@ def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> f
 
 
 def score_gain(problem: Problem, values: Array, near: Solution) -> float:
-    """The score test of a model at its null: the gain in twice the log likelihood that one full
-    Gauss-Newton step from `values` promises, under the noise of a solution nearby."""
+    """Score test of a model at its null.
+
+    It returns the log-likelihood gain predicted for one full Gauss-Newton step from `values`, with
+    the noise of a nearby solution.
+    """
     return promised_gain(*problem.gauss_newton_rows(values, near.samples, near.noise))
 
 
 def next_step_gain(solution: Solution) -> float:
-    """The same of a step from a solution: nothing where it has converged."""
+    """Predicted log-likelihood gain of a step from a solution; zero if it has converged."""
     r, j = solution.stacked()
     return promised_gain(r, j, len(r))
 
 
 def promised_gain(r: Array, j: Array, count: int) -> float:
-    """The same from rows of a likelihood of so many innovations: residual, derivatives."""
+    """Predicted log-likelihood gain of a step, from `count` innovations and their derivatives."""
     left = max(unexplained_square(j, r), 1e-300)
     return count * float(np.log(max(float(r @ r), 1e-300) / left))
 
 
 def least_squares(design: Array, target: Array) -> Array:
-    """The shortest step along a design's columns, each of unit length, that explains a target
-    best."""
+    """Shortest least-squares step in the columns of a design, each scaled to unit length."""
     size = np.linalg.norm(design, axis=0)
     size[size <= 0.0] = 1.0
     left, axes = triangular(target, design / size)
@@ -136,8 +144,8 @@ def least_squares(design: Array, target: Array) -> Array:
 
 
 def unexplained(design: Array, target: Array) -> Array:
-    """What of a target linear combinations of a design's columns do not explain."""
-    # By powers of two, which round nothing: squares of what stands far above no noise overflow.
+    """Part of a target that linear combinations of the columns of a design do not explain."""
+    # Scale by powers of two, which are exact, so that the squares of large columns do not overflow.
     _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
     design = np.ldexp(design, -power)
     size = np.linalg.norm(design, axis=0)
@@ -157,6 +165,6 @@ def spanned(design: Array) -> Array:
 
 
 def unexplained_square(design: Array, target: Array) -> float:
-    """Sum of squares of that."""
+    """Sum of squares of the part of a target that a design does not explain."""
     left = unexplained(design, target)
     return float(left @ left)

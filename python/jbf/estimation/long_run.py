@@ -1,9 +1,9 @@
-"""The long-run variance of scores: how far a sum over residuals that remember strays by chance.
+"""Long-run (HAC) variance of scores: the variance of sums over autocorrelated residuals.
 
-Innovations of a noise that is described well are white, and a score's variance is its length. Those
-of a noise with a longer memory, with heavier tails, or larger where the score is, are not. The
-variance is then estimated from the record's own score, summed over windows longer than the memory
-(Bartlett's kernel; Newey & West 1987).
+If the noise model is correct, innovations are white, and the variance of a score is its squared
+length. This fails for noise with a longer correlation time, heavy-tailed noise, or heteroscedastic
+noise related to the score. The variance is then estimated from the score of the record, summed over
+windows longer than the correlation time (Bartlett kernel; Newey & West 1987).
 """
 
 from __future__ import annotations
@@ -17,31 +17,31 @@ from scipy import special
 Array = npt.NDArray[np.float64]
 
 WINDOW_S = 3.0
-"""Length of the windows, s: five times the longest memory that a noise may be described by,"""
+"""Length of the windows, s: five times the longest correlation time of a noise model."""
 LEAST_WINDOWS = 8
-"""but so many fit into a record."""
+"""Minimum number of windows in a record; the windows are shortened accordingly."""
 LEAST_RUNS = 3
-"""Fewer runs have no scatter."""
+"""Minimum number of runs for an estimate of their scatter."""
 BY_CHANCE = 0.01
-"""Probability of a scatter of runs or of windows that is taken for chance."""
+"""Significance level for the scatter of runs or of windows."""
 
 
 def score_square(directions: Array, innovations: Array, step_s: float) -> float:
-    """The square of a score over its long-run variance: chi-square, one degree a direction.
+    """Square of a score over its long-run variance: chi-square, one degree of freedom a direction.
 
-    No direction's variance is taken for less than that of white noise.
+    The variance of each direction is at least that of white noise.
 
     Parameters
     ----------
     directions
         Orthonormal columns, shape (n, q).
     innovations
-        Of unit variance, shape (n,).
+        Innovations of unit variance, shape (n,).
     step_s
-        The usual step, s.
+        Usual sampling interval, s.
     """
     score = directions.T @ innovations
-    # What the score itself explains is the signal, and no noise.
+    # The part explained by the score itself is signal, not noise.
     rest = directions * (innovations - directions @ score)[:, None]
     size, axes = np.linalg.eigh(long_run_variance(rest, step_s))
     return float(np.sum((axes.T @ score) ** 2 / np.maximum(size, 1.0)))
@@ -50,14 +50,14 @@ def score_square(directions: Array, innovations: Array, step_s: float) -> float:
 def score_inflation(
     directions: Sequence[Array], innovations: Sequence[Array], steps_s: Sequence[float]
 ) -> float:
-    """How many times as large as in white noise the variance of a score is, at least one.
+    """Ratio of the variance of a score to that in white noise, at least one.
 
     Parameters
     ----------
     directions, innovations
-        One array a run, shape (n,); of any length.
+        One array a run, shape (n,); of any scale.
     """
-    # Of a direction far above no noise at all the squares would overflow.
+    # The squares of a direction far above the noise would overflow.
     largest = max((float(np.max(np.abs(d), initial=0.0)) for d in directions), default=0.0)
     if not 0.0 < largest < np.inf:
         return 1.0
@@ -66,7 +66,7 @@ def score_inflation(
     white = _white(innovations)
     if white <= 0.0:
         return 1.0
-    # What the score itself explains is no noise here either.
+    # The part explained by the score itself is not noise.
     along = sum(float(d @ e) for d, e in zip(directions, innovations, strict=True)) / square
     found = sum(
         float(long_run_variance((d * (e - along * d))[:, None], step)[0, 0])
@@ -78,15 +78,18 @@ def score_inflation(
 def sure_inflation(
     directions: Sequence[Array], innovations: Sequence[Array], steps_s: Sequence[float]
 ) -> float:
-    """The same where it is more than chance: a direction of a few breakaways has few windows, and
-    the mean square of a few numbers is no variance."""
+    """Ratio of the variance of a score to that in white noise, or one if it is not significant.
+
+    A direction of a few breakaways has few windows, and the mean square of a few numbers is not a
+    reliable variance.
+    """
     ratio = score_inflation(directions, innovations, steps_s)
     if ratio <= 1.0:
         return 1.0
     largest = max(float(np.max(np.abs(d), initial=0.0)) for d in directions)
     directions = [d / largest for d in directions]
     square = sum(float(np.sum(d**2)) for d in directions)
-    # A sum of squares with unequal weights is worth so many equal ones (Satterthwaite 1946).
+    # Effective number of equal terms in a sum of squares with unequal weights (Satterthwaite 1946).
     spread = sum(
         float(long_run_variance(d[:, None] ** 2, step)[0, 0])
         for d, step in zip(directions, steps_s, strict=True)
@@ -98,14 +101,15 @@ def sure_inflation(
 def between_runs(
     directions: Sequence[Array], innovations: Sequence[Array], inflation: float
 ) -> float:
-    """The same by what whole runs pull, where they scatter more than chance; else zero.
+    """Ratio of the variance of a score to that in white noise, from the scatter of whole runs.
 
-    A level that each run has of its own outlasts any window (clusters: Liang & Zeger 1986).
+    It is zero if the scatter is not significant. A level that each run has of its own lasts longer
+    than any window (clusters: Liang & Zeger 1986).
 
     Parameters
     ----------
     inflation
-        By the windows within the runs.
+        Ratio from the windows within the runs.
     """
     pulls = np.array([float(d @ e) for d, e in zip(directions, innovations, strict=True)])
     sizes = np.array([float(d @ d) for d in directions])
@@ -121,7 +125,7 @@ def between_runs(
 
 
 def _white(innovations: Sequence[Array]) -> float:
-    """The mean square of those that count: the others are zero."""
+    """Mean square of the innovations that count; the others are zero."""
     counted = sum(int(np.count_nonzero(e)) for e in innovations)
     return sum(float(np.sum(e**2)) for e in innovations) / max(counted, 1)
 

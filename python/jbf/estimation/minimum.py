@@ -1,5 +1,8 @@
-"""The minimum of a model's least squares: `settle` converges with the colour of the noise,
-`search_peaks` looks for a higher peak where an effect makes many."""
+"""Minimum of the least squares of a model.
+
+`settle` converges with coloured noise; `search_peaks` looks for a higher maximum of the likelihood
+where an effect causes many.
+"""
 
 from __future__ import annotations
 
@@ -21,22 +24,29 @@ from jbf.models.catalogue import find_effect, find_law
 Array = npt.NDArray[np.float64]
 
 MAX_EVALUATIONS = 60
-"""Steps of a search that converges."""
+"""Maximum number of evaluations of a search that converges."""
 FOLLOWED_IN_A_FIT = 6
-"""Starting points that are given a few steps where one model is fitted: to their ends where no film
-makes that dear, since the squares of a law that is wrong have many valleys."""
+"""Number of starting points that receive a few evaluations when a single model is fitted.
+
+Without a film they are searched to convergence, which is then inexpensive. The squares of a wrong
+law have many local minima.
+"""
 MOST_FORGIVEN = 1.02
-"""A fit weighted by the colour of its noise may have so many times the plain fit's RMS. Of coloured
-noise it has hardly more; the error of a wrong model is as smooth, and would be forgiven."""
+"""Maximum ratio of the RMS of a fit with coloured noise to that of the plain fit.
+
+With coloured noise the ratio is close to one. The error of a wrong model is equally smooth, and
+would be absorbed by the noise model.
+"""
 
 
 def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> Solution:
-    """Converge from a solution, with the colour of its noise.
+    """Converge from a solution, with coloured noise.
 
     Parameters
     ----------
     samples
-        Those to fit; the campaign's where not given, and then those beside jumps weighed anew.
+        Samples to fit. By default those of the campaign, with those next to jumps weighted again
+        after the first search.
     """
     every = problem.campaign.samples if samples is None else samples
     end, noise = Found(near.values, near.converged, near.message), near.noise
@@ -44,7 +54,7 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         end = search(problem, every, end.values, WHITE, MAX_EVALUATIONS)
         noise = noise_at(problem, every, end.values)
     if near.samples is not every:
-        # With jumps at full weight the search found its way; with little it finds the place.
+        # The search first uses jumps at full weight, and then converges with their reduced weight.
         left = problem.samples_at(end.values)
         there = problem.solution(end.values, left, noise, False, end.message)
         return settle(problem, there, left)
@@ -58,7 +68,7 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
 
 
 def search_peaks(problem: Problem, near: Solution) -> Solution:
-    """The highest peak near a solution, where an effect makes many."""
+    """Search the highest maximum of the likelihood near a solution, where an effect causes many."""
     for effect in problem.effects:
         peak = find_effect(effect).peaks
         name = f"{effect}.{peak}"
@@ -84,7 +94,7 @@ NESTED_EVALUATIONS = 30
 
 
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
-    """Approach, settle, and look for a higher peak."""
+    """Minimise: approach, settle, and search for a higher maximum of the likelihood."""
     if find_law(problem.law).has_film:
         near = approach(problem, seeds, MAX_EVALUATIONS, followed=FOLLOWED_IN_A_FIT)
     else:
@@ -100,10 +110,10 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
 
 
 def not_above_nested(problem: Problem, solution: Solution) -> Solution:
-    """The solution, or a better one from the optimum of the law without its effects.
+    """Return the solution, or a better one found from the optimum of the law without its effects.
 
-    A model with effects contains the law: with the effects at their nulls it predicts the same, so
-    a search that ends above the law's own optimum stopped in a local one.
+    A model with effects contains the law: with the effects at their null it predicts the same. A
+    search that ends above the optimum of the law has therefore stopped in a local minimum.
     """
     if not problem.effects:
         return solution

@@ -1,9 +1,9 @@
-"""What the instrument adds: white noise, and a coloured part with a memory of its own.
+"""Noise model of the instrument: white noise and a coloured part with its own correlation time.
 
-The residual of a right model is noise. It is described as white noise plus a first-order
-coloured part (correlation time tau), which at even steps is an ARMA(1,1) process; its one-step
-innovations are white, so likelihoods and standard errors are taken from them. The memory is
-held below `LONGEST_MEMORY_S`, so that slow structure cannot pass for noise.
+The residual of a correct model is noise. It is described as white noise plus a first-order
+coloured part (correlation time tau), which is an ARMA(1,1) process at uniform steps. Its one-step
+innovations are white; likelihoods and standard errors are computed from them. The correlation time
+is limited to `LONGEST_MEMORY_S`, so that slow residual structure is not described as noise.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from jbf import _core
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 LONGEST_MEMORY_S = 0.6
-"""Longest correlation time that still counts as noise."""
+"""Longest correlation time that still counts as noise, s."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,10 @@ class Noise:
     Attributes
     ----------
     memory_s
-        Correlation time of the coloured part.
+        Correlation time of the coloured part, s.
     colour
-        From 0 (white) to 1 (all coloured): the share by which innovations remember.
+        From 0 (white) to 1 (all coloured): one minus the ratio of the moving-average to the
+        autoregressive coefficient.
     """
 
     memory_s: float = 0.0
@@ -47,7 +48,7 @@ class Noise:
         return _core.first_order_filter((1.0, -phi), -phi * left, values)
 
     def coloured(self, innovations: Array, step_s: float) -> Array:
-        """The noise whose innovations these are; undoes :meth:`innovations`."""
+        """Return the noise with the given innovations; the inverse of :meth:`innovations`."""
         if self.white:
             return innovations
         phi, left = self._keeps(step_s)
@@ -55,15 +56,15 @@ class Noise:
 
     @property
     def white(self) -> bool:
-        """Whether nothing of it remembers."""
+        """Whether the noise is white."""
         return self.colour <= 0.0 or self.memory_s <= 0.0
 
     def _keeps(self, step_s: float) -> tuple[float, float]:
-        """What the coloured part keeps from one sample to the next; what an innovation leaves."""
+        """Autoregressive coefficient of the coloured part for one step, and 1 - colour."""
         return float(np.exp(-step_s / self.memory_s)), 1.0 - self.colour
 
     def coloured_share(self, step_s: float) -> float:
-        """Share of the variance that the coloured part has, 0 to 1."""
+        """Fraction of the variance in the coloured part, 0 to 1."""
         if self.colour <= 0.0 or self.memory_s <= 0.0:
             return 0.0
         keep = float(np.exp(-2.0 * step_s / self.memory_s))
@@ -74,7 +75,7 @@ class Noise:
         return ratio / (1.0 + ratio)
 
     def with_share(self, share: float, step_s: float) -> Noise:
-        """The same memory, the coloured part having this share (below 1) of the variance."""
+        """Return noise of the same correlation time with this coloured share (below 1)."""
         if share <= 0.0:
             return WHITE
         keep = float(np.exp(-2.0 * step_s / self.memory_s))
@@ -86,15 +87,15 @@ class Noise:
 WHITE = Noise()
 
 EARNED = 20.0
-"""What colour must gain in twice the log likelihood for its two parameters."""
+"""Threshold in twice the log likelihood for the two parameters of coloured noise."""
 FURTHER = 4.0
-"""Times what the best start's quadratic promises that colour may gain."""
+"""Factor on the gain predicted by the quadratic model at the best start, as an upper limit."""
 
 
 def innovation_cost(
     noise: Noise, residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
 ) -> float:
-    """`n log(mean square innovation)`: minus twice the log likelihood, up to a constant."""
+    """Return `n log(mean square innovation)`: minus twice the log likelihood, up to a constant."""
     total, count = 0.0, 0
     for residual, step, mask in zip(residuals, steps, masks, strict=True):
         e = noise.innovations(residual, step)[mask]
@@ -106,14 +107,16 @@ def innovation_cost(
 def _changes(
     noise: Noise, residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
 ) -> tuple[Array, Array]:
-    """Slope and Gauss-Newton's curvature of :func:`innovation_cost` by the log of the memory and by
-    the colour."""
+    """Gradient and Gauss-Newton Hessian of :func:`innovation_cost`.
+
+    The variables are the logarithm of the correlation time and the colour.
+    """
     total, count, slope, curvature = 0.0, 0, np.zeros(2), np.zeros((2, 2))
     for residual, step, mask in zip(residuals, steps, masks, strict=True):
         phi, left = float(np.exp(-step / noise.memory_s)), 1.0 - noise.colour
         before = -phi * left
         e = _core.first_order_filter((1.0, -phi), before, residual)
-        # Of e(t) = r(t) - phi r(t-1) + phi (1 - colour) e(t-1).
+        # Derivatives of e(t) = r(t) - phi r(t-1) + phi (1 - colour) e(t-1).
         faster = (0.0, phi * step / noise.memory_s)
         by_memory = _core.first_order_filter(faster, before, left * e - residual)
         by_colour = _core.first_order_filter((0.0, -phi), before, e)
@@ -133,11 +136,11 @@ def estimate_noise(
     masks: Sequence[Mask],
     most_n: float | None = None,
 ) -> Noise:
-    """The noise that makes the innovations of these residuals smallest.
+    """Estimate the noise model with the smallest innovations of the given residuals.
 
-    White unless colour earns its two parameters clearly. The coloured part's standard deviation is
-    held to `most_n`, N, where that is known: the error of a wrong model is as smooth as coloured
-    noise, and would be forgiven as such.
+    The noise is white unless colour exceeds its threshold. The standard deviation of the coloured
+    part is limited to `most_n`, N, where that is known: the error of a wrong model is as smooth as
+    coloured noise, and would be absorbed by it.
     """
     shortest = 2.0 * min(steps)
     longest = max(LONGEST_MEMORY_S, 2.0 * shortest)
@@ -156,7 +159,7 @@ def estimate_noise(
         slope, curvature = _changes(unpack(x), residuals, steps, masks)
         inner = special.expit(x)
         inner = inner * (1.0 - inner) * [high - low, 1.0]
-        # Where nothing changes the step is none.
+        # The small diagonal keeps the step at zero where nothing changes.
         return slope * inner, curvature * np.outer(inner, inner) + 1e-6 * np.eye(2)
 
     def slope(x: Array) -> Array:
@@ -171,7 +174,7 @@ def estimate_noise(
     promised = 0.5 * float(slope(best) @ np.linalg.solve(curvature(best), slope(best)))
     if cost(best) - FURTHER * promised >= white - EARNED:
         return WHITE
-    # A slope of 0.3 of a step of one leaves less than 0.1 in twice the log likelihood.
+    # For a unit curvature, a slope of 0.3 corresponds to less than 0.1 in twice the log likelihood.
     found = optimize.minimize(
         cost,
         best,

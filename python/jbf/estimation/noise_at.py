@@ -1,4 +1,4 @@
-"""The noise that a model leaves."""
+"""Noise model of the residuals of a model."""
 
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ Array = npt.NDArray[np.float64]
 def noise_at(
     problem: Problem, samples: Samples, values: Array, lines: Lines | None = None
 ) -> Noise:
-    """The noise description that fits the residuals at some values, the runs' deviations apart; of
-    many long runs, those of some. `lines` are the residuals there, if they are known."""
+    """Estimate the noise model of the residuals at some values, without the random effects of runs.
+
+    With many long runs, a selection of runs is used. `lines` holds the residuals and derivatives at
+    these values, if they are known.
+    """
     which = problem.searched
     samples = samples if len(which) == len(samples.runs) else samples.only(which)
     residuals = problem.residuals(values, which) if lines is None else lines[0]

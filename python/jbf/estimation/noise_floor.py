@@ -1,4 +1,4 @@
-"""How large the noise on the friction record is, by what the records alone say."""
+"""Noise floor of the friction record, estimated from the records only."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ Mask = npt.NDArray[np.bool_]
 
 
 def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
-    """Standard deviation of the noise on the friction record, N, from the data alone.
+    """Standard deviation of the noise on the friction record, N, from the data only.
 
-    Runs whose force is a command, or was filtered, show none of it. Zero where no run does: the
-    floor is not known then.
+    Runs whose force is a command, or was filtered, do not show the noise. The result is zero if all
+    runs are of this kind: the floor is then unknown.
 
-    The white part comes from third differences of the record, and is at least what a converter's
-    steps leave (Widrow 1956): in coarse ones most readings are those before them. A coloured part
-    hides from differences; it shows where the same motion comes again a period later and where the
-    shaft rests, so the larger of the estimates stands where it is clearly larger.
+    The white part is estimated from third differences of the record. It is at least the
+    quantisation error of a converter (Widrow 1956), because with coarse steps most readings equal
+    those before them. A coloured part does not appear in differences. It appears where the same
+    motion repeats a period later, and where the shaft rests. The larger estimate is used where it
+    is clearly larger.
     """
     noisy = [i for i, p in enumerate(prepared) if p.has_noise]
     if not noisy:
@@ -34,32 +35,32 @@ def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     floor, seen = _white(prepared, samples), _seen(prepared, samples)
     if seen is None:
         return floor
-    # Coloured noise leaves few independent samples: ask for a clear excess.
+    # Coloured noise gives few independent samples, so a clear excess is required.
     return seen if seen > 1.04 * floor and seen < 3.0 * floor else floor
 
 
 def most_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
-    """The most that the noise can be, N, colour and all; None where the records cannot tell."""
+    """Upper limit of the noise including its coloured part, N; None if it cannot be estimated."""
     seen = _seen(prepared, samples)
     return None if seen is None else max(seen, _white(prepared, samples))
 
 
 def _white(prepared: Sequence[Prepared], samples: Samples) -> float:
-    """The white part, N, from third differences, and from the steps of a converter."""
+    """White part of the noise, N, from third differences and quantisation steps."""
     squares = []
     for p, counted in zip(prepared, samples.counted, strict=True):
         values, added = _dithered(p)
-        # Steps that are coarse beside the noise are repeated, and leave no less for that.
+        # With steps that are coarse relative to the noise, readings repeat; their error remains.
         squares.append(max(noise_of(values[counted]) ** 2 - added, added))
     counts = [int(c.sum()) for c in samples.counted]
     return float(np.sqrt(np.average(squares, weights=counts))) if any(counts) else 0.0
 
 
 def _dithered(p: Prepared) -> tuple[Array, float]:
-    """Readings with an even spread of their converter's step added, N, and its variance, N^2.
+    """Readings with uniform dither of one quantisation step, N, and the dither's variance, N^2.
 
-    Medians of what comes in steps are a step, or none; with dither they are those of the noise
-    (Wannamaker et al. 2000). Without steps nothing is added.
+    Medians of quantised values are zero or a step; with dither they are those of the noise
+    (Wannamaker et al. 2000). Without quantisation steps no dither is added.
     """
     step = p.converter_step_n
     if step == 0.0:
@@ -69,7 +70,7 @@ def _dithered(p: Prepared) -> tuple[Array, float]:
 
 
 def _seen(prepared: Sequence[Prepared], samples: Samples) -> float | None:
-    """All of it, N, from periods that come again and from rests; None where these are too few."""
+    """Total noise, N, from repeated periods and rests; None if there are too few samples."""
     whole, weight = 0.0, 0
     for p, counted in zip(prepared, samples.counted, strict=True):
         rests = _rest_squares(p.motion.resting, p.friction_n)
@@ -80,11 +81,11 @@ def _seen(prepared: Sequence[Prepared], samples: Samples) -> float | None:
 
 
 def _rest_squares(resting: Mask, values: Array) -> list[tuple[float, int]]:
-    """Variance about its line in every long rest, with its length."""
+    """Variance about a straight line in every long rest, with the number of samples."""
     edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
     found = []
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        # The first moments of a rest may still settle.
+        # The beginning of a rest may still be a transient.
         begin = first + (end - first) // 4
         if end - begin >= 60:
             part = _off_its_line(values[begin:end])
@@ -93,7 +94,7 @@ def _rest_squares(resting: Mask, values: Array) -> list[tuple[float, int]]:
 
 
 def _off_its_line(values: Array) -> Array:
-    """Values less the straight line through them."""
+    """Values minus the straight line fitted to them."""
     place = np.arange(len(values)) - 0.5 * (len(values) - 1)
     above = values - np.mean(values)
     left: Array = above - place * float(place @ above) / float(place @ place)
@@ -101,19 +102,19 @@ def _off_its_line(values: Array) -> Array:
 
 
 def _repeat_square(prepared: Prepared, counted: Mask) -> tuple[float, int]:
-    """Variance of the noise from the same motion a period later, and the samples it used."""
+    """Variance of the noise from the same motion a period later, and the number of samples used."""
     shift = period_samples(prepared.motion.velocity_m_s)
     if shift is None:
         return 0.0, 0
-    # The first period still carries the start of the film.
+    # The first period still contains the initial-state transient of the film.
     (values, added), begin = _dithered(prepared), shift // 2
     gap = (values[begin + shift :] - values[begin:-shift]) / np.sqrt(2.0)
     ok = counted[begin + shift :] & counted[begin:-shift]
     gap = gap[ok]
     if len(gap) < 100:
         return 0.0, 0
-    # Slow drifts between periods are not noise: take them out. Half of the rest may do
-    # anything (reversals that do not line up).
+    # Slow drifts between periods are not noise and are removed. The median tolerates outliers in
+    # half of the samples, such as reversals that are not aligned.
     size = max(len(gap) // 12, 25)
     blocks = [gap[i : i + size] for i in range(0, len(gap) - size + 1, size)]
     spread = [np.median(np.abs(b - np.median(b))) / 0.6745 for b in blocks]

@@ -1,7 +1,7 @@
-"""Other peaks of a likelihood that has many, along the parameter that makes them.
+"""Other maxima of a likelihood that has many, along the parameter that causes them.
 
-Frequencies that samples cannot tell apart make a peak each. A search ends on the one that it began
-near; from there the next ones are seen by moving that parameter alone.
+Frequencies that the samples cannot distinguish cause one maximum each. A search ends at the maximum
+near its start. The next ones are found from there by varying this parameter only.
 """
 
 from __future__ import annotations
@@ -14,24 +14,26 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 REACH = 5.0
-"""Peaks are looked for up to so many times the value, and down to as small a share of it,"""
+"""Range of the scan, as a factor on the value upwards and downwards."""
 POINTS = 41
-"""at so many points."""
+"""Number of points of the scan."""
 CLIMBED = 2
-"""How many of them are climbed."""
+"""Number of maxima that are followed by a search."""
 
 
 def other_peaks(
     square: Callable[[Array], float], values: Array, which: int, lower: float, upper: float
 ) -> list[Array]:
-    """The best local minima of `square` along parameter number `which`, the one at hand left out.
+    """Best local minima of `square` along parameter number `which`, except the current one.
 
     Parameters
     ----------
     square
-        Sum of squares at parameter values.
+        Sum of squares as a function of the parameter values.
+    which
+        Index of the parameter.
     lower, upper
-        Bounds of the parameter, a scale above zero.
+        Bounds of the parameter, a positive scale.
     """
     spread = np.log(REACH)
     places = values[which] * np.exp(np.linspace(-spread, spread, POINTS))
@@ -45,7 +47,7 @@ def other_peaks(
     found = np.array([square(moved(place)) for place in places])
     around = np.pad(found, 1, constant_values=np.inf)
     lowest = (found <= around[:-2]) & (found <= around[2:])
-    # The grid's spacing: the same peak, not another.
+    # Minima within the grid spacing are the current one.
     lowest &= np.abs(np.log(places / values[which])) > spread / POINTS
     best = sorted(np.flatnonzero(lowest), key=lambda k: found[k])[:CLIMBED]
     return [moved(float(places[k])) for k in best]

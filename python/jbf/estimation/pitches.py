@@ -1,13 +1,14 @@
-"""Pitches at which a drive's force comes again along its way: where a fit of one may start.
+"""Spatial periods (pitches) at which the force of a drive repeats: starting values for their fit.
 
-The likelihood of a pitch has a peak for each pitch that the way could hold, as narrow as the way is
-long: no search finds one from afar. What depends on the speed, the acceleration and once a turn on
-the angle is taken from the force first, whatever the law; of the rest the spectrum over the place
-is asked, and its highest lines are where a fit starts.
+The likelihood of a pitch has one maximum for each pitch that the travel can resolve, and its width
+decreases with the length of the travel. A search from a distant start finds none of them. The force
+is therefore first corrected for its dependence on speed, on acceleration and, once a turn, on
+angle, whatever the law. The highest lines of the spatial spectrum of the remainder are the starting
+values.
 
-The search has its price: of noise the highest line of as many pitches as the way can hold gains
-`2 log(pitches)`, in twice the log likelihood; the pitches are fewer than the samples, and an effect
-with a size, a phase and a pitch pays `3 log(samples)` for its three parameters.
+The search has a penalty. In noise, the highest line of all resolvable pitches gains
+`2 log(pitches)` in twice the log likelihood. There are fewer pitches than samples, and an effect
+with amplitude, phase and pitch pays `3 log(samples)` for its three parameters.
 """
 
 from __future__ import annotations
@@ -26,17 +27,20 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LINES = 3
-"""Highest lines of a spectrum that are tried, each of what the higher ones leave."""
+"""Number of highest spectral lines that are tried, each after removal of the higher ones."""
 LEAST_PERIODS = 4.0
-"""Periods that the way must hold: what is longer varies along the stroke, whose shortest wave comes
-two and a half times in it, or is once a turn."""
+"""Minimum number of periods within the travel.
+
+Longer periods are once a turn or a variation along the stroke, whose shortest wave has two and a
+half periods within it.
+"""
 BINS_A_PITCH = 4.0
-"""Bins of the place in the shortest pitch that is looked for."""
+"""Number of position bins in the shortest pitch that is searched."""
 MOST_BINS = 2**15
 PADDING = 8
-"""Spectral lines to the width of one."""
+"""Spectral lines per resolution width."""
 KNOTS = 8
-"""Speeds each way between which friction over the speed is a line."""
+"""Number of knots in each direction of a piecewise linear friction-speed curve."""
 
 Knots = list[tuple[float, Array]]
 
@@ -45,12 +49,12 @@ _left: WeakKeyDictionary[Campaign, tuple[Array, Array, Array]] = WeakKeyDictiona
 
 
 def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
-    """The likeliest pitches of a campaign, m, likeliest first; none where nothing goes far enough.
+    """Most likely pitches of a campaign, m, most likely first; empty if the travel is too short.
 
     Parameters
     ----------
     along
-        Of the force in the direction of motion, which turns round with it; else of the force
+        Use the force in the direction of motion, which reverses with it; otherwise the force
         itself.
     """
     found = _known.setdefault(campaign, {})
@@ -60,8 +64,10 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
 
 
 def longest_pitch(campaign: Campaign) -> float:
-    """The longest pitch that the way of a campaign's runs holds often enough, m; infinite where it
-    has no way to speak of."""
+    """Longest pitch that fits often enough into the travel of the runs, m.
+
+    It is infinite for runs without travel.
+    """
     pairs = zip(campaign.prepared, moving_samples(campaign), strict=True)
     places = np.concatenate([p.motion.angle_rad[moving] for p, moving in pairs])
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
@@ -70,8 +76,10 @@ def longest_pitch(campaign: Campaign) -> float:
 
 
 def known_pitches(rig: Rig) -> tuple[float, ...]:
-    """The ways of one turn of the screw and of the motor, m (of a joint rad), where the rig's
-    [drive] tells them."""
+    """Travel of one turn of the screw and of the motor, m (rad for a joint), from [drive].
+
+    The result is empty if the rig's [drive] does not determine it.
+    """
     drive = rig.drive
     if drive is None:
         return ()
@@ -95,7 +103,7 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
     signal = rest * np.sign(speed) if along else rest
     signal = signal - np.mean(signal)
     length = PADDING * count
-    # In lines of a spectrum that is not padded: periods of the way.
+    # Number of periods within the travel for each line of the padded spectrum.
     periods = np.arange(length // 2 + 1) / PADDING * (span / (count * fine))
     told = (periods >= LEAST_PERIODS) & (periods * BINS_A_PITCH <= count)
     found: list[float] = []
@@ -106,14 +114,14 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
         if power[k] <= 0.0:
             break
         found.append(float(span / periods[k]))
-        # A place that is often passed gives a high line slopes of its own, as high as a lower line.
+        # A position that is passed often gives a high line side lobes as high as a lower line.
         signal = signal - _wave(signal, place, found[-1])
         told[max(k - 2 * PADDING, 0) : k + 2 * PADDING + 1] = False
     return tuple(found)
 
 
 def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
-    """The wave of a pitch in a signal, by least squares."""
+    """Least-squares fit of the wave of a pitch to a signal."""
     phase = 2.0 * np.pi * place / pitch_m
     pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
     solution, *_ = np.linalg.lstsq(pair, signal, rcond=None)
@@ -122,8 +130,10 @@ def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
 
 
 def _what_is_left(campaign: Campaign) -> tuple[Array, Array, Array]:
-    """Place, m, what of the force no speed, acceleration or turn explains, N, and the speed, m/s,
-    of the samples that move."""
+    """Position, m, remaining force, N, and speed, m/s, of the moving samples.
+
+    The remaining force is the part that speed, acceleration and angle do not explain.
+    """
     if campaign not in _left:
         _left[campaign] = _without_the_known(campaign)
     return _left[campaign]
@@ -137,8 +147,8 @@ def _without_the_known(campaign: Campaign) -> tuple[Array, Array, Array]:
     if len(speed) < PADDING * KNOTS:
         return place, np.concatenate([p.friction_n[m] for p, m in pairs]), speed
     knots = _knots(speed)
-    # Each run has its own load, and its own warmth: its means each way go run by run (Frisch &
-    # Waugh 1933), and of the rest a triangular factor is all that many runs leave.
+    # Each run has its own load and temperature, so the means in each direction are removed for each
+    # run (Frisch & Waugh 1933). A triangular factor replaces the rows of each run.
     factors, scales = [], []
     for p, m in pairs:
         known = _known_of(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
@@ -157,13 +167,13 @@ def _without_the_known(campaign: Campaign) -> tuple[Array, Array, Array]:
 
 
 def _known_of(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knots) -> Array:
-    """What a run's force may depend on beside the place, shape (n, k)."""
+    """Regressors of a run's force other than position, shape (n, k)."""
     slope = p.motion.acceleration_m_s2[moving]
     return np.stack([slope, np.cos(angle), np.sin(angle), *_hats(speed, knots)], axis=1)
 
 
 def _less_means(rows: Array, speed: Array) -> Array:
-    """Rows less their means in each direction of motion."""
+    """Rows minus their means in each direction of motion."""
     found: Array = rows.copy()
     for way in (speed > 0.0, speed < 0.0):
         if way.any():
@@ -172,7 +182,7 @@ def _less_means(rows: Array, speed: Array) -> Array:
 
 
 def _knots(speed: Array) -> Knots:
-    """Speeds between which any steady curve is a line, for each way."""
+    """Knots of a piecewise linear function of speed, for each direction."""
     found = []
     for way in (-1.0, 1.0):
         there = speed * way > 0.0
@@ -183,7 +193,7 @@ def _knots(speed: Array) -> Knots:
 
 
 def _hats(speed: Array, knots: Knots) -> list[Array]:
-    """Lines between knots over the speed, for each way."""
+    """Piecewise linear basis functions of speed, for each direction."""
     found = []
     for way, places in knots:
         there = speed * way > 0.0
@@ -193,7 +203,7 @@ def _hats(speed: Array, knots: Knots) -> list[Array]:
 
 
 def _way_a_sample(campaign: Campaign) -> float:
-    """How far the drive usually goes from sample to sample, m."""
+    """Usual distance between samples, m."""
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     steps = [
         np.abs(np.diff(p.motion.angle_rad))[m[1:] & m[:-1]]

@@ -1,9 +1,9 @@
-"""The log predictive density of samples that were left out of a fit.
+"""Log predictive density of samples that were held out of a fit.
 
-An error of a prediction tells against a model as far as the model claims to know better. What the
-other runs leave open of the parameters makes a prediction uncertain, in directions that the
-derivatives name: an error along them tells little, and a model pays for being so uncertain by the
-determinant of its covariance (Geisser & Eddy 1979; Bjornstad 1990).
+A prediction error counts against a model to the extent that the model claims precision. The
+uncertainty of the parameters after a fit to the other runs makes a prediction uncertain in the
+directions of its derivatives. An error in these directions has little weight. The model pays for
+this uncertainty by the determinant of its covariance (Geisser & Eddy 1979; Bjornstad 1990).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 def mean_square(solution: Solution, samples: Samples, noise: Noise) -> tuple[float, int]:
-    """Of the innovations in the fit, N^2; and how many there are."""
+    """Mean square of the innovations of the fit, N^2, and their number."""
     empty = [np.zeros((len(r), 0)) for r in solution.residuals]
     r, _ = samples.stacked(solution.residuals, empty, noise)
     return float(r @ r) / max(len(r), 1), len(r)
@@ -32,8 +32,11 @@ def mean_square(solution: Solution, samples: Samples, noise: Noise) -> tuple[flo
 
 @dataclass(frozen=True)
 class _Rows:
-    """What samples that were left out say: the squares of their errors, what those have of each
-    derivative, and the derivatives' own products; in few numbers of many rows."""
+    """Sums over held-out samples that determine their predictive density.
+
+    They are the squared errors, the products of errors and derivatives, and the products of the
+    derivatives.
+    """
 
     square: float
     pull: Array
@@ -44,7 +47,8 @@ class _Rows:
     def of(cls, part: LeftOut, solution: Solution, samples: Samples, noise: Noise) -> _Rows:
         own = [solution.jacobian[i] for i in part.runs]
         e, j = samples.only(part.runs).stacked(part.residuals, own, noise)
-        # Cut after the whitening: a half's first innovation knows the sample before it.
+        # Select after the whitening: the first innovation of a half depends on the sample before
+        # it.
         weight = [samples.weight[i] > 0.0 for i in part.runs]
         left = np.concatenate([m[w] for m, w in zip(part.left, weight, strict=True)])
         e, j = e[left], j[left]
@@ -58,18 +62,18 @@ def surprise(
     noise: Noise,
     variance: float,
 ) -> float:
-    """Minus twice the log predictive density of all parts, up to what is the same of every model
-    of these samples.
+    """Minus twice the log predictive density of all parts, up to a constant common to all models.
 
     Parameters
     ----------
+    solution
+        Solution whose derivatives are used.
     parts
-        What was left out of fits near the solution, whose derivatives are taken; each sample in one
-        of them.
+        Held-out parts of fits near the solution; each sample is in one of them.
     samples, noise
-        The weight of each sample, and what whitens residuals: those of all models compared.
+        Weights of the samples, and the noise model for whitening, common to all compared models.
     variance
-        Of the innovations, N^2.
+        Variance of the innovations, N^2.
     """
     rows = [_Rows.of(part, solution, samples, noise) for part in parts]
     whole = np.sum([own.products for own in rows], axis=0)
@@ -81,7 +85,7 @@ def surprise(
 def _of(rows: _Rows, whole: Array, size: Array, variance: float) -> float:
     told = rows.told
     scale = np.outer(size[told], size[told])
-    # What nobody else knows is known to a hundred times its error in the end.
+    # A parameter that no other run determines has a prior of a hundred times its final error.
     known = whole[np.ix_(told, told)] / scale + INSENSITIVE * np.eye(len(scale))
     before = known - rows.products[np.ix_(told, told)] / scale
     pull = rows.pull[told] / size[told]

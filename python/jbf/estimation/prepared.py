@@ -1,4 +1,4 @@
-"""One run made ready for many fits: the motion it imposed, and the core's copy of that."""
+"""One run prepared for many fits: its imposed motion, and the motion as an object of the core."""
 
 from __future__ import annotations
 
@@ -34,24 +34,26 @@ Mask = npt.NDArray[np.bool_]
 
 
 APART = 2
-"""Spacing of the samples of a coast-down, in lags at which the correlation of the acceleration's
-errors vanishes."""
+"""Spacing of the samples of a coast-down, in correlation lengths of the acceleration's errors.
+
+The correlation length is the lag at which the correlation vanishes.
+"""
 FINER = 1.5
-"""A motion read so many times as often as the force tells more than at the force's instants."""
+"""Ratio of the sampling rates of motion and force above which all motion samples are used."""
 
 
 def slides(motion: ImposedMotion) -> Mask:
-    """Return where friction has a known direction, shape (n,).
+    """Mask of the samples where friction has a known direction, shape (n,).
 
-    At rest friction is any force up to the breakaway level in either direction: it balances
-    whatever the drive holds. Such a sample has no residual, and neither has one near a reversal.
+    At rest, friction is any force up to the breakaway level in either direction: it balances the
+    force of the drive. Such a sample has no residual. The same applies to a sample near a reversal.
     """
     sliding: Mask = motion.sign_known & ~motion.resting
     return sliding
 
 
 class NoMotion(InputError):
-    """A run in which nothing moves, or not in a known direction."""
+    """A run without motion, or without a known direction of motion."""
 
 
 def coasting(rig: Rig) -> float | None:
@@ -62,9 +64,11 @@ def coasting(rig: Rig) -> float | None:
 
 @dataclass(frozen=True)
 class Prepared:
-    """One run, ready: its motion, its usual step, and what its recording did. Which of its samples
-    count, `Samples` says. With `friction_n` a model is compared: the run's readings, without what
-    its converter's steps are known to add."""
+    """One prepared run: its motion, its usual sampling interval, and its recording artefacts.
+
+    `Samples` defines which of its samples count. A model is compared with `friction_n`: the
+    readings of the run, corrected for the known quantisation bias of its converter.
+    """
 
     rig: Rig
     run: Run
@@ -73,30 +77,31 @@ class Prepared:
     step_s: float
     examined: Examined
     recorded: tuple[Array, ImposedMotion] | None = None
-    """The instants at which the motion was recorded, s, and the motion there, where the force was
-    read at others."""
+    """Times of the recorded motion, s, and the motion there, if the force has other times."""
 
     @property
     def converter_step_n(self) -> float:
-        """The step of the run's converter, N; zero where it is none to speak of."""
+        """Quantisation step of the run's converter, N; zero if it is negligible."""
         return max((f.size for f in self.examined.findings if f.kind == "steps"), default=0.0)
 
     @property
     def has_noise(self) -> bool:
-        """Whether the record holds the noise of the force: not that of a command, a filtered force,
-        or one that follows from the motion."""
+        """Whether the record contains the noise of the force.
+
+        This is false for a command, a filtered force, or a force derived from the motion.
+        """
         read = coasting(self.rig) is None
         return read and all(f.kind != "smooth_force" for f in self.examined.findings)
 
     @property
     def drawn_at_hz(self) -> float:
-        """The rate at which the force was read, Hz, where lines were drawn between; else zero."""
+        """Sampling rate of the force, Hz, if samples are interpolated; otherwise zero."""
         drawn = (f for f in self.examined.findings if (f.kind, f.unit) == ("interpolated", "Hz"))
         return max((f.size for f in drawn), default=0.0)
 
     @property
     def motion_as_read(self) -> tuple[Array, ImposedMotion]:
-        """The instants at which the motion was read, s, and the motion there."""
+        """Times at which the motion was read, s, and the motion there."""
         return self.recorded or (self.run.time_s, self.motion)
 
     @classmethod
@@ -112,7 +117,7 @@ class Prepared:
         Parameters
         ----------
         period_s
-            At which other runs of the same logger read the force, where that is known.
+            Sampling interval of the force in other runs of the same logger, if known, s.
         starts
             Errors of the readings of other runs of the same logger.
 
@@ -121,7 +126,7 @@ class Prepared:
         InputError
             The run has no friction.
         NoMotion
-            Nothing moves in it.
+            Nothing moves in the run.
         """
         run = as_read(run_on(rig, run))
         moved = coasting(rig)
@@ -133,7 +138,7 @@ class Prepared:
         recorded = None
         own = own_clock(run)
         if run.read:
-            # The model is compared at the readings of the force, and at no others.
+            # The model is compared only at the readings of the force.
             recorded = (instants, motion)
             there = run.read.get("friction_n", np.ones(len(run), dtype=bool))
             moving = (run.time_s >= instants[0]) & (run.time_s <= instants[-1])
@@ -184,42 +189,42 @@ class Prepared:
         examined = replace(examined, findings=(*examined.findings, *more))
         step_s = float(np.median(np.diff(run.time_s)))
         if run.load_n is not None:
-            # Before anything resamples it: lines drawn through noise are not white any more.
+            # Filter before any resampling: interpolated noise is no longer white.
             run = replace(run, load_n=frozen(steady_load(run.load_n)))
         assert run.friction_n is not None
         return cls(rig, run, motion, run.friction_n, step_s, examined, recorded)
 
     @property
     def slides(self) -> Mask:
-        """True where friction has a known direction (:func:`slides`), shape (n,)."""
+        """Mask of the samples where friction has a known direction (:func:`slides`), shape (n,)."""
         return slides(self.motion)
 
     @property
     def readings_n(self) -> Array:
-        """The run's readings, N."""
+        """Force readings of the run, N."""
         assert self.run.friction_n is not None
         return self.run.friction_n
 
     def finding(self, more: Sequence[Finding]) -> Prepared:
-        """The run with more findings."""
+        """Return the run with additional findings."""
         whole = (*self.examined.findings, *more)
         return replace(self, examined=replace(self.examined, findings=whole))
 
     def shifted(self, late_s: float, drift: float) -> Prepared:
-        """The run with its force compared with the motion so long before.
+        """Return the run with its force compared with the motion at an earlier time.
 
         Parameters
         ----------
         late_s
-            How late the force is in the middle of the run, s.
+            Delay of the force in the middle of the run, s.
         drift
-            By how much later it gets in a second.
+            Increase of the delay per second.
         """
         instants, motion = self.motion_as_read
         time = self.run.time_s
         middle = 0.5 * (time[0] + time[-1])
         read = time - late_s - drift * (time - middle)
-        # What was read before the motion begins, or after it ends, cannot be compared.
+        # Readings from before the start or after the end of the motion cannot be compared.
         kept = (read >= instants[0]) & (read <= instants[-1])
         run = self.run.select(kept).at(read[kept], self.readings_n[kept])
         usable = self.examined.usable[kept]
@@ -235,10 +240,10 @@ class Prepared:
 
     @cached_property
     def core(self) -> Driven:
-        """The core's copy of the motion.
+        """Motion of the run as an object of the compiled core.
 
-        Where the force was read more seldom than the motion, the motion between is the core's, too:
-        where it sets in, and turns round, matters.
+        If the force was read less often than the motion, the object contains the motion between the
+        force readings as well, because the times of starts and reversals matter.
         """
         time = self.run.time_s
         if self.recorded is None:
@@ -254,15 +259,18 @@ class Prepared:
         return Driven(driven.motion, kept if driven.kept is None else driven.kept[kept])
 
     def __getstate__(self) -> dict[str, Any]:
-        """What goes to another process: the core's copy is made again there."""
+        """Return the state for another process, without the core object.
+
+        The core object is created again there.
+        """
         return {name: value for name, value in vars(self).items() if name != "core"}
 
 
 def _independent(motion: ImposedMotion) -> Mask:
-    """Samples so far apart that the errors of their accelerations are independent, shape (n,).
+    """Mask of samples whose acceleration errors are independent, shape (n,).
 
-    The covariance of the errors at two instants is the product of the smoother's gains between them
-    and the covariance at the later one.
+    The covariance of the errors at two times is the product of the smoother gains between them and
+    the covariance at the later time.
     """
     count, errors = len(motion.velocity_m_s), motion.errors
     if errors is None:
@@ -278,20 +286,20 @@ def _independent(motion: ImposedMotion) -> Mask:
 
 
 def _of_readings(run: Run, motion: ImposedMotion, examined: Examined) -> list[Finding]:
-    """Findings on readings of a force, next to the motion."""
+    """Findings on the force readings in relation to the motion."""
     without_noise = _without_noise(run, slides(motion) & examined.usable, examined)
     return [*find_pushing(run, motion, examined.usable), *without_noise]
 
 
 def _derived(run: Run, moved: float) -> Finding:
-    """A finding that the friction follows from the deceleration."""
+    """Finding that the friction was derived from the deceleration."""
     said = run.quantities
     words = f"the {said.noun} is {moved:.5g} {said.unit('kg')} times the deceleration"
     return Finding("converted", "friction_n", run.name, moved, said.unit("kg"), "once", words)
 
 
 def _without_noise(run: Run, sliding: Mask, examined: Examined) -> list[Finding]:
-    """A finding where the force shows no noise: the steps of a converter are noise."""
+    """Finding that the force shows no noise; quantisation steps count as noise."""
     if any(f.kind == "steps" for f in examined.findings):
         return []
     return find_smooth_force(run, sliding)

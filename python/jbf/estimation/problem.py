@@ -1,7 +1,7 @@
-"""A campaign, a law and effects: predictions and derivatives in the search's variables.
+"""A campaign, a law and effects: predictions and derivatives in the search variables.
 
-The search walks in the logarithm of parameters that are scales, so that a step is a proportion and
-no step can change a sign.
+The search variable of a scale parameter is its logarithm: a step is then a ratio, and cannot change
+the sign.
 """
 
 from __future__ import annotations
@@ -38,29 +38,29 @@ from jbf.records.toml_file import number
 
 Array = npt.NDArray[np.float64]
 Lines = tuple[list[Array], list[Array]]
-"""Residuals, and derivatives of the prediction by the search variables, one array a run each."""
+"""Residuals and derivatives of the prediction by the search variables, one array a run each."""
 
 SLOPES_COST = 2.0
-"""A pass with derivatives takes so many times the time of one without."""
+"""Cost of a prediction with derivatives relative to one without."""
 BOUNDLESS = 1e50
-"""A derivative beyond this has grown without bound: a search squares what it makes of them."""
+"""Derivatives above this are treated as diverged, since a search squares them."""
 
 
 class Best:
-    """The best values that a search has seen, for one that is stopped before its end."""
+    """The best values seen by a search, for use if it is stopped early."""
 
     def __init__(self) -> None:
         self.values: Array | None = None
         self.square = np.inf
 
     def seen(self, values: Array, square: float) -> None:
-        """Keep values if the square that they leave is less than any before."""
+        """Store values if their sum of squares is the smallest so far."""
         if square < self.square:
             self.values, self.square = values, square
 
 
 class Problem:
-    """What is fitted: the parameters of a law and effects, some of them held, to a campaign."""
+    """A fitting problem: the parameters of a law and effects, some of them held, for a campaign."""
 
     def __init__(
         self,
@@ -87,28 +87,28 @@ class Problem:
         self.lower = np.array([p.lower for p in pages])
         self.upper = np.array([p.upper for p in pages])
 
-    # ---- the search's variables -------------------------------------------------------------
+    # =
 
     def encode(self, values: Array) -> Array:
-        """Parameter values to search variables."""
+        """Convert parameter values to search variables."""
         inside = np.clip(values, self.lower, self.upper)
         with np.errstate(divide="ignore", invalid="ignore"):
             search: Array = np.where(self.log, np.log(inside), inside)[self.open]
         return search
 
     def decode(self, x: Array, base: Array) -> Array:
-        """Search variables to parameter values; fixed ones from `base`."""
+        """Convert search variables to parameter values; fixed parameters are taken from `base`."""
         values: Array = base.copy()
         log = self.log[self.open]
         there = x.copy()
-        # The search may look far outside before it is called back.
+        # The search may evaluate far outside the bounds before it is limited.
         there[log] = np.exp(np.minimum(x[log], 700.0))
-        # A logarithm and back may land a rounding error outside.
+        # A logarithm and its inverse may lead outside by a rounding error.
         values[self.open] = np.clip(there, self.lower[self.open], self.upper[self.open])
         return values
 
     def wrapped(self, values: Array) -> Array:
-        """Angles brought back into (-period/2, period/2]."""
+        """Return values with angles wrapped into (-period/2, period/2]."""
         values = values.copy()
         for i, page in enumerate(self.parameters.values()):
             if page.period is not None:
@@ -116,7 +116,7 @@ class Problem:
         return values
 
     def starts(self, seed: Mapping[str, float]) -> list[Array]:
-        """Every combination of starting values for what `seed` lacks."""
+        """Return all combinations of starting values for the parameters that `seed` lacks."""
         choices = [
             (seed[name],) if name in seed else page.starts for name, page in self.parameters.items()
         ]
@@ -125,13 +125,13 @@ class Problem:
     # ---- predictions ------------------------------------------------------------------------
 
     def predict(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
-        """Predictions, N, one array a run; of some runs."""
+        """Predictions, N, one array a run; `which` selects runs."""
         motions = [p.core for p in self._runs(which)]
         self.campaign.work.take(self.chain.inner_steps(values, motions))
         return self.chain.predict(values, motions)
 
     def residuals(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
-        """Record minus prediction, N, one array a run; of some runs."""
+        """Record minus prediction, N, one array a run; `which` selects runs."""
         runs = self._runs(which)
         return [p.friction_n - f for f, p in zip(self.predict(values, which), runs, strict=True)]
 
@@ -141,8 +141,10 @@ class Problem:
         which: Sequence[int] | None = None,
         by: Sequence[int] | None = None,
     ) -> Lines:
-        """Residuals, and derivatives of the prediction by the search variables; of some runs, by
-        some of the parameters."""
+        """Residuals and derivatives of the prediction with respect to the search variables.
+
+        `which` selects runs, and `by` selects parameters.
+        """
         runs, by = self._runs(which), self.open if by is None else by
         scale = np.where(self.log, values, 1.0)[by]
         motions = [p.core for p in runs]
@@ -154,8 +156,10 @@ class Problem:
     def gauss_newton_rows(
         self, values: Array, samples: Samples, noise: Noise, lines: Lines | None = None
     ) -> tuple[Array, Array, int]:
-        """Innovations and their derivatives in few rows, and how many innovations there are; from
-        what :meth:`linearise` gave, if that is at hand."""
+        """Innovations and their derivatives in reduced rows, and the number of innovations.
+
+        They are computed from `lines`, the result of :meth:`linearise`, if it is given.
+        """
         r, j, count = [], [], 0
         lengths = [len(p.friction_n) for p in self.campaign.prepared]
         for group in groups_of(lengths, len(self.open)):
@@ -170,19 +174,19 @@ class Problem:
 
     @property
     def few_numbers(self) -> bool:
-        """Whether derivatives at all samples may be held."""
+        """Whether the derivatives at all samples fit into the memory limit."""
         samples = sum(len(p.friction_n) for p in self.campaign.prepared)
         return samples * len(self.open) <= MOST_HELD
 
     @cached_property
     def searched(self) -> list[int]:
-        """The runs on which a search finds its way: some of them, where they are long."""
+        """Indices of the runs that a search uses: a selection, if the campaign is large."""
         runs = self.campaign.prepared
         return every_so_many([len(p.friction_n) for p in runs], [p.run.name for p in runs])
 
     @cached_property
     def thinned(self) -> Problem:
-        """The same of those runs."""
+        """The problem for the runs in `searched`."""
         which = self.searched
         if len(which) == len(self.campaign.prepared):
             return self
@@ -201,8 +205,10 @@ class Problem:
         return samples.square(self.residuals(values))
 
     def samples_at(self, values: Array, lines: Lines | None = None) -> Samples:
-        """The samples that the model at these values leaves; `lines` are the residuals there, if
-        they are known."""
+        """Samples with the weights that the model at these values implies.
+
+        `lines` holds the residuals at these values, if they are known.
+        """
         samples = self.campaign.samples
         effects = active_effects(self.effects, self.parameters, values)
         begins = begins_anywhere(effects)
@@ -219,7 +225,7 @@ class Problem:
         return samples_beside_jumps(samples, prepared, predicted, effects)
 
     def _settled(self, samples: Samples, values: Array, noise_n: float) -> Samples:
-        """Those of them that do not remember how their run began."""
+        """Samples without the initial-state transient of their run."""
         prepared = self.campaign.prepared
         for memory in memories(self.law, self.effects):
             masks = remembering(self.chain, values, prepared, memory, noise_n)
@@ -235,8 +241,10 @@ class Problem:
         message: str = "",
         lines: Lines | None = None,
     ) -> Solution:
-        """The solution at given values, on given samples; from what :meth:`linearise` gave, if that
-        is at hand."""
+        """Return the solution at given values, on given samples.
+
+        It is computed from `lines`, the result of :meth:`linearise`, if it is given.
+        """
         residuals: Sequence[Array]
         jacobian: Sequence[Array]
         count = len(self.campaign.prepared)
@@ -254,8 +262,11 @@ class Problem:
 
 
 def bounded(jacobian: Array, scale: Array) -> Array:
-    """Derivatives by the search's variables; none where a step too coarse for wild parameters let
-    them grow without bound, so that the search turns back by its residuals."""
+    """Derivatives with respect to the search variables; zero where they have diverged.
+
+    A step too coarse for extreme parameters may make them diverge. The search then turns back
+    because of its residuals.
+    """
     with np.errstate(over="ignore", invalid="ignore"):
         found: Array = jacobian * scale
         if np.max(np.abs(found), initial=0.0) < BOUNDLESS:
@@ -266,7 +277,7 @@ def bounded(jacobian: Array, scale: Array) -> Array:
 def named_values(
     values: Mapping[str, float] | None, known: Mapping[str, Parameter]
 ) -> dict[str, float]:
-    """Full names and checked bounds."""
+    """Resolve parameter names to full names and check the values against their bounds."""
     found = {}
     given = {} if values is None else by_name(values, "parameters")
     for name, anything in given.items():

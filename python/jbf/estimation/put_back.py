@@ -1,8 +1,8 @@
-"""Parameters that nothing in the runs depends on, put back where they started.
+"""Reset of parameters on which nothing in the runs depends to their starting values.
 
-A search takes them anywhere. Of such a wild number a reader, a model file or a firmware would make
-something; where they started is at least a guess. An effect that ended next to its null goes there.
-Nothing is put back that would change what the model predicts where samples count.
+A search may move such parameters anywhere. A reader, a model file or firmware would interpret the
+arbitrary number; the starting value is at least a guess. An effect that ended next to its null is
+set to it. Nothing is reset that would change the prediction at the samples that count.
 """
 
 from __future__ import annotations
@@ -22,28 +22,31 @@ from jbf.models.catalogue import Parameter
 Array = npt.NDArray[np.float64]
 
 SAME_IN_NOISE = 1e-4
-"""Predictions are the same where they differ by no more than this share of the residual,"""
+"""Largest difference of equal predictions, as a fraction of the residual."""
 SAME_IN_FRICTION = 1e-9
-"""or of the friction itself."""
+"""Largest difference of equal predictions, as a fraction of the friction."""
 SLIDING = {"F_s_n": "F_c_n"}
-"""The breakaway force of a law, and the sliding one that it is without a peak."""
+"""Breakaway force of a law, and the sliding force that it equals without a peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
-"""How much of the way back is tried: where the start itself predicts otherwise, part of the way may
-still leave a number less wild."""
+"""Fractions of the distance to the start that are tried.
+
+If the starting value itself changes the prediction, a partial reset may still give a less extreme
+value.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class PutBack:
-    """A solution without wild numbers.
+    """A solution without arbitrary parameter values.
 
     Attributes
     ----------
     values
         Parameter values, shape (k,).
     residuals
-        Record minus prediction at these, N, one array a run.
+        Record minus prediction at these values, N, one array a run.
     notes
-        Parameter name to why it is held, of those looked at here.
+        Parameter name to the reason why it is held, for the parameters considered here.
     """
 
     values: Array
@@ -54,12 +57,12 @@ class PutBack:
 def put_back(
     problem: Problem, solution: Solution, spread: Spread, start: Mapping[str, float]
 ) -> PutBack:
-    """Idle effects to their null, and what never moved towards where it changes nothing.
+    """Set idle effects to their null, and unidentified parameters towards a neutral value.
 
     Parameters
     ----------
     start
-        Where the user had the search start, by full name; where the pages say by default.
+        The user's starting values by full name; by default those of the catalogue.
     """
     found = PutBack(solution.values, solution.residuals, {})
     found = _idle_to_null(found, problem, solution, spread, start)
@@ -107,9 +110,9 @@ def _idle_to_null(
 
 
 def _home(problem: Problem, name: str, values: Array) -> float:
-    """The value at which a parameter changes nothing, or where it started.
+    """Value at which a parameter changes nothing, or its starting value.
 
-    A breakaway force without evidence of a peak is the sliding one.
+    A breakaway force without evidence of a peak equals the sliding force.
     """
     page, sliding = problem.parameters[name], SLIDING.get(name)
     if sliding in problem.parameters:
@@ -118,7 +121,10 @@ def _home(problem: Problem, name: str, values: Array) -> float:
 
 
 def _on_the_way(page: Parameter, value: float, home: float, share: float) -> float:
-    """So much of the way home, in the search's variable; an infinite home is reached or not."""
+    """Move a value by a fraction of the distance to `home`, in the search variable.
+
+    An infinite `home` is reached only with a fraction of one.
+    """
     if share == 1.0 or not np.isfinite(home):
         return home if share == 1.0 else value
     if page.log:
@@ -127,7 +133,7 @@ def _on_the_way(page: Parameter, value: float, home: float, share: float) -> flo
 
 
 def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | None:
-    """The residuals at these values, if the model predicts as the solution does."""
+    """Residuals at these values if the prediction equals that of the solution, otherwise None."""
     residuals = problem.residuals(values)
     samples = solution.samples
     gaps = [a - b for a, b in zip(residuals, solution.residuals, strict=True)]

@@ -1,4 +1,4 @@
-"""Refine a fit for the errors of the estimated motion, by generalised least squares."""
+"""Refinement of a fit for the errors of the estimated motion, by generalised least squares."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from jbf.records.motion.imposed import ImposedMotion
 Array = npt.NDArray[np.float64]
 
 NEGLIGIBLE = 0.01
-"""Mean share of the motion's errors in the variance below which the motion is exact enough."""
+"""Mean share of the motion's errors in the variance below which they are neglected."""
 EXACT = 1e-3
-"""The same, below which a late force is a fault of the model and not of the clocks."""
+"""Mean share below which a delayed force is a defect of the model and not of the clocks."""
 ROUNDS = 8
 """Largest number of iterations of sensitivities and fits."""
 SETTLED = 0.01
@@ -37,11 +37,11 @@ SETTLED = 0.01
 EVALUATIONS = 20
 """Evaluations of each fit."""
 STEP = 0.5
-"""Step of the numerical derivatives by the motion, standard errors of the motion."""
+"""Step of the numerical derivatives by the motion, in standard errors of the motion."""
 ROUGHER = 30.0
-"""Factor of the noise's intensity with which the effect of the smoothing is looked at."""
+"""Factor on the noise intensity used to examine the effect of the smoothing."""
 SCALE_KNOWN = 1.0
-"""Standard deviation of the logarithm of the scale of the motion's errors before the fit."""
+"""Prior standard deviation of the logarithm of the scale of the motion's errors."""
 SIMPLEX = 0.3
 """Size of the first simplex in the logarithms of noise and scale."""
 EXACT_RECORD = 1e-12
@@ -49,26 +49,26 @@ EXACT_RECORD = 1e-12
 LEAST_NOISE = -7.0
 """Logarithm of the smallest noise, relative to the residual."""
 INTENSITY_STEP = 3.0
-"""Factor of the noise's intensity between two motions whose likelihoods are compared."""
+"""Factor on the noise intensity between two motions whose likelihoods are compared."""
 LEAST_INTENSITY = 1e-4
-"""Smallest factor of the intensity, and the reciprocal of the largest."""
+"""Smallest factor on the intensity, and the reciprocal of the largest."""
 SMOOTHNESS_GAIN = 10.0
-"""Decrease of the deviance that another intensity must have."""
+"""Decrease of the deviance required to change the intensity."""
 HUBER = 2.5
-"""Standard errors of a residual, by noise and motion, beyond which its pull no longer grows."""
+"""Limit of the influence of a residual, in its standard errors due to noise and motion."""
 DELAYED = 5.0
-"""Standard errors from which a delay of the force common to all runs is corrected."""
+"""Significance, in standard errors, from which a delay of the force in all runs is corrected."""
 UNCERTAIN = 9.0
-"""Difference of the deviance up to which the clock of the force is not known."""
+"""Difference of the deviance up to which the clock of the force is not identifiable."""
 LONGEST_DELAY = 2.0
-"""Longest delay of the force, samples."""
+"""Longest delay of the force, in samples."""
 
 
 def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """The solution by generalised least squares, and the problem with the force's delay corrected.
+    """Return the generalised least-squares solution, and the problem with the delay corrected.
 
-    The same ones where the motion is exact enough and the force is not late. Where position and
-    velocity were read on two clocks, the force was read on either: both are tried.
+    They are unchanged where the motion is exact enough and the force has no delay. Where position
+    and velocity were read on two clocks, the force may be on either of them, and both are tried.
     """
     motions = [p.motion.errors for p in problem.campaign.prepared]
     if any(e is None for e in motions):
@@ -103,8 +103,11 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 
 
 def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Estimate noise, scale and smoothness of the motion's errors again, for a model with more
-    effects, and fit once; a delay that was corrected is projected out as before."""
+    """Estimate the errors of the motion again for a model with more effects, and fit once.
+
+    Their noise, scale and smoothness are estimated. A delay that was corrected is projected out as
+    before.
+    """
     before = problem.campaign.samples.motion
     delayed = before is not None and before.by_delay is not None
     problem, solution = _likeliest_smoothness(problem, solution)
@@ -119,7 +122,7 @@ class _End:
     Attributes
     ----------
     first, problem
-        The problem as it was, and with the force's delay corrected.
+        The original problem, and the one with the force's delay corrected.
     delayed
         Whether a delay of the force was estimated.
     """
@@ -141,8 +144,10 @@ class _End:
 
 
 def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool = True) -> _End:
-    """Iterate the fit with the force late by `clock_s` and, with delays, by a significant delay
-    that all runs share."""
+    """Iterate the fit with a delay `clock_s` of the force.
+
+    With `delays`, a significant delay common to all runs is estimated as well.
+    """
     problem, late_s = first, clock_s
     delays = delays and first.campaign.force_has_clock
     if clock_s != 0.0:
@@ -170,7 +175,7 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
 
 
 def _with_smoothing(end: _End) -> Array:
-    """Change of each search variable where the motion is smoothed less, shape (k,)."""
+    """Change of each search variable if the motion is smoothed less, shape (k,)."""
     problem, solution = end.problem, end.solution
     other = _rougher(problem, ROUGHER, same_corners=True)
     near = other.solution(solution.values, solution.samples, WHITE)
@@ -179,9 +184,9 @@ def _with_smoothing(end: _End) -> Array:
 
 
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """The problem with the intensity of the motion's noise that makes the forces likeliest.
+    """Return the problem with the noise intensity of the motion that maximises the likelihood.
 
-    A force tells more of an acceleration than the differences of positions do.
+    A force determines an acceleration better than differences of positions do.
     """
     if not problem.campaign.force_has_clock:
         return problem, solution
@@ -212,8 +217,10 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
 
 
 def _rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> Problem:
-    """The problem with the intensity of the motion's noise multiplied by a factor
-    (`Smoothed.rougher`)."""
+    """Return the problem with the noise intensity of the motion multiplied by a factor.
+
+    See `Smoothed.rougher`.
+    """
     prepared = []
     for p in problem.campaign.prepared:
         motion = p.motion.rougher(p.run.time_s, factor, same_corners=same_corners)
@@ -229,7 +236,7 @@ def _rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> 
 
 
 def _with(problem: Problem, campaign: Campaign) -> Problem:
-    """The problem of another campaign."""
+    """Return the problem for another campaign."""
     again = copy(problem)
     again.campaign = campaign
     for cached in ("searched", "thinned"):
@@ -238,11 +245,11 @@ def _with(problem: Problem, campaign: Campaign) -> Problem:
 
 
 def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
-    """Sensitivities at a solution, the noise, and the scale of the motion's errors.
+    """Estimate sensitivities at a solution, the noise, and the scale of the motion's errors.
 
-    Noise and scale have the largest likelihood. The scale corrects the smoother's standard errors,
-    which are too large where the motion is smoother than the noise process that it assumes; its
-    logarithm has a normal prior, so that it stays at 1 where the motion's errors are negligible.
+    Noise and scale maximise the likelihood. The scale corrects the smoother's standard errors,
+    which are too large if the motion is smoother than the assumed noise process. Its logarithm has
+    a normal prior, so that it stays at 1 where the motion's errors are negligible.
     """
     prepared = problem.campaign.prepared
     predicted = [p.friction_n - r for p, r in zip(prepared, solution.residuals, strict=True)]
@@ -254,7 +261,8 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
             own[:, axis] = np.divide(after - before, step, where=step > 0.0, out=own[:, axis])
     mass = coasting(problem.campaign.rig)
     if mass is not None:
-        # The force is the deceleration's: an error of the acceleration is one of the record, too.
+        # The force is derived from the deceleration, so an error of the acceleration is in the
+        # record too.
         for own in sensitivity:
             own[:, 2] += mass
     weights = solution.samples.weight
@@ -295,7 +303,7 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
 def _penalised(
     motion: ErrorsInMotion, residuals: Sequence[Array], weights: Sequence[Array]
 ) -> float:
-    """Deviance with the prior of the scale."""
+    """Deviance including the prior of the scale."""
     prior = (float(np.log(motion.scale)) / SCALE_KNOWN) ** 2
     return motion.deviance(residuals, weights) + prior
 
@@ -303,7 +311,7 @@ def _penalised(
 def _fitted(
     problem: Problem, near: Solution, motion: ErrorsInMotion, *, delayed: bool = False
 ) -> Solution:
-    """A generalised least-squares fit near a solution, with Huber's weights."""
+    """Generalised least-squares fit near a solution, with Huber's weights."""
     prepared, values = problem.campaign.prepared, near.values
     if delayed:
         slopes = tuple(delay_slope(problem, values, p) for p in prepared)
@@ -327,7 +335,7 @@ def _delay(
     late_s: float,
     clock_s: float,
 ) -> float:
-    """By how much later the forces are, s; zero where that is not significant or too much."""
+    """Additional delay of the forces, s; zero where it is not significant or too large."""
     if TAU in problem.names:
         return 0.0
     white = replace(solution, samples=replace(solution.samples, motion=motion), noise=WHITE)
@@ -341,7 +349,7 @@ def _delay(
 
 
 def _delayed(first: Problem, late_s: float) -> Problem:
-    """The problem with its forces compared so much earlier."""
+    """Return the problem with its forces compared with the motion at an earlier time."""
     prepared = tuple(p.shifted(late_s, 0.0) for p in first.campaign.prepared)
     names = ", ".join(p.run.name for p in prepared)
     way = "late" if late_s > 0.0 else "early"
@@ -352,8 +360,10 @@ def _delayed(first: Problem, late_s: float) -> Problem:
 
 
 def _moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
-    """A run whose motion is off by a share of a standard error in one of its components, and by how
-    much, in powers of m (or rad) and s, shape (n,)."""
+    """Return a run with one component of its motion changed, and the change, shape (n,).
+
+    The change is a fraction of a standard error, in powers of m (or rad) and s.
+    """
 
     def off(motion: ImposedMotion) -> tuple[ImposedMotion, Array]:
         errors = motion.errors

@@ -1,4 +1,4 @@
-"""Replicates: where a record shows the same motion again."""
+"""Replicates: parts of a record that repeat the same motion."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Array = npt.NDArray[np.float64]
 
 
 def period_samples(velocity: Array) -> int | None:
-    """The period of a repeated motion in samples, or None."""
+    """Period of a repeated motion in samples, or None."""
     n = len(velocity)
     if n < 100 or np.ptp(velocity) == 0.0:
         return None
@@ -27,9 +27,9 @@ def period_samples(velocity: Array) -> int | None:
     )
     if not len(tops):
         return None
-    # The first repetition that is about as good as any, not a multiple of it.
+    # The first repetition of about the highest correlation, rather than a multiple of it.
     peak = int(tops[np.flatnonzero(rho[tops] > 0.98 * np.max(rho[tops]))[0]])
-    # The correlation of a record with a ragged end peaks a little beside the period.
+    # For a record with an incomplete last period, the correlation peaks slightly off the period.
     reach = max(peak // 30, 2)
     gaps = {
         shift: float(np.std(velocity[shift:] - velocity[:-shift]))

@@ -1,9 +1,9 @@
-"""What the instant of a reversal costs, where it is known no better than the speed is.
+"""Prediction error due to the uncertain time of a reversal.
 
-Where the motion turns round slowly, the speed's own error moves the instant at which friction
-jumps: by its standard error over the acceleration. The samples within which the jump may lie do
-not count (`Samples`). An instrument that follows late spreads the jump over its memory, and with it
-the error of the instant: so many newtons as the reading moves in that time.
+If the motion reverses slowly, the error of the speed moves the time at which friction jumps, by the
+standard error of the speed over the acceleration. The samples within which the jump may lie do not
+count (`Samples`). A sensor with lag spreads the jump over its time constant, and the error of the
+time with it. The resulting error in newtons is the change of the reading during that time.
 """
 
 from __future__ import annotations
@@ -16,12 +16,14 @@ from jbf.estimation.prepared import Prepared
 Array = npt.NDArray[np.float64]
 
 MOST = 0.29
-"""Standard deviation of a place somewhere between two samples, as a share of their distance."""
+"""Standard deviation of a uniform position between two samples, relative to their distance."""
 
 
 def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:
-    """Standard error of a prediction (N) behind each reversal, from its instant's, until it is less
-    than `least_n`; zero elsewhere, shape (n,)."""
+    """Standard error of a prediction (N) after each reversal, due to the error of its time.
+
+    Shape (n,); zero elsewhere, and from where the error falls below `least_n`.
+    """
     motion, time_s = p.motion, p.run.time_s
     found = np.zeros(len(prediction))
     if len(prediction) < 3:
@@ -35,7 +37,7 @@ def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:
         error_s = min(error / slope, MOST * between_s)
         last = befores[k + 1] if k + 1 < len(befores) else len(prediction)
         behind_n = error_s * rate_n_s[before + 1 : last + 1]
-        # It dies away from where the sign is known again.
+        # The error decays from where the sign is known again.
         small = np.flatnonzero(behind_n[after - before - 1 :] < least_n)
         if len(small):
             behind_n = behind_n[: after - before - 1 + int(small[0])]
@@ -44,8 +46,10 @@ def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:
 
 
 def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
-    """The last samples of one sign before each reversal, and the first of the other after it, where
-    the motion does not rest between."""
+    """Last samples before each reversal, and first samples after it.
+
+    Only reversals without a rest in between are included.
+    """
     motion = p.motion
     known = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity_m_s != 0.0))
     turned = np.flatnonzero(np.diff(np.sign(motion.velocity_m_s[known])) != 0.0)

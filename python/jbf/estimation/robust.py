@@ -1,4 +1,4 @@
-"""What a few samples that are off do not decide (Hampel 1974)."""
+"""Robust statistics with bounded influence of outliers (Hampel 1974)."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 CLIPPED = 3.5
-"""Errors count no more than at so many standard deviations."""
+"""Limit of the contribution of an error, in standard deviations."""
 
 
 def robust_size(values: Array) -> float:
-    """A standard deviation from the median; zero of none, as of a run that was set aside."""
+    """Standard deviation estimated from the median; zero without values, as for an excluded run."""
     if not len(values):
         return 0.0
     return float(np.median(np.abs(values))) / 0.6745
 
 
 def clipped_square(errors: Array, size: float) -> float:
-    """Their sum of squares, each no further than to `CLIPPED` standard deviations of this size."""
+    """Sum of squares with each error clipped at `CLIPPED` times the standard deviation `size`."""
     return float(np.sum(np.minimum(errors**2, (CLIPPED * size) ** 2)))

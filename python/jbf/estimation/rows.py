@@ -1,5 +1,7 @@
-"""Rows of many samples, without holding them all: of a recording of days the derivatives alone
-would fill a machine's memory."""
+"""Processing of many samples without holding all rows in memory.
+
+The derivatives of a recording of days alone would fill the memory of a machine.
+"""
 
 from __future__ import annotations
 
@@ -12,20 +14,23 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 MOST_HELD = 2_000_000
-"""Numbers (samples times parameters) that a solution holds; more are made again when asked for."""
+"""Largest number of values (samples times parameters) that a solution holds.
+
+Larger results are computed again for each access.
+"""
 MOST_SEARCHED = 400_000
-"""Samples of a search for the way to a minimum; of more, some of the runs show it as well."""
+"""Largest number of samples in a search; with more, a selection of runs is sufficient."""
 GROUP = 16_000_000
-"""Derivatives that are held at a time on the way to a solution."""
+"""Largest number of derivatives held at a time during the computation of a solution."""
 
 
 class OnDemand(Sequence[Array]):
-    """One array a run, made each time that it is asked for.
+    """Sequence with one array a run, computed at each access.
 
     Parameters
     ----------
     make
-        The array of run i.
+        Function that returns the array of run i.
     count
         Number of runs.
     """
@@ -47,7 +52,7 @@ class OnDemand(Sequence[Array]):
 
 
 def groups_of(lengths: Sequence[int], width: int) -> list[list[int]]:
-    """Runs in a row whose rows, so wide, are held at a time."""
+    """Group consecutive runs such that the rows of a group, of the given width, fit into memory."""
     groups: list[list[int]] = []
     held = GROUP
     for i, length in enumerate(lengths):
@@ -60,8 +65,11 @@ def groups_of(lengths: Sequence[int], width: int) -> list[list[int]]:
 
 
 def every_so_many(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
-    """Runs with half as many samples as a search takes at most, all of them where that many are not
-    there: every so many by name, in whatever order they are given."""
+    """Select runs with half of the largest number of samples of a search.
+
+    All runs are selected if there are too few samples. The selection is at regular intervals by
+    name, and does not depend on the order of the runs.
+    """
     apart = 2.0 * sum(lengths) / MOST_SEARCHED
     if apart <= 2.0 or len(lengths) < 2.0 * apart:
         return list(range(len(lengths)))
@@ -70,10 +78,10 @@ def every_so_many(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
 
 
 def triangular(r: Array, j: Array) -> tuple[Array, Array]:
-    """A residual and its derivatives in as few rows as there are numbers in one.
+    """Reduce a residual and its derivatives to as many rows as there are columns.
 
-    A rotation of rows changes neither sums of squares nor what a Gauss-Newton step does (Golub &
-    Van Loan, Matrix Computations, section 5.3).
+    An orthogonal transformation of the rows changes neither sums of squares nor a Gauss-Newton step
+    (Golub & Van Loan, Matrix Computations, section 5.3).
     """
     rows: Array = np.column_stack([j, r])
     factor = np.asarray(np.linalg.qr(rows, mode="r"), dtype=np.float64)

@@ -1,5 +1,8 @@
-"""Samples at the start of a run that say nothing of the friction's laws: they still remember in
-which state it began (`initial_state`), and are set aside for every model of the campaign."""
+"""Exclusion of the initial-state transient at the start of a run.
+
+The samples still depend on the unknown initial state (`initial_state`) and do not identify the
+friction law. They are excluded for every model of the campaign.
+"""
 
 from __future__ import annotations
 
@@ -25,15 +28,15 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 OFF = 2.0
-"""Times the usual residual from which on a beginning is worth a word."""
+"""Ratio to the usual residual above which the start of a run is reported."""
 RANKING_EVALUATIONS = 8
-"""Steps of a fit that is good enough to tell how fast the film is."""
+"""Evaluations of a fit that is accurate enough to estimate the rate of the film."""
 NO_MORE = 1e-3
-"""Share of the samples that is too few to begin again for."""
+"""Fraction of the samples below which no new fit is needed."""
 
 
 def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
-    """True where a run still remembers how it began, one mask a run.
+    """Mask of the samples at which a run still remembers its initial state, one a run.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
 
 
 def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
-    """The campaign without the samples that remember how their run began, by the bare law.
+    """Return the campaign without the initial-state transients, estimated with the bare law.
 
     Raises
     ------
@@ -67,11 +70,11 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
 
 
 def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
-    """The campaign without what a model with effects remembers of how its runs began, where those
-    make the film another one than the bare law's, or begin in a state of their own; None where no
-    more of it counts.
+    """Return the campaign without the initial-state transients of a model with effects.
 
-    A law that lacks its load, say, fits badly, and tells how soon its film forgets as badly.
+    This applies if the effects change the film or have an initial state of their own. The result is
+    None if no significant number of further samples is excluded. A law that lacks an effect, such
+    as the load, fits badly, and so gives a wrong duration of the film's memory.
     """
     pages = [find_effect(name) for name in problem.effects]
     lasting = [page.name for page in pages if page.stage == "film" or page.unknown_start]
@@ -87,7 +90,7 @@ def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
 
 
 def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Campaign:
-    """The campaign without the samples at which a model remembers what no record tells."""
+    """Return the campaign without the samples at which a model remembers unrecorded states."""
     campaign = problem.campaign
     noise_n = noise_floor(campaign.prepared, campaign.samples)
     masks = unsettled(problem, values, noise_n)
@@ -100,7 +103,7 @@ def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Cam
 
 
 def _what(law: str, effects: Iterable[str]) -> str:
-    """What was another thing than a model would have it as a run began."""
+    """Text for the state that differed from that of the model when a run began."""
     page = find_law(law)
     cell = begins_anywhere(effects)
     if page.has_film:
@@ -111,7 +114,7 @@ def _what(law: str, effects: Iterable[str]) -> str:
 def _findings(
     campaign: Campaign, residuals: Sequence[Array], masks: list[Mask], kept: Samples, what: str
 ) -> list[Finding]:
-    """The runs whose beginning is not what a rested film, or the first motion, would have given."""
+    """Findings for the runs whose start differs from that of a rested film or the first motion."""
     found = []
     whole = zip(campaign.prepared, residuals, masks, campaign.samples.counted, strict=True)
     usual = kept.rms(residuals)

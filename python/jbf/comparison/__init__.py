@@ -1,7 +1,7 @@
-"""Comparison: record minus prediction in; how far, and where it fails, out.
+"""Comparison: from record minus prediction to the size and location of the model's errors.
 
-Comes in: a `Model` and runs. Goes out: `Comparison`, with each axis along which the residual has a
-pattern. `axes` sorts samples into bins, `patterns` tests the bins' means against chance.
+Input: a `Model` and runs. Output: `Comparison`, with each axis along which the residual has a
+pattern. `axes` sorts samples into bins; `patterns` tests the means of the bins against chance.
 
 May import: `jbf.records`, `jbf.models`, `jbf.estimation`.
 """

@@ -1,7 +1,7 @@
-"""The axes along which a residual is looked at: one function gives each sample's bin.
+"""Axes along which a residual is examined: each function assigns a bin to each sample.
 
-An axis answers "where does the model fail?": it sorts samples into few bins, and a residual whose
-mean differs from bin to bin fails along that axis.
+An axis shows where the model fails. It sorts samples into few bins; a residual whose mean differs
+between bins fails along that axis.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ TIME_BINS = 12
 SPEED_BINS = 12
 FORCE_BINS = 16
 BOUNDARY_SHARE = 0.2
-"""Below this share of U_tr the asperities carry most of the load."""
+"""Fraction of U_tr below which the asperities carry most of the load."""
 
 
 def _both_ways(bins: Sequence[Bin], *, with_rest: bool = False) -> tuple[Bin, ...]:
-    """The bins once for motion backwards, then once for motion forwards."""
+    """Return the bins for backward motion, followed by the bins for forward motion."""
     back = [replace(b, direction=-1, with_rest=with_rest) for b in bins]
     return (*back, *(replace(b, direction=1) for b in bins))
 
@@ -46,7 +46,7 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
     speeds = np.concatenate([np.abs(p.motion.velocity_m_s) for p in campaign.prepared])
     moving = speeds[speeds > 0.0]
     edges = np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1])
-    # Of a speed that is held the quantiles are one, but for rounding; and no bin stays empty.
+    # At constant speed the quantiles are equal except for rounding; empty bins are removed.
     edges = edges[np.diff(edges, prepend=np.min(moving)) > 1e-9 * np.max(moving)]
     edges = edges[np.unique(np.digitize(moving, edges))[1:] - 1]
     count = len(edges) + 1
@@ -63,7 +63,7 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
-    """Lubrication regimes of a law with a film; of any other, thirds of the speeds on record."""
+    """Lubrication regimes of a law with a film; thirds of the recorded speeds for any other law."""
     speeds = [np.abs(p.motion.velocity_m_s) for p in campaign.prepared]
     axis: Axis = "regime"
     if u_tr is not None:
@@ -102,8 +102,8 @@ def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
     for p in campaign.prepared:
         turned = np.mod(p.motion.angle_rad, 2.0 * np.pi)
         kind = np.minimum((turned / width).astype(np.intp), ANGLE_BINS - 1)
-        # Friction that depends on angle changes sign with the motion: look at the sum and
-        # the difference through two sets of bins.
+        # Friction that depends on angle changes sign with the motion: two sets of bins show the sum
+        # and the difference.
         signed = np.where(p.motion.velocity_m_s < 0, kind, kind + ANGLE_BINS)
         places.append(np.where(p.motion.resting, -1, signed).astype(np.intp))
     return Binned("angle", _both_ways([Bin(centre=m, unit="deg") for m in middles]), places)
@@ -139,7 +139,7 @@ def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array])
 
 
 def _after_events(p: Prepared, event: npt.NDArray[np.bool_], measure: Array) -> Array:
-    """`measure` since the last event, NaN before the first."""
+    """Increase of `measure` since the last event; NaN before the first."""
     index = np.where(event, np.arange(len(event)), -1)
     last = np.maximum.accumulate(index)
     since = measure - measure[np.maximum(last, 0)]
@@ -167,14 +167,14 @@ def _run(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def force_axis(forces: Sequence[Array], error: float = 0.0, unit: str = "N") -> Binned:
-    """Samples by a force: along it the nonlinearity of a load cell shows.
+    """Bin samples by a force: this axis shows the nonlinearity of a load cell.
 
     Parameters
     ----------
     error
-        Standard error of these forces. Edges are removed until, at each edge, the samples closer
-        to it than two standard errors are at most half of the smaller neighbouring bin: else the
-        bins would separate the signs of the error.
+        Standard error of these forces. Edges are removed until few samples are close to each edge.
+        At most half as many samples as in the smaller neighbouring bin may lie within two standard
+        errors of an edge. Otherwise the bins would separate the signs of the error.
     """
     every = np.concatenate(list(forces))
     edges = np.unique(np.quantile(every, np.linspace(0, 1, FORCE_BINS + 1)[1:-1]))
@@ -193,7 +193,7 @@ def force_axis(forces: Sequence[Array], error: float = 0.0, unit: str = "N") -> 
 
 
 def _distinct(values: Array, edges: Array, reach: float) -> Array:
-    """Edges with at most half as many samples within reach as the smaller bin next to them has."""
+    """Remove edges with more samples within reach than half of the smaller adjacent bin."""
     while len(edges):
         below = np.searchsorted(values, edges)
         counts = np.diff(np.concatenate(([0], below, [len(values)])))
@@ -208,12 +208,13 @@ def _distinct(values: Array, edges: Array, reach: float) -> Array:
 
 
 def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:
-    """Every axis that the campaign's records allow.
+    """Return every axis that the records of the campaign permit.
 
     Parameters
     ----------
     u_tr
-        Transition speed of the model, m/s: parts the regimes. None of a law without a film.
+        Transition speed of the model, m/s, which separates the regimes; None for a law without a
+        film.
     """
     unit = campaign.rig.quantities.force
     of_states = [make(campaign, u_tr) for make in (_direction, _velocity, _regime, _run)]

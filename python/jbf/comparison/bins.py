@@ -1,7 +1,7 @@
-"""Bins along an axis as data: where each stands, which way the motion goes, and its words.
+"""Bins along an axis as data: their position, direction of motion, and text.
 
-The words of a bin are made here and nowhere else, and nothing reads them back: who wants a number
-takes it from the bin.
+The text of a bin is generated only here, and is not parsed anywhere: numbers are taken from the
+bin.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ Axis = Literal[
     "distance since a reversal",
     "force",
 ]
-"""What a residual is looked at along."""
+"""Axis along which a residual is examined."""
 
 Direction = Literal[-1, 0, 1]
-"""Of the motion in a bin: backwards, either way, forwards."""
+"""Direction of the motion in a bin: backward, both, forward."""
 
 _CENTRES = {"velocity": "v = {:+.3g}", "force": "f = {:+.3g}", "angle": "angle {:.0f}"}
 _AFTER = {"time since a rest": "a rest", "distance since a reversal": "a reversal"}
@@ -44,15 +44,15 @@ class Bin:
     Attributes
     ----------
     name
-        Of a bin that is no number: a regime, a run.
+        Name of a bin without a numeric position: a regime, a run.
     centre
-        Where its samples lie along the axis, in `unit`.
+        Position of its samples along the axis, in `unit`.
     span
-        From where to where it reaches, in `unit`; an end may be infinite.
+        Lower and upper end, in `unit`; an end may be infinite.
     direction
-        Which way its samples move.
+        Direction of motion of its samples.
     with_rest
-        True where a backward bin holds samples at rest, too.
+        Whether a backward bin also contains samples at rest.
     """
 
     name: str = ""
@@ -64,7 +64,7 @@ class Bin:
 
     @property
     def position(self) -> float | None:
-        """Where it stands along its axis, in `unit`; None of a bin that is no number."""
+        """Position along the axis, in `unit`; None for a bin without a numeric position."""
         if self.span is not None and all(map(math.isfinite, self.span)):
             return 0.5 * (self.span[0] + self.span[1])
         return self.centre
@@ -72,10 +72,10 @@ class Bin:
 
 @dataclass(frozen=True)
 class Binned:
-    """Every run's samples sorted into bins.
+    """Samples of every run sorted into bins.
 
-    `places` holds, one array a run, which bin each sample is in; -1 means in none. `force_unit` is
-    that of the residuals.
+    `places` holds the bin index of each sample, one array a run; -1 means no bin. `force_unit` is
+    the unit of the residuals.
     """
 
     axis: Axis
@@ -85,12 +85,12 @@ class Binned:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """The bins in words."""
+        """Text of the bins."""
         return labels(self.axis, self.bins)
 
 
 def span_words(b: Bin) -> str:
-    """`up to 0.1 s`, `0.1 to 0.2 s`, `over 0.2 s`; empty of a bin without a span."""
+    """Return `up to 0.1 s`, `0.1 to 0.2 s` or `over 0.2 s`; empty for a bin without a span."""
     if b.span is None:
         return ""
     low, high = b.span
@@ -102,7 +102,7 @@ def span_words(b: Bin) -> str:
 
 
 def direction_words(b: Bin) -> str:
-    """`v < 0`, `v > 0`; empty where a bin holds both."""
+    """Return `v < 0` or `v > 0`; empty for a bin with both directions."""
     if b.direction == 0:
         return ""
     if b.direction == 1:
@@ -111,7 +111,7 @@ def direction_words(b: Bin) -> str:
 
 
 def label(axis: Axis, b: Bin) -> str:
-    """A bin in words: where it stands, then the direction of its motion."""
+    """Text of a bin: its position, then the direction of its motion."""
     if axis in _CENTRES and b.centre is not None:
         place = f"{_CENTRES[axis].format(b.centre)} {b.unit}"
     elif axis in _AFTER:
@@ -120,11 +120,11 @@ def label(axis: Axis, b: Bin) -> str:
         place = f"{b.span[0]:.0f} to {b.span[1]:.0f} {b.unit}"
     else:
         place = f"run {b.name}" if axis == "run" else b.name
-    # The sign of the speed has said it.
+    # The sign of the speed already gives the direction.
     way = "" if axis == "velocity" else direction_words(b)
     return ", ".join(words for words in (place, way) if words)
 
 
 def labels(axis: Axis, bins: tuple[Bin, ...]) -> tuple[str, ...]:
-    """All bins in words."""
+    """Text of all bins."""
     return tuple(label(axis, b) for b in bins)

@@ -1,4 +1,4 @@
-"""Model against measurement: how far, and where it fails."""
+"""Comparison of a model with measurements: size and location of its errors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RunComparison:
-    """One run against the model: its RMS over so many samples; 0 N where none of it counts."""
+    """Comparison of one run: RMS over the samples that count; 0 N if none counts."""
 
     name: str
     rms_n: float
@@ -36,16 +36,16 @@ class RunComparison:
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Result):
-    """A model against runs.
+    """Comparison of a model with runs.
 
     Attributes
     ----------
     samples
-        Those that count: in motion, where its sign is known.
+        The samples that count: those in motion with a known sign.
     rms_n
         Root mean square of record minus prediction over the samples that count, N.
     noise_n
-        Noise floor of the record, from the data alone, N; zero where it is not known.
+        Noise floor of the record, from the data only, N; zero where it is not known.
     failures
         Axes along which the residual has a pattern, strongest first.
     predictions, residuals
@@ -64,11 +64,11 @@ class Comparison(Result):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What the recording did to the runs, and what was done about it."""
+        """Recording artefacts of the runs, and how they were treated."""
         return self.campaign.findings
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return the comparison as a dictionary for JSON."""
         return {
             **self.model.told_units(),
             "rms_n": self.rms_n,
@@ -79,12 +79,12 @@ class Comparison(Result):
         }
 
     def report(self, path: PathLike) -> None:
-        """As `save_html`."""
+        """Write the HTML report, as `save_html`."""
         self.save_html(path)
 
 
 def predicted(model: Model, campaign: Campaign) -> list[Array]:
-    """What a model says of runs that are ready, N, one array a run."""
+    """Predictions of a model for prepared runs, N, one array a run."""
     motions = campaign.motions
     core = chain(model.rig, model.law, model.clock, model.effects)
     warn_of_fast_film(core, model.values, motions)
@@ -94,7 +94,7 @@ def predicted(model: Model, campaign: Campaign) -> list[Array]:
 
 
 def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
-    """`compare` for runs that are ready."""
+    """Compare a model with prepared runs; see `compare`."""
     predictions = predicted(model, campaign)
     pages = parameters_of(model.law, tuple(model.effects))
     effects = active_effects(model.effects, pages, model.values)
@@ -127,8 +127,8 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
 def compare(model: Model, runs: Sequence[Run]) -> Comparison:
     """Compare a model with recorded runs.
 
-    Samples at rest, and those at which the sign of the motion cannot be known (within a few of a
-    reversal), count neither for the model nor against it.
+    Samples at rest do not count, nor do samples at which the sign of the motion is unknown (within
+    a few samples of a reversal).
 
     Raises
     ------

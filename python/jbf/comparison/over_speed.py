@@ -1,4 +1,4 @@
-"""Friction over the speed, as Stribeck drew it: means of all runs, of record and model."""
+"""Stribeck curve: mean friction over speed of all runs, for record and model."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ Array = npt.NDArray[np.float64]
 
 BINS = 24
 FEWEST = 5
-"""Fewer samples make no mean worth a dot."""
+"""Minimum number of samples for a mean."""
 
 
 @dataclass(frozen=True)
 class OverSpeed:
-    """One way of the motion: bins of as many samples each, the slowest first.
+    """Means for one direction of motion, in bins with equal numbers of samples, slowest first.
 
     Attributes
     ----------
     way
-        1.0 or -1.0.
+        Direction, 1.0 or -1.0.
     speed_m_s
         Mean speed of each bin, with its sign.
     measured_n, scatter_n
-        Mean and standard deviation of the readings, without what is no friction.
+        Mean and standard deviation of the readings, without contributions other than friction.
     modelled_n
         Mean of the model at the same samples.
     """
@@ -44,7 +44,7 @@ class OverSpeed:
 
 
 def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
-    """Means at each speed of all samples that count, one of each way in which there was motion."""
+    """Mean friction by speed over all samples that count, for each direction with motion."""
     rest = added_by(comparison, beside_friction(comparison))
     prepared, samples = comparison.campaign.prepared, comparison.samples
     speed = samples.flat([p.motion.velocity_m_s for p in prepared])
@@ -67,6 +67,6 @@ def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
 
 
 def regimes(model: Model) -> list[tuple[float, str]]:
-    """Speeds, m/s, at which a regime begins, and its name; none of a law that has no film."""
+    """Speeds, m/s, at which a regime begins, with its name; empty for a law without a film."""
     u_tr = transition_speed(model.law, model.values.tolist())
     return [] if u_tr is None else [(BOUNDARY_SHARE * u_tr, "mixed"), (u_tr, "full film")]

@@ -1,6 +1,6 @@
-"""What single effects add to a model's friction: the model less the same model without them.
+"""Contributions of single effects to a model's friction: the model minus the model without them.
 
-The core is asked twice; nothing of an effect's form is written here.
+Both predictions are computed by the core; this module contains no formula of an effect.
 """
 
 from __future__ import annotations
@@ -27,44 +27,48 @@ NO_FRICTION = (
     "sensor_drift",
     "zero_load_dependence",
 )
-"""Effects that a force sensor reads beside the friction, and adds to it."""
+"""Effects that a force sensor reads in addition to the friction."""
 
 
 def without(model: Model, effects: Collection[str]) -> Model:
-    """The same model, every other parameter as it is, without some of its effects."""
+    """Return the model without some of its effects, with all other parameters unchanged."""
     kept = tuple(name for name in model.effects if name not in effects)
     values = {n: p for n, p in model.parameters.items() if n.rpartition(".")[0] not in effects}
     return Model(model.rig, model.law, kept, values, model.clock)
 
 
 def added_by(comparison: Comparison, effects: Collection[str]) -> list[Array]:
-    """What effects add to the model's friction in each run, N; zeros of those it does not have."""
+    """Contribution of effects to the model's friction in each run, N.
+
+    It is zero for effects that the model does not have.
+    """
     model = comparison.model
     if not set(effects) & set(model.effects):
         return [np.zeros(len(f)) for f in comparison.predictions]
     with warnings.catch_warnings():
-        # The whole model has given it already.
+        # The prediction of the full model has already issued this warning.
         warnings.simplefilter("ignore", FilmWarning)
         rest = predicted(without(model, effects), comparison.campaign)
     return [whole - f for whole, f in zip(comparison.predictions, rest, strict=True)]
 
 
 def beside_friction(comparison: Comparison) -> tuple[str, ...]:
-    """Effects of the model that are no friction: inertia, weight, zero, cogging."""
+    """Effects of the model that are not friction: inertia, weight, zero, cogging."""
     return tuple(name for name in NO_FRICTION if name in comparison.model.effects)
 
 
 def friction_alone(comparison: Comparison) -> list[Array]:
-    """The readings of each run less all that the model knows to be no friction, N."""
+    """Readings of each run minus the contributions that the model attributes to other forces, N."""
     rest = added_by(comparison, beside_friction(comparison))
     return [p.friction_n - f for p, f in zip(comparison.campaign.prepared, rest, strict=True)]
 
 
 def made_of(before: Comparison, after: Comparison) -> dict[str, list[Array]]:
-    """Of what a model left, the part that each effect of a fuller one says, N, one array a run.
+    """Part of a model's residual explained by each new effect of a larger model, N, one array a
+    run.
 
-    An effect is said to add what the first model's own parameters cannot make up for: what it adds,
-    less its projection on that model's derivatives.
+    The part is the contribution that the parameters of the first model cannot compensate: the
+    contribution minus its projection on the derivatives of that model.
     """
     model, campaign = before.model, before.campaign
     core = chain(model.rig, model.law, model.clock, model.effects)

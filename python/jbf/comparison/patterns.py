@@ -1,4 +1,4 @@
-"""Patterns of a residual: bins of an axis whose means differ from nothing by more than chance."""
+"""Patterns of a residual: bins of an axis whose means differ significantly from zero."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ Array = npt.NDArray[np.float64]
 Counts = npt.NDArray[np.intp]
 
 LEAST_SHARE = 0.01
-"""An axis that explains less of the residual than this is not worth a line."""
+"""Fraction of the residual's mean square below which a pattern is not reported."""
 SIGNIFICANCE = 6.0
-"""How many standard deviations the explained part must stand above chance."""
+"""Required excess of the explained part over chance, in standard deviations."""
 STRONG_SHARE = 0.02
-"""Bins with less of what the means explain than this have no part in the pattern's words."""
+"""Fraction of the explained part below which a bin is not mentioned in the text of a pattern."""
 MOST_OF = 0.8
-"""A pattern in more of an axis's bins than this share is one of all the axis."""
+"""Fraction of the bins above which a pattern covers the whole axis."""
 
 
 @dataclass(frozen=True)
@@ -34,15 +34,15 @@ class Failure:
     Attributes
     ----------
     axis
-        `velocity`, `direction`, `regime` (of a law without a film: `speed range`),
+        `velocity`, `direction`, `regime` (for a law without a film: `speed range`),
         `acceleration`, `angle`, `time`, `run`, `time since a rest` or
         `distance since a reversal`.
     where
-        The pattern in words.
+        Text that describes the pattern.
     share
-        Part of the residual's mean square that the bins' means explain, 0 to 1.
+        Fraction of the residual's mean square that the means of the bins explain, 0 to 1.
     bins, means_n, counts
-        The bins, and in each the mean of record minus prediction (N) and the samples.
+        The bins, and for each the mean of record minus prediction (N) and the number of samples.
     """
 
     axis: Axis
@@ -54,11 +54,11 @@ class Failure:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """The bins in words."""
+        """Text of the bins."""
         return labels(self.axis, self.bins)
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return the pattern as a dictionary for JSON."""
         return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}
 
 
@@ -76,7 +76,7 @@ def find_failures(
 
 
 def bin_means(axis: Binned, samples: Samples, residuals: Sequence[Array]) -> tuple[Array, Counts]:
-    """Mean of the residuals in each bin, N, and how many samples it is of."""
+    """Mean of the residuals in each bin, N, and the number of its samples."""
     r, places = samples.flat(residuals), samples.flat(axis.places)
     known = places >= 0
     counts = np.bincount(places[known], minlength=len(axis.bins))
@@ -93,26 +93,26 @@ def pattern_along(
     significance: float = SIGNIFICANCE,
     told_of: Sequence[Array] | None = None,
 ) -> Failure | None:
-    """The pattern of residuals (record minus prediction, N) along an axis, where it stands out.
+    """Pattern of residuals (record minus prediction, N) along an axis; None if not significant.
 
     Parameters
     ----------
     noise_n
-        Standard deviation of what is no pattern, N.
+        Standard deviation of the noise without a pattern, N.
     least_share
-        Share of the mean square that the means of the bins must explain beyond chance.
+        Fraction of the mean square that the means of the bins must explain beyond chance.
     significance
-        Standard deviations that this must stand above chance.
+        Required excess of the explained part over chance, in standard deviations.
     told_of
-        Record minus prediction, N, whose means the words and the sizes are of, where the test is of
-        something else.
+        Residuals, N, whose means are reported in text and numbers, if they differ from the tested
+        ones.
     """
     r = samples.flat(residuals)
     total = float(r @ r)
     means, counts = bin_means(axis, samples, residuals)
     used = int(np.count_nonzero(counts))
     explained = float(np.sum(counts * means**2))
-    # By chance each bin's mean takes one noise variance.
+    # By chance, the mean of each bin explains one noise variance.
     chance = used * noise_n**2
     spread = np.sqrt(2.0 * used) * noise_n**2
     share = (explained - chance) / total if total > 0 else 0.0
@@ -124,10 +124,13 @@ def pattern_along(
 
 
 def pattern_words(axis: Binned, means: Array, counts: Counts, found: Array | None = None) -> str:
-    """The pattern of the means in words; those in which it was `found` say in which bins."""
+    """Text for a pattern of the means.
+
+    `found` holds the means that select the bins, if they differ.
+    """
     weight = counts * (means if found is None else found) ** 2
     unit = axis.force_unit
-    # Of very many bins the strongest has little, too.
+    # With very many bins, even the strongest has a small fraction.
     strong = (weight > STRONG_SHARE * weight.sum()) | (weight == weight.max())
     ways = np.array([b.direction for b in axis.bins])
     both_ways = bool(np.all(ways != 0)) and strong.sum() > 1

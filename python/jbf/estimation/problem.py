@@ -87,7 +87,7 @@ class Problem:
         self.lower = np.array([p.lower for p in pages])
         self.upper = np.array([p.upper for p in pages])
 
-    # =
+    # ---- search variables -------------------------------------------------------------------
 
     def encode(self, values: Array) -> Array:
         """Convert parameter values to search variables."""

@@ -1,11 +1,11 @@
-"""Which samples count, how much, and in which run and block: decided once for a model, and taken by
-its likelihood, its score tests and every test of what remains.
+"""Selection and weights of samples for a model, by run.
 
-A record does not tell the sign of the friction within a few samples of a reversal, nor anything
-where its path and its speed contradict one another: those samples count nowhere. At rest friction
-balances whatever the drive holds, up to the breakaway level: a law predicts no value there, and
-those samples do not count either. A model may set more of them aside (`jumps`). A fit gives each
-sample its weight; a test looks at those that count.
+They are decided once for a model, and used by its likelihood, its score tests and all tests of the
+residual structure. The record does not determine the sign of the friction within a few samples of a
+reversal. It is also not usable where position and speed contradict each other. Such samples do not
+count. At rest, friction balances the force of the drive up to the breakaway level. A law predicts
+no value there, so samples at rest do not count either. A model may exclude further samples
+(`jumps`). A fit uses the weight of each sample; a test uses the samples that count.
 """
 
 from __future__ import annotations
@@ -29,24 +29,25 @@ T = TypeVar("T", bound=np.generic)
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """The samples of some runs; every tuple has one entry a run.
+    """The samples of a set of runs; every tuple has one entry a run.
 
     Attributes
     ----------
     runs
         Names of the runs.
     steps_s
-        The usual step of each, s.
+        Usual sampling interval of each run, s.
     counted
-        True at the samples that tests, RMS and noise look at, shape (n,).
+        True at the samples that tests, RMS and noise use, shape (n,).
     weight
-        What a fit gives each sample, 0 to 1, shape (n,): 1 where it counts, and less beside a
-        jump whose instant is itself fitted, or where the noise is larger than usual.
+        Weight of each sample in a fit, 0 to 1, shape (n,). It is 1 where the sample counts, and
+        less next to a jump whose time is itself fitted, or where the noise is larger than usual.
     between
-        What differs from run to run; None where nothing is known to.
+        Random effects of the runs; None if none are known.
     level
-        How much smaller than here the noise is where it is least, 0 to 1, shape (n,): a part of
-        `weight`, whose rest is of jumps and of heavy tails. None where the noise is even.
+        Ratio of the smallest noise level to that of the sample, 0 to 1, shape (n,). It is one
+        factor of `weight`; the others are for jumps and heavy-tailed noise. None for homoscedastic
+        noise.
     motion
         Errors of the motion in the residuals; None where they are neglected.
     """
@@ -73,13 +74,13 @@ class Samples:
 
     @property
     def count(self) -> int:
-        """How many count, in all runs."""
+        """Number of samples that count, in all runs."""
         return sum(int(c.sum()) for c in self.counted)
 
     # ---- parts ------------------------------------------------------------------------------
 
     def only(self, which: Sequence[int]) -> Samples:
-        """The samples of some of the runs."""
+        """Return the samples of a selection of runs."""
         return Samples(
             tuple(self.runs[i] for i in which),
             tuple(self.steps_s[i] for i in which),
@@ -91,7 +92,7 @@ class Samples:
         )
 
     def within(self, masks: Sequence[Mask]) -> Samples:
-        """Those of them that lie within masks, one a run."""
+        """Return the samples within masks, one a run."""
         return replace(
             self,
             counted=tuple(c & m for c, m in zip(self.counted, masks, strict=True)),
@@ -104,28 +105,37 @@ class Samples:
         robust: Sequence[Array],
         between: BetweenRuns | None,
     ) -> Samples:
-        """The same with the noise's own level at each sample, a share against heavy tails, and with
-        what differs from run to run."""
+        """Return the samples with further weights and random effects.
+
+        Parameters
+        ----------
+        level
+            Factor for the noise level of each sample, one array a run.
+        robust
+            Factor for heavy-tailed noise, one array a run.
+        between
+            Random effects of the runs.
+        """
         weight = tuple(w * s * h for w, s, h in zip(self.weight, level, robust, strict=True))
         before = [np.ones(len(w)) for w in weight] if self.level is None else self.level
         whole = tuple(a * b for a, b in zip(before, level, strict=True))
         return replace(self, weight=weight, between=between, level=whole)
 
     def with_known_motion(self) -> Samples:
-        """The samples at which the variance by the motion's errors is at most that of the noise."""
+        """Return the samples where the motion's errors have at most the variance of the noise."""
         if self.motion is None:
             return self
         return self.within([self.motion.variance_ratio(i) <= 1.0 for i in range(len(self.runs))])
 
     def tested(self) -> Samples:
-        """The same, those that do not count without weight in a fit."""
+        """Return the samples with zero weight for those that do not count."""
         weight = tuple(np.where(c, w, 0.0) for c, w in zip(self.counted, self.weight, strict=True))
         return replace(self, weight=weight)
 
     # ---- sizes ------------------------------------------------------------------------------
 
     def flat(self, values: Sequence[npt.NDArray[T]]) -> npt.NDArray[T]:
-        """One value a sample that counts, all runs in a row."""
+        """Concatenated values of the samples that count, over all runs."""
         return np.concatenate([v[c] for v, c in zip(values, self.counted, strict=True)])
 
     def rms(self, residuals: Sequence[Array]) -> float:
@@ -146,9 +156,10 @@ class Samples:
         noise: Noise,
         which: Sequence[int] | None = None,
     ) -> tuple[Array, Array]:
-        """One vector of weighted innovations, and one matrix of their derivatives (of some runs).
+        """Weighted innovations as one vector, and their derivatives as one matrix.
 
-        A sample without weight is a gap: a zero there drives nothing.
+        `which` selects runs. A sample without weight is a gap: a zero is passed to the noise filter
+        there.
         """
         if self.motion is not None:
             return self.motion.stacked(residuals, jacobian, self.weight, which)
@@ -167,7 +178,7 @@ class Samples:
         return np.concatenate(r), np.concatenate(j)
 
     def cost(self, residuals: Sequence[Array], noise: Noise) -> float:
-        """`n log(mean square innovation)`: minus twice the log likelihood, up to a constant."""
+        """Return `n log(mean square innovation)`: -2 x log likelihood, up to a constant."""
         if self.between is not None or self.motion is not None:
             empty = [np.zeros((len(r), 0)) for r in residuals]
             r, _ = self.stacked(residuals, empty, noise)
@@ -186,7 +197,7 @@ class Samples:
         ]
 
     def without_deviations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Residuals less what the deviations of their runs predict, N."""
+        """Residuals minus the predicted random effects of their runs, N."""
         if self.between is None:
             return list(residuals)
         return [
@@ -195,8 +206,10 @@ class Samples:
         ]
 
     def innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Innovations for tests, one array a run, as large everywhere as where the noise is least;
-        zero where a sample does not count."""
+        """Innovations for tests, one array a run, scaled to the smallest noise level.
+
+        They are zero where a sample does not count.
+        """
         left = self.without_deviations(residuals, noise)
         if self.motion is not None:
             pairs = zip(self.counted, self.weight, strict=True)
@@ -207,7 +220,7 @@ class Samples:
         ]
 
     def plain_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """The same, large ones as large as they are: for tests of those very ones."""
+        """Innovations for tests of outliers: like `innovations`, but without robust weights."""
         left = self.without_deviations(residuals, noise)
         level = [np.ones(len(r)) for r in left] if self.level is None else self.level
         if self.motion is not None:
@@ -220,7 +233,7 @@ class Samples:
 
 
 def least_weights(a: Samples, b: Samples) -> Samples:
-    """The samples of two models of the same runs, each with the smaller of its weights."""
+    """Combine the samples of two models of the same runs, with the smaller of their weights."""
     if a is b:
         return a
     return replace(

@@ -1,5 +1,7 @@
-"""The sizes of a campaign: robust quantiles, so that neither inertia at a reversal nor a bad sample
-sets a scale."""
+"""Typical magnitudes of a campaign as robust quantiles.
+
+Neither inertia at a reversal nor a bad sample determines a scale.
+"""
 
 from __future__ import annotations
 
@@ -16,25 +18,27 @@ Array = npt.NDArray[np.float64]
 
 Mask = npt.NDArray[np.bool_]
 HUM = 0.02
-"""Speeds below this share of the top are no motion to take a scale from."""
+"""Fraction of the top speed below which a speed is not used for a scale."""
 
 
 @dataclass(frozen=True)
 class Scales:
-    """The sizes of a campaign.
+    """Typical magnitudes of a campaign.
 
     Attributes
     ----------
     whole_n
         Median friction.
     kinetic_n, viscous_n_s_m
-        Friction in the direction of motion on a line through the slow and the fast half.
+        Intercept and slope of a line, over speed, through the friction in the direction of motion
+        of the slow and the fast half of the samples.
     breakaway_n
-        High quantile of slow friction.
+        High quantile of the friction at low speed.
     slow_m_s, usual_m_s
         Quantiles of the speed, m/s.
     stroke_m, resolved_m
-        Typical way between reversals, and the shortest that the samples resolve near one, m.
+        Typical distance between reversals, and the shortest one that the samples resolve near a
+        reversal, m.
     """
 
     whole_n: float
@@ -48,7 +52,7 @@ class Scales:
 
 
 def scales(campaign: Campaign) -> Scales:
-    """The sizes of a campaign's runs, from samples that move.
+    """Compute the typical magnitudes of a campaign's runs from samples in motion.
 
     Raises
     ------
@@ -78,7 +82,7 @@ def scales(campaign: Campaign) -> Scales:
     kinetic = max(f_low - slope * v_low, 0.5 * whole)
     breakaway = max(float(np.quantile(along[low], 0.9)), 1.1 * kinetic)
     ways = np.concatenate([_strokes(p, m) for p, m in zip(campaign.prepared, moving, strict=True)])
-    # A drive that settles overshoots by a little: those ways are no strokes.
+    # A drive that settles overshoots slightly; those distances are not strokes.
     stroke = max(float(np.median(ways[ways >= 0.1 * np.max(ways)])), 1e-9)
     step = float(np.median([p.step_s for p in campaign.prepared]))
     resolved = min(max(0.1 * slow_m_s * step, 1e-7 * stroke), 1e-2 * stroke)
@@ -86,7 +90,7 @@ def scales(campaign: Campaign) -> Scales:
 
 
 def moving_samples(campaign: Campaign) -> list[Mask]:
-    """True where a run moves, and its sample counts; one mask a run."""
+    """Mask of the samples that count and are in motion, one a run."""
     return [
         _moving(p, counted)
         for p, counted in zip(campaign.prepared, campaign.samples.counted, strict=True)
@@ -94,7 +98,7 @@ def moving_samples(campaign: Campaign) -> list[Mask]:
 
 
 def _moving(p: Prepared, counted: Mask) -> Mask:
-    """Samples in motion: a hum near zero speed has neither a direction nor a way."""
+    """Mask of samples in motion; noise near zero speed has neither a direction nor a travel."""
     speed = np.abs(p.motion.velocity_m_s)
     top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
     found: Mask = counted & (speed > HUM * top)
@@ -102,7 +106,7 @@ def _moving(p: Prepared, counted: Mask) -> Mask:
 
 
 def _strokes(p: Prepared, moving: Mask) -> Array:
-    """Ways between reversals, m; the whole way where there is none."""
+    """Distances between reversals, m; the whole travel if there is no reversal."""
     v = p.motion.velocity_m_s
     steps = 0.5 * (v[1:] + v[:-1]) * np.diff(p.run.time_s)
     path = np.concatenate(([0.0], np.cumsum(steps)))

@@ -1,7 +1,8 @@
-"""Least squares on innovations from one starting point, by Gauss and Newton within bounds.
+"""Least squares on innovations from one starting point, by Gauss-Newton steps within bounds.
 
-Searches of one problem share what they have evaluated: one that goes on where another ended does
-not evaluate that place again, and one that comes to where another has been need not follow it.
+Searches of one problem share their evaluations. A search that continues where another ended does
+not evaluate that point again. A search that reaches a point visited by another one need not
+continue.
 """
 
 from __future__ import annotations
@@ -21,20 +22,26 @@ Array = npt.NDArray[np.float64]
 Method = Literal["dogbox", "trf"]
 
 NEAR = 0.3
-"""Two places are near one another where no parameter differs by more than this share of itself,"""
+"""Largest relative difference of each parameter between two points that are close."""
 SAME = 0.1
-"""and one for the data where both linear models say that predictions differ by at most this share
-of the residual: squares then differ by some hundredth."""
+"""Largest difference of the predictions at equivalent points, as a fraction of the residual.
+
+Both linear models must give at most this difference; the sums of squares then differ by about one
+hundredth.
+"""
 
 
 ENDED = 1e-6
-"""Relative difference of squares at which a search ends."""
+"""Relative difference of sums of squares at which a search ends."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """Search variables, parameter values, those of them that are searched, and the rows of the
-    likelihood there: innovations and their derivatives."""
+    """A point of a search with its innovations and derivatives.
+
+    It holds the search variables, all parameter values, the values of the searched parameters, and
+    the rows of the likelihood.
+    """
 
     x: Array
     values: Array
@@ -51,32 +58,32 @@ class Place:
 
 @dataclass
 class Visited:
-    """The places of one likelihood that searches have come to."""
+    """Points of one likelihood that searches have visited."""
 
     places: dict[bytes, Place] = field(default_factory=dict)
     ended: list[list[Place]] = field(default_factory=list)
     lowest: tuple[Place, Lines] | None = None
 
     def come(self, place: Place, lines: Lines | None) -> None:
-        """Remember a place, and of the lowest what every sample says there."""
+        """Store a point, and the residuals and derivatives of all samples at the lowest point."""
         self.places[_key(place.values)] = place
         if lines is not None and (self.lowest is None or place.square < self.lowest[0].square):
             self.lowest = (place, lines)
 
     def lines_at(self, values: Array) -> Lines | None:
-        """Residuals and derivatives at these values, if they are those of the lowest place."""
+        """Residuals and derivatives at these values; None unless they are the lowest point."""
         if self.lowest is None or self.at(values) is not self.lowest[0]:
             return None
         return self.lowest[1]
 
     def at(self, values: Array) -> Place | None:
-        """The place of these values, if a search has come to it."""
+        """Point with these values if a search has visited it, otherwise None."""
         return self.places.get(_key(values))
 
     def square(self, problem: Problem, samples: Samples, values: Array) -> float:
-        """Sum of squares of weighted residuals, N^2, where white innovations are meant."""
+        """Sum of squares of weighted residuals, N^2, for white noise."""
         place = self.at(values)
-        # What runs deviate by is taken off innovations, not off residuals.
+        # Random effects are removed from innovations, but not from residuals.
         if place is not None and samples.between is None:
             return place.square
         return problem.square(values, samples)
@@ -84,7 +91,7 @@ class Visited:
 
 @dataclass(frozen=True)
 class Found:
-    """Where a search ended: parameter values, whether it converged, and what ended it."""
+    """Result of a search: parameter values, whether it converged, and the reason for its end."""
 
     values: Array
     converged: bool
@@ -92,7 +99,7 @@ class Found:
 
 
 class _Joined(Exception):
-    """The search has come to where another has been."""
+    """The search has reached a point that another search has visited."""
 
 
 def search(
@@ -104,16 +111,18 @@ def search(
     method: Method = "dogbox",
     visited: Visited | None = None,
 ) -> Found:
-    """Least squares on innovations from one start.
+    """Minimise the squared innovations from one starting point.
 
     Parameters
     ----------
+    evaluations
+        Maximum number of evaluations.
     method
-        `dogbox` takes the fewest steps; `trf` stays off the bounds on its way and finds lower
-        valleys where a law is wrong.
+        `dogbox` takes the fewest steps. `trf` stays away from the bounds and finds lower minima
+        where a law is wrong.
     visited
-        What other searches of this problem, on these samples and under this noise, have evaluated;
-        the search ends where one of them has been that ended lower.
+        Evaluations of other searches of this problem, on these samples and with this noise. The
+        search ends at a point visited by one of them that ended lower.
     """
     memory = Visited() if visited is None else visited
     way: list[Place] = []
@@ -154,7 +163,8 @@ def search(
             bounds=(low, high),
             method=method,
             x_scale="jac",
-            # A hundredth of a unit of chi-square is far below what any verdict turns on.
+            # The tolerance, a hundredth of a unit of chi-square, is far below any decision
+            # threshold.
             xtol=1e-7,
             ftol=ENDED,
             gtol=1e-12,
@@ -169,24 +179,24 @@ def search(
 
 
 def _key(values: Array) -> bytes:
-    """Values but for their last few bits: a logarithm and back changes those."""
+    """Key of parameter values without their last bits, which a logarithm and its inverse change."""
     part, power = np.frexp(values)
     key: Array = np.ldexp(np.round(np.ldexp(part, 44)), power - 44)
     return key.tobytes()
 
 
 def _joins(place: Place, other: list[Place]) -> bool:
-    """Whether a place is one, for the data, that another search left for one as low or lower."""
+    """Whether a point is equivalent to one of another search that ended as low or lower."""
     if min(seen.square for seen in other) > (1.0 + ENDED) * place.square:
         return False
     return any(_one(place, seen) for seen in other)
 
 
 def _one(a: Place, b: Place) -> bool:
-    """Whether two places are one for the data, by the linear model at either."""
+    """Whether two points are equivalent for the data, by the linear models at both."""
     size = np.maximum(np.abs(a.searched), np.abs(b.searched))
     far = np.abs(a.searched - b.searched) > NEAR * size
-    # What the data do not tell may be anywhere.
+    # Parameters that the data do not determine may differ by any amount.
     if np.any(far & (np.any(a.jacobian, axis=0) | np.any(b.jacobian, axis=0))):
         return False
     step = a.x - b.x

@@ -1,4 +1,4 @@
-"""Where a search for the least squares ended."""
+"""Result of a least-squares search for a model."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Parameter values of a model, and what follows from them.
+    """Parameter values of a model, with the quantities derived from them.
 
     Attributes
     ----------
@@ -26,17 +26,17 @@ class Solution:
     residuals
         Record minus prediction, N, one array a run.
     jacobian
-        Derivative of the prediction with respect to each search variable, one (n, k) a run. Where
-        samples are many, both are made when they are asked for.
+        Derivative of the prediction with respect to each search variable, one (n, k) a run. For
+        large numbers of samples, both are computed at each access.
     cost
         `n log(mean square innovation)` over weighted samples.
     samples
-        Those that the model at these values leaves: fewer than the campaign's where an effect moves
-        the instants of jumps.
+        Samples used by the model at these values: fewer than those of the campaign if an effect
+        moves the times of jumps.
     systematic
-        Systematic error of each search variable, shape (k,): its change with a motion that is
-        smoothed less, and between fits of similar likelihood. None where the errors of the motion
-        are neglected.
+        Systematic error of each search variable, shape (k,): its change if the motion is smoothed
+        less, and between fits of similar likelihood. None where the errors of the motion are
+        neglected.
     """
 
     effects: tuple[str, ...]
@@ -52,7 +52,7 @@ class Solution:
 
     @property
     def free(self) -> int:
-        """Number of parameters that were fitted."""
+        """Number of fitted parameters."""
         return self.jacobian[0].shape[1] if self.jacobian else len(self.values)
 
     @cached_property

@@ -1,5 +1,8 @@
-"""How far the open parameters of a fit may be off: the curvature of the likelihood and, where the
-residual is not the noise that it is described by, the long-run variance of what pulls at each."""
+"""Uncertainty of the free parameters of a fit.
+
+It follows from the curvature of the likelihood. Where the noise model does not describe the
+residual, the long-run variance of the score of each parameter is used in addition.
+"""
 
 from __future__ import annotations
 
@@ -16,33 +19,33 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 INSENSITIVE = 1e-9
-"""A parameter moves nothing where its derivative is less than this share of the largest."""
+"""Fraction of the largest derivative below which the runs do not depend on a parameter."""
 SINGULAR = 1e12
-"""Condition number of the normal equations from which on parameters are not separately known."""
+"""Condition number of the normal equations above which parameters cannot be separated."""
 TAKES_PART = 1e-3
-"""The share in such a combination from which on a parameter is one of those."""
+"""Weight in an unidentifiable combination above which a parameter takes part in it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """Of each open parameter, in their order.
+    """Uncertainty of each free parameter, in their order.
 
     Attributes
     ----------
     sd
-        Standard deviation in the search's variable, shape (k,), by the curvature; nan of one that
-        never moved.
+        Standard deviation of the search variable from the curvature, shape (k,); nan if the runs
+        do not depend on the parameter.
     inflation
-        By how much the residual's long-run variance and the smoothing of the motion make it larger,
-        shape (k,), at least one.
+        Factor on the standard deviation due to the long-run variance of the residual and the
+        smoothing of the motion, shape (k,), at least one.
     scale
-        Change of the parameter with the search's variable, shape (k,).
+        Derivative of the parameter with respect to the search variable, shape (k,).
     correlation
-        Shape (k, k); nan of those that never moved.
+        Correlation matrix, shape (k, k); nan for parameters on which the runs do not depend.
     moved
-        Whether the runs depend on it.
+        Whether the runs depend on the parameter.
     separate
-        Whether no combination of others does the same.
+        Whether no combination of other parameters has the same effect.
     """
 
     sd: Array
@@ -53,12 +56,12 @@ class Spread:
     separate: Mask
 
     def error(self, k: int) -> float:
-        """One standard error in the parameter's unit; nan where there is none."""
+        """Standard error in the parameter's unit; nan if it is unknown."""
         return float(self.sd[k] * self.inflation[k] * self.scale[k])
 
 
 def spread(problem: Problem, solution: Solution) -> Spread:
-    """The spread at a solution."""
+    """Compute the uncertainty of the free parameters at a solution."""
     r, j = solution.stacked()
     free = j.shape[1]
     variance = float(r @ r) / max(len(r) - free, 1)
@@ -88,14 +91,17 @@ def spread(problem: Problem, solution: Solution) -> Spread:
 
 
 def _inflation(solution: Solution, covariance: Array, moved: Mask) -> Array:
-    """How many times as large as by the curvature each standard deviation is: a parameter follows
-    a weighted sum of the innovations, whose variance they tell themselves (Newey & West 1987)."""
+    """Ratio of each standard deviation to that from the curvature.
+
+    A parameter follows a weighted sum of the innovations, whose variance is estimated from them
+    (Newey & West 1987).
+    """
     samples = solution.samples
     parts = [
         samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
         for i in range(len(samples.runs))
     ]
-    # A scale of its own for each parameter: their units have nothing to do with each other.
+    # Each parameter has its own scale, since the units differ.
     influence = [
         j[:, moved] @ (covariance / np.sqrt(np.maximum(np.diag(covariance), 1e-300)))
         for _, j in parts
@@ -111,7 +117,7 @@ def _inflation(solution: Solution, covariance: Array, moved: Mask) -> Array:
 
 
 def _separate(normal: Array) -> Mask:
-    """Which parameters take no part in a combination that the runs cannot see."""
+    """Mask of the parameters that take no part in an unidentifiable combination."""
     sizes, ways = np.linalg.eigh(normal)
     unseen = ways[:, sizes * SINGULAR < sizes[-1]]
     part: Mask = np.linalg.norm(unseen, axis=1) < TAKES_PART

@@ -1,8 +1,8 @@
-"""Where a fit starts, taken from the data: a law in newtons has no one scale that suits a watch
-and a press.
+"""Starting values of a fit, estimated from the data.
 
-A parameter's page says of what in the data it is about the size (`jbf_core::page::Start`); one that
-says nothing starts where the catalogue says.
+A law in newtons has no single scale that suits both a watch and a press. The catalogue entry of a
+parameter names the quantity of the data that it is similar to (`jbf_core::page::Start`). Without
+such a name, the starting value is that of the catalogue.
 """
 
 from __future__ import annotations
@@ -21,15 +21,18 @@ from jbf.records.findings.slow_temperature import recorded_temperature
 
 Starts = tuple[float, ...]
 CELL_ERROR = 0.03
-"""What a search first takes a load cell to be off by, as a share of the largest force."""
+"""Initial error of a load cell in a search, as a fraction of the largest force."""
 LATEST = 0.1
-"""Longest delay or lag that is searched, as a share of the shortest run."""
+"""Longest delay or lag that is searched, as a fraction of the shortest run."""
 FASTEST_FILM = 5.0
-"""A search looks for transition speeds up to so many times the fastest on record."""
+"""Ratio of the highest transition speed in a search to the highest recorded speed."""
 
 
 def _stiffness(s: Scales) -> Starts:
-    """Breakaway over a tenth of a stroke, over the shortest way resolved, and between them."""
+    """Breakaway force over a tenth of a stroke, the shortest resolved distance, and their mean.
+
+    The mean of the two distances is geometric.
+    """
     long, short = 0.1 * s.stroke_m, s.resolved_m
     ways = (long, float(np.sqrt(long * short)), short)
     return tuple(s.breakaway_n / way for way in ways)
@@ -47,11 +50,11 @@ RULES: dict[str, Callable[[Scales], Starts]] = {
     "damping": lambda s: (0.05 * s.kinetic_n / s.usual_m_s,),
     "drag": lambda s: (0.1 * s.kinetic_n,),
 }
-"""What a parameter's page says it is about the size of, to starting values, likeliest first."""
+"""Rules by the name in a catalogue entry: magnitudes to starting values, most likely first."""
 LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
     "drive_play": lambda s: tuple(share * s.stroke_m for share in (1e-2, 1e-3, 1e-4)),
-    # A drive that gives by a hundredth or a thousandth of a stroke under the friction, and
-    # swings well within the time of a stroke.
+    # A drive that deflects by a hundredth or a thousandth of a stroke under the friction, and
+    # oscillates well within the duration of a stroke.
     "drive_stiffness": lambda s: tuple(
         s.breakaway_n / (share * s.stroke_m) for share in (1e-2, 1e-3)
     ),
@@ -60,18 +63,20 @@ LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
     ),
     "drive_damping": lambda s: (s.breakaway_n / s.usual_m_s,),
 }
-"""The same for a drive on a linear axis, whose catalogue values are those of a shaft."""
+"""Rules for a drive on a linear axis; the catalogue values are those of a shaft."""
 
 
 def _run_time(campaign: Campaign) -> Starts:
-    """A tenth and a third of a usual run, s."""
+    """A third and a tenth of the duration of a usual run, s."""
     usual = float(np.median([p.run.duration_s for p in campaign.prepared]))
     return (0.3 * usual, 0.1 * usual)
 
 
 def _reference_temperature(campaign: Campaign) -> Starts:
-    """The temperature at which the lubricant's viscosity holds, or else the mean of those on
-    record, to a degree, C."""
+    """Temperature at which the lubricant's viscosity applies, C.
+
+    Without it, the mean of the recorded temperatures, rounded to a degree.
+    """
     lubricant = campaign.rig.lubricant
     if lubricant is not None and lubricant.temperature_c is not None:
         return (lubricant.temperature_c,)
@@ -81,7 +86,7 @@ def _reference_temperature(campaign: Campaign) -> Starts:
 
 
 def _largest_n(campaign: Campaign) -> float:
-    """The largest force on record but for a hundredth of the samples, N."""
+    """The 99 % quantile of the absolute recorded force, N."""
     every = np.concatenate([p.friction_n[np.isfinite(p.friction_n)] for p in campaign.prepared])
     return max(float(np.quantile(np.abs(every), 0.99)), 1e-5)
 
@@ -93,17 +98,17 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
     "stroke_middle": lambda c: (0.5 * sum(stroke(c)),),
     "stroke_half": lambda c: (0.5 * float(np.diff(stroke(c))[0]),),
 }
-"""What takes more than the campaign's sizes; where it finds nothing the catalogue's values hold."""
+"""Rules that need more than the magnitudes; without a result the catalogue values apply."""
 RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
     "reference_temperature": _reference_temperature,
     "cell_play": lambda c: (CELL_ERROR * _largest_n(c),),
     "cell_cubic": lambda c: (CELL_ERROR / _largest_n(c) ** 2,),
 }
-"""What does not ask whether the law's parameters are newtons: the records are."""
+"""Rules that apply to any law, whether or not its parameters are in newtons: the records are."""
 
 
 def _down_to_a_sample(page: Parameter, campaign: Campaign) -> Starts:
-    """The catalogue's, and by thirds down to what a sample resolves of a jump, s."""
+    """Catalogue values, and thirds of them down to the smallest delay that a sample resolves, s."""
     least, step = min(page.starts), float(np.median([p.step_s for p in campaign.prepared]))
     count = int(np.ceil(np.log(max(least / (0.25 * step), 1.0)) / np.log(3.0)))
     return (*page.starts, *(least / 3.0**k for k in range(1, count + 1)))
@@ -112,27 +117,33 @@ def _down_to_a_sample(page: Parameter, campaign: Campaign) -> Starts:
 RULES_BESIDE_THE_CATALOGUE: dict[str, Callable[[Parameter, Campaign], Starts]] = {
     "lateness": _down_to_a_sample,
 }
-"""What goes on from the catalogue's values."""
+"""Rules that extend the values of the catalogue."""
 PITCHES = ("pitch", "ripple_pitch")
 
 
 def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
-    """A transition speed as the data bound it: a film that carries the load only at several times
-    the fastest speed on record never shows, and its equations grow stiff."""
+    """Limit a transition speed by the data.
+
+    A film that carries the load only at several times the highest recorded speed is not visible,
+    and its equations become stiff.
+    """
     top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in campaign.prepared)
     upper = min(page.upper, max(FASTEST_FILM * top, 2.0 * max(page.starts)))
     return replace(page, upper=upper)
 
 
 def _within_the_way(page: Parameter, campaign: Campaign) -> Parameter:
-    """A pitch as the way bounds it: what comes again too seldom on it is no ripple."""
+    """Limit a pitch by the travel: a longer pitch does not repeat often enough for a ripple."""
     upper = min(page.upper, longest_pitch(campaign))
     return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
 
 
 def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
-    """A time as the records bound it: a delay by a share of the shortest run, and any other one by
-    the longest run, for what is slower than the record leaves no trace in it."""
+    """Limit a time by the records.
+
+    The limit of a delay is a fraction of the shortest run. The limit of any other time is the
+    longest run, since slower processes are not visible in it.
+    """
     durations = [p.run.duration_s for p in campaign.prepared]
     most = LATEST * min(durations) if page.start == "lateness" else max(durations)
     upper = min(page.upper, most)
@@ -140,7 +151,10 @@ def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
 
 
 def _inside(page: Parameter, starts: Starts) -> Parameter:
-    """The page with these starting values, brought within its bounds; as it is without any."""
+    """Return the catalogue entry with these starting values, limited to its bounds.
+
+    Without any values it is unchanged.
+    """
     inside = (float(np.clip(x, page.lower, page.upper)) for x in starts)
     return replace(page, starts=tuple(dict.fromkeys(inside)) or page.starts)
 
@@ -148,10 +162,10 @@ def _inside(page: Parameter, starts: Starts) -> Parameter:
 def with_starts(
     pages: dict[str, Parameter], campaign: Campaign, in_newtons: bool
 ) -> dict[str, Parameter]:
-    """The pages of a problem's parameters, their starting values taken from the data.
+    """Return the catalogue entries of a problem's parameters with starting values from the data.
 
-    A law that scales with the load keeps the catalogue's: its coefficients know no newtons. Of a
-    law with a film the data bound the transition speed.
+    A law that scales with the load keeps the catalogue values, because its coefficients are not in
+    newtons. For a law with a film, the data limit the transition speed.
     """
     rules = dict(RULES) if in_newtons else {}
     if in_newtons and campaign.rig.bearing is None:

@@ -1,4 +1,4 @@
-"""The stroke of a drive: where its runs go, and a little beyond."""
+"""Stroke of a drive: the travel of its runs with a margin."""
 
 from __future__ import annotations
 
@@ -8,16 +8,19 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.scales import moving_samples
 
 SHORTEST_M = 1e-9
-"""A stroke is no shorter: a drive that stands has none to speak of."""
+"""Shortest stroke, m; used for a drive that does not move."""
 BEYOND = 0.1
-"""Share of the way of the runs by which the stroke goes on beyond either end: waves whose slope
-vanishes at its ends then say a slope at the runs'."""
+"""Margin of the stroke at either end, as a fraction of the travel of the runs.
+
+Waves whose slope vanishes at the ends of the stroke can then describe a slope at those of the runs.
+"""
 
 
 def stroke(campaign: Campaign) -> tuple[float, float]:
-    """The lowest and the highest place of a campaign's stroke, m (of a joint rad).
+    """Lowest and highest position of a campaign's stroke, m (rad for a joint).
 
-    The motion tells it, and not the force: runs that are left out of a fit give nothing away by it.
+    They are computed from the motion and not from the force, so no information on held-out forces
+    is used.
     """
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     pairs = zip(campaign.prepared, moving_samples(campaign), strict=True)

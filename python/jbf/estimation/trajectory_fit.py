@@ -1,8 +1,8 @@
-"""Fit the bare law along known motions, to a tolerance, with exact derivatives.
+"""Fit of the bare law along known motions, to a tolerance, with exact derivatives.
 
-For motions that are known as such (a sine of the drive), not only as recorded samples: the
-driver takes as few steps as the tolerance allows, however densely or sparsely they were sampled.
-Records with effects, noise on the speed and unknown signs are :func:`jbf.fit`'s.
+It applies to motions that are known exactly (a sine of the drive), not only as recorded samples.
+The solver takes as few steps as the tolerance permits, whatever the sampling. For records with
+effects, noise on the speed and unknown signs, use :func:`jbf.fit`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 REST_SHARE = 1e-9
-"""Speeds below this share of the run's top are rest: friction is set-valued there."""
+"""Fraction of the top speed below which a sample is at rest: friction is set-valued there."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,13 +43,13 @@ class TrajectoryFit(Estimates):
     parameters
         Name to value with standard error (residuals as independent noise of one size).
     sum_of_squares
-        Of the residual friction coefficients.
+        Sum of squares of the residual friction coefficients.
     samples
-        How many were fitted.
+        Number of fitted samples.
     evaluations
-        Simulations of all runs, each with its derivatives.
+        Number of simulations of all runs, each with its derivatives.
     converged, message
-        What the search says of itself.
+        Convergence flag and message of the search.
     """
 
     parameters: dict[str, ParameterValue]
@@ -60,7 +60,7 @@ class TrajectoryFit(Estimates):
     message: str
 
     def facts(self) -> Mapping[str, Any]:
-        """What `to_dict` says beside the parameters."""
+        """Entries of `to_dict` in addition to the parameters."""
         return {
             "sum_of_squares": self.sum_of_squares,
             "samples": self.samples,
@@ -93,13 +93,13 @@ def fit_trajectories(
         Measured friction over load, one array of shape (n,) a run; NaN where nothing was measured.
         Samples at rest are left out: friction is set-valued there.
     start
-        Where to start; the catalogue's values by default.
+        Starting values; those of the catalogue by default.
 
     Raises
     ------
     InputError
-        As :func:`jbf.trajectories`; a run whose friction has another shape than its times, or too
-        few samples.
+        As :func:`jbf.trajectories`; also if the friction of a run differs in shape from its times,
+        or has too few samples.
     """
     from scipy import optimize  # most of a second to import
 
@@ -127,7 +127,7 @@ def fit_trajectories(
     last: tuple[bytes, Array, Array] | None = None
 
     def evaluate(x: Array) -> tuple[Array, Array]:
-        """Residuals and their derivatives by the logarithms of the parameters."""
+        """Residuals and their derivatives with respect to the logarithms of the parameters."""
         nonlocal evaluations, last
         if last is None or last[0] != x.tobytes():
             evaluations += 1
@@ -187,7 +187,7 @@ def _parameter(page: Parameter, value: float, error: float, *, moved: bool) -> P
 
 
 def _errors(found: OptimizeResult, values: Array) -> Array:
-    """Standard errors of the parameters; NaN of one that the runs do not show."""
+    """Standard errors of the parameters; NaN if they are not separately identifiable."""
     jacobian = np.asarray(found.jac)
     size = np.linalg.norm(jacobian, axis=0)
     size[size == 0.0] = np.nan
@@ -201,7 +201,7 @@ def _errors(found: OptimizeResult, values: Array) -> Array:
 
 
 def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np.bool_]:
-    """True at samples that were measured and move, all runs in a row."""
+    """Mask of the samples that were measured and are in motion, all runs concatenated."""
     if len(runs) != len(measured):
         raise InputError(
             problem=f"{len(runs)} runs and {len(measured)} frictions",

@@ -1,4 +1,4 @@
-"""What a fit says of each parameter: its value with an error, or that it is held and why."""
+"""Results of a fit for each parameter: value with error, or the reason why it is held."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jbf.models.parameter_value import ParameterValue
 
 
 def parameter_values(problem: Problem, found: PutBack, spread: Spread) -> dict[str, ParameterValue]:
-    """Name to value with standard error; those that the runs did not determine are held."""
+    """Return values with standard errors by name; parameters that are not identifiable are held."""
     results = {}
     values = found.values.tolist()
     for i, (name, page) in enumerate(problem.parameters.items()):

@@ -1,8 +1,8 @@
-"""Plain least squares, or robust ones: whichever predicts better what it was not fitted to.
+"""Choice between plain and robust least squares by held-out error.
 
-Where a fit goes is one question, how sure it is another. Of noise alone all weights lead to the
-same place. Where they lead to another, the model is wrong somewhere, or a few samples are: which of
-the two a weight makes worse the record of other runs tells, not a description of the noise.
+With noise alone, all weights lead to the same estimates. If the estimates differ, either the model
+is wrong somewhere or there are outliers. The held-out error of other runs decides between these
+two cases, not the noise model. The weights affect the estimates, not only their uncertainty.
 """
 
 from __future__ import annotations
@@ -23,22 +23,24 @@ from jbf.estimation.solution import Solution
 Array = npt.NDArray[np.float64]
 
 TUNING = 1.345
-"""Robust standard deviations beyond which a residual pulls no more than at that distance: 95 % as
-efficient as least squares where the noise is Gaussian (Huber 1964)."""
+"""Huber's constant: limit of the influence of a residual, in robust standard deviations.
+
+The efficiency is 95 % of least squares for Gaussian noise (Huber 1964).
+"""
 FREEDOM = 3.0
 """Degrees of freedom of Student's t."""
 ROUNDS = 4
-"""Rounds of weights and fits."""
+"""Number of iterations of weights and fits."""
 ELSEWHERE = 0.05
-"""Predictions further apart than this share of the residual's RMS are two places."""
+"""Difference of predictions, as a fraction of the residual's RMS, above which estimates differ."""
 BETTER = 0.97
-"""A left-out RMS smaller than so many times the other is smaller;"""
+"""Ratio of held-out RMS values below which one counts as smaller."""
 NO_WORSE, SHARPER = 1.02, 0.8
-"""or one that is no worse, by its first, where the median is smaller, by its second."""
+"""Ratio of held-out RMS values that is accepted, and ratio of medians required with it."""
 
 
 def best_weighting(problem: Problem, plain: Solution) -> Solution:
-    """The solution that predicts runs left out best: this one, or one with robust weights."""
+    """Return the solution with the smallest held-out error: `plain` or one with robust weights."""
     best: Solution = plain
     left: Array | None = None
     for weights in (huber, student):
@@ -54,27 +56,29 @@ def best_weighting(problem: Problem, plain: Solution) -> Solution:
 
 
 def _better(other: Array, left: Array) -> bool:
-    """Whether left-out residuals are smaller: in their squares or, where a few wild samples make up
-    most of those, in their middle."""
+    """Whether held-out residuals are smaller: in their RMS or in their median.
+
+    The median decides where outliers contribute most of the RMS and it is no worse.
+    """
     square = float(np.sqrt(np.mean(other**2) / max(float(np.mean(left**2)), 1e-300)))
     middle = float(np.median(np.abs(other)) / max(float(np.median(np.abs(left))), 1e-300))
     return square < BETTER or (square < NO_WORSE and middle < SHARPER)
 
 
 def huber(off: Array) -> Array:
-    """Weights on residuals that are so many standard deviations off: linear beyond some."""
+    """Square roots of Huber's weights for residuals in standard deviations."""
     weight: Array = np.sqrt(np.minimum(1.0, TUNING / np.maximum(off, 1e-300)))
     return weight
 
 
 def student(off: Array) -> Array:
-    """The same of Student's t: what is far off hardly counts at all (Lange et al. 1989)."""
+    """Square roots of Student's t weights; outliers have almost no weight (Lange et al. 1989)."""
     weight: Array = np.sqrt((FREEDOM + 1.0) / (FREEDOM + off**2))
     return weight
 
 
 def _robust(problem: Problem, start: Solution, weights: Callable[[Array], Array]) -> Solution:
-    """The M-estimate of these weights, by least squares that follow the residuals."""
+    """M-estimate with these weights by iteratively reweighted least squares."""
     found, samples = start, start.samples
     for _ in range(ROUNDS):
         flat = np.abs(samples.flat(found.residuals))

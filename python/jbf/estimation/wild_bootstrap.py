@@ -1,9 +1,8 @@
-"""Campaigns like the one at hand: its motions recorded again by a model, with noise like its own.
+"""Simulated campaigns with the recorded motions, a model's friction and noise like that recorded.
 
-The noise is what the model left, its signs turned at random block by block (the wild bootstrap: Wu
-1986; of blocks: Shao 2010): size, tails and memory stay, and so do the places where it is large.
-What the recording did to one run and not to another (a late channel, a zero of its own) is not made
-again.
+The noise is the residual of the model with random signs by block (wild bootstrap: Wu 1986; for
+blocks: Shao 2010). Its size, tails and correlation time are kept, as are the times at which it is
+large. Recording artefacts of a single run (a delayed channel, a zero of its own) are not simulated.
 """
 
 from __future__ import annotations
@@ -28,8 +27,15 @@ Array = npt.NDArray[np.float64]
 
 
 def recorded_by(model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: int) -> list[Run]:
-    """The runs as they would be recorded once more, were the model right, or right without its
-    effects."""
+    """Simulate new recordings of the runs by a model, or by a model with only some of its effects.
+
+    Parameters
+    ----------
+    hidden
+        Effects of the model that the simulated friction contains.
+    draw
+        Number of the simulation, used as the seed.
+    """
     campaign = Campaign.prepare(model.rig, runs)
     problem = Problem(campaign, model.law, model.clock, model.effects)
     values = np.array([model.parameters[name].value for name in problem.names])
@@ -46,8 +52,8 @@ def recorded_by(model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: 
 
 
 def _errors(solution: Solution, campaign: Campaign, random: np.random.Generator) -> list[Array]:
-    """The noise of other campaigns, N, one array a run: innovations with other signs."""
-    # Where a sample does not count its innovation is nobody's: it is drawn from those that do.
+    """Simulated noise of the runs, N, one array a run: innovations with random signs."""
+    # The innovation of a sample that does not count is meaningless; it is drawn from the others.
     plain = replace(
         solution.samples, weight=tuple(c.astype(float) for c in solution.samples.counted)
     )
@@ -64,7 +70,8 @@ def _errors(solution: Solution, campaign: Campaign, random: np.random.Generator)
     for e, sign, at, p in zip(
         innovations, np.split(signs, ends), plain.counted, campaign.prepared, strict=True
     ):
-        # Where a sample does not count its innovation is nobody's: it is drawn from those that do.
+        # The innovation of a sample that does not count is meaningless; it is drawn from the
+        # others.
         filled = np.where(at, e, random.choice(counted, len(e)))
         found.append(solution.noise.coloured(sign * filled, p.step_s))
     return found

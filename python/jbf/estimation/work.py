@@ -1,8 +1,7 @@
-"""How much a fit or a diagnosis may cost, in inner steps of the model: whatever the records and the
-values that a search strays to, there is an end.
+"""Budget of a fit or a diagnosis in inner steps of the model.
 
-Time would do as well, and would be another on each machine: steps end the same work at the same
-place everywhere.
+It ends every computation, whatever the records and the values that a search reaches. A limit in
+seconds would differ between machines; steps end the same computation at the same point everywhere.
 """
 
 from __future__ import annotations
@@ -13,22 +12,24 @@ from dataclasses import dataclass
 from jbf.errors import Unfinished
 
 STEPS_A_SAMPLE = 1e5
-"""Inner steps that a diagnosis may take for each sample: ten times what the dearest take that
-end in a verdict,"""
+"""Inner steps per sample that a diagnosis may take.
+
+This is ten times the number of the most expensive diagnoses that end in a verdict.
+"""
 ANY_STEPS = 4e8
-"""and so many in all, whatever the samples: a minute or two."""
+"""Inner steps that are permitted for any number of samples: one or two minutes."""
 
 
 @dataclass
 class Work:
-    """Inner steps that may be taken, and that were."""
+    """Inner steps that are permitted, and that were taken."""
 
     most: float = math.inf
     taken: float = 0.0
 
     @classmethod
     def of(cls, samples: int) -> Work:
-        """What so many samples are worth."""
+        """Return the budget for a number of samples."""
         return cls(max(STEPS_A_SAMPLE * samples, ANY_STEPS))
 
     def take(self, steps: float) -> None:
@@ -37,17 +38,17 @@ class Work:
         Raises
         ------
         Unfinished
-            They are more than are left.
+            The steps exceed the remaining budget.
         """
         self.taken += steps
         if self.taken > self.most:
             raise Unfinished(steps=self.taken)
 
     def part(self, share: float) -> Work:
-        """A share of the whole, for a part of the work that is not to take the rest."""
+        """Return a fraction of the budget, for a part of the work that must not use the rest."""
         return Work(share * self.most)
 
     def renew(self, most: float | None = None) -> None:
-        """Begin to count anew."""
+        """Reset the count, and optionally set a new budget."""
         self.taken = 0.0
         self.most = self.most if most is None else most

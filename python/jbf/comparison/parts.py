@@ -64,11 +64,10 @@ def friction_alone(comparison: Comparison) -> list[Array]:
 
 
 def made_of(before: Comparison, after: Comparison) -> dict[str, list[Array]]:
-    """Part of a model's residual explained by each new effect of a larger model, N, one array a
-    run.
+    """Part of a model's residual explained by each new effect of a larger model, N.
 
-    The part is the contribution that the parameters of the first model cannot compensate: the
-    contribution minus its projection on the derivatives of that model.
+    There is one array a run. The part is the contribution that the parameters of the first model
+    cannot compensate: the contribution minus its projection on the derivatives of that model.
     """
     model, campaign = before.model, before.campaign
     core = chain(model.rig, model.law, model.clock, model.effects)

@@ -48,7 +48,7 @@ class Bootstrap(Result):
     Attributes
     ----------
     fit
-        The fit with each standard error equal to half the width of the central 68 % of the
+        The fit with new standard errors. Each is half the width of the central 68 % of the
         estimates, and at least the standard error of the fit itself. A parameter is held if its
         error exceeds the limit of `determined`.
     values

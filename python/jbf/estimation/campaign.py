@@ -179,7 +179,7 @@ class Campaign:
 
     @cached_property
     def temperature_range_c(self) -> tuple[float, float] | None:
-        """Lowest and highest recorded temperature, C; None if a run has no temperature."""
+        """Lowest and highest recorded temperature, C; None unless every run has temperatures."""
         every = [recorded_temperature(p.run) for p in self.prepared]
         known = [celsius for celsius in every if celsius is not None]
         if not known or len(known) < len(every):
@@ -188,7 +188,7 @@ class Campaign:
 
     @property
     def temperatures_k(self) -> float | None:
-        """Range of the recorded temperatures over all runs, K; None if a run has no temperature."""
+        """Range of recorded temperatures over all runs, K; None unless every run has them."""
         if self.temperature_range_c is None:
             return None
         low, high = self.temperature_range_c
@@ -236,7 +236,7 @@ class Campaign:
 
     @property
     def step_n(self) -> float:
-        """Largest quantisation step that is comparable with the noise, N; zero if there is none."""
+        """Largest quantisation step that is comparable with the noise, N; zero without one."""
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
 
     def steps_rms_n(self, residual_rms_n: float) -> float:
@@ -279,8 +279,8 @@ def _span(load: Array) -> float:
 def _each(rig: Rig, runs: Mapping[int, Run]) -> tuple[dict[int, Prepared], list[Finding]]:
     """Prepare all runs; return those with motion, and a finding for each of the others.
 
-    A run is prepared again where the other runs give information on the logger: its sampling
-    rate of the force, or other starting values for the errors of the motion's readings.
+    A run is prepared again where the other runs give information on the logger. This is its
+    sampling rate of the force, or other starting values for the errors of the motion's readings.
     """
     found: dict[int, Prepared] = {}
     refused: list[NoMotion] = []

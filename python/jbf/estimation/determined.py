@@ -74,10 +74,10 @@ def _near(page: Parameter, value: float, bound: float, error: float) -> bool:
 
 
 def _larger_than_itself(page: Parameter, value: float, error: float) -> str | None:
-    """Return a note if the error of a scale exceeds its value, otherwise None.
+    """Return a note if the error of a scale exceeds its value, else None.
 
     A scale has no sign, so such an error leaves its size undetermined. A signed parameter may
-    well be zero within its error.
+    be zero within its error.
     """
     if not (page.log or page.lower == 0.0) or not error > abs(value):
         return None

@@ -42,8 +42,8 @@ class ErrorsInMotion:
     scale
         Standard errors of the motion, relative to those in `errors`.
     by_delay
-        Derivative of the prediction with respect to a time delay of the force that all runs share,
-        one (n,) array a run; None if the forces have no delay. The part of the residuals that a
+        Derivative of the prediction with respect to a common time delay of the forces, one (n,)
+        array a run; None without a delay. The part of the residuals that a
         delay explains is projected out.
     """
 

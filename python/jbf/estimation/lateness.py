@@ -61,7 +61,7 @@ class Lateness:
 
 @dataclass(frozen=True)
 class _Place:
-    """An estimate and its variance; the variance is infinite if there is no estimate."""
+    """An estimate and its variance; without an estimate the variance is infinite."""
 
     value: float
     variance: float

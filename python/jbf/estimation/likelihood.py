@@ -52,7 +52,7 @@ def effective_share(solution: Solution) -> float:
 def share_of_gain(richer: Solution, simpler: Solution) -> float:
     """Factor on a log-likelihood gain for innovations that are not white, at most one.
 
-    It is the smaller of two estimates: one from all autocorrelations, and one from the long-run
+    It is the smaller of two estimates. One uses all autocorrelations; the other uses the long-run
     variance of the score in the direction in which the two solutions differ.
     """
     share = effective_share(richer)

@@ -46,7 +46,7 @@ def slides(motion: ImposedMotion) -> Mask:
     """Mask of the samples where friction has a known direction, shape (n,).
 
     At rest, friction is any force up to the breakaway level in either direction: it balances the
-    force of the drive. Such a sample has no residual. The same applies to a sample near a reversal.
+    force of the drive. Such a sample has no residual, nor has a sample near a reversal.
     """
     sliding: Mask = motion.sign_known & ~motion.resting
     return sliding
@@ -124,7 +124,7 @@ class Prepared:
         Raises
         ------
         InputError
-            The run has no friction.
+            The run lacks a friction column.
         NoMotion
             Nothing moves in the run.
         """
@@ -242,8 +242,8 @@ class Prepared:
     def core(self) -> Driven:
         """Motion of the run as an object of the compiled core.
 
-        If the force was read less often than the motion, the object contains the motion between the
-        force readings as well, because the times of starts and reversals matter.
+        If the force was read less often than the motion, the object also contains the motion
+        between the force readings, because the times of starts and reversals matter.
         """
         time = self.run.time_s
         if self.recorded is None:

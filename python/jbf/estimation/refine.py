@@ -67,8 +67,8 @@ LONGEST_DELAY = 2.0
 def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
     """Return the generalised least-squares solution, and the problem with the delay corrected.
 
-    They are unchanged where the motion is exact enough and the force has no delay. Where position
-    and velocity were read on two clocks, the force may be on either of them, and both are tried.
+    They are unchanged if the motion is exact enough and the force is on time. Where position and
+    velocity were read on two clocks, the force may be on either of them, and both are tried.
     """
     motions = [p.motion.errors for p in problem.campaign.prepared]
     if any(e is None for e in motions):

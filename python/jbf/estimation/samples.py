@@ -187,7 +187,7 @@ class Samples:
         return innovation_cost(noise, weighted, self.steps_s, [w > 0.0 for w in self.weight])
 
     def weighted_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Innovations of weighted residuals, one array a run; zero where there is no weight."""
+        """Innovations of weighted residuals, one array a run; zero without weight."""
         left = self.without_deviations(residuals, noise)
         if self.motion is not None:
             return self.motion.innovations(left, self.weight)

@@ -106,7 +106,7 @@ def _moving(p: Prepared, counted: Mask) -> Mask:
 
 
 def _strokes(p: Prepared, moving: Mask) -> Array:
-    """Distances between reversals, m; the whole travel if there is no reversal."""
+    """Distances between reversals, m; the whole travel without a reversal."""
     v = p.motion.velocity_m_s
     steps = 0.5 * (v[1:] + v[:-1]) * np.diff(p.run.time_s)
     path = np.concatenate(([0.0], np.cumsum(steps)))

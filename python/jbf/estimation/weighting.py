@@ -58,7 +58,8 @@ def best_weighting(problem: Problem, plain: Solution) -> Solution:
 def _better(other: Array, left: Array) -> bool:
     """Whether held-out residuals are smaller: in their RMS or in their median.
 
-    The median decides where outliers contribute most of the RMS and it is no worse.
+    The median decides where outliers dominate the RMS, provided that the RMS is not
+    clearly larger.
     """
     square = float(np.sqrt(np.mean(other**2) / max(float(np.mean(left**2)), 1e-300)))
     middle = float(np.median(np.abs(other)) / max(float(np.median(np.abs(left))), 1e-300))

@@ -3,8 +3,8 @@
 Each run deviates from the campaign by a zero-mean Gaussian amount whose spread is estimated from
 the runs: a random effect (Laird & Ware 1982). The residuals of a run are then correlated in the
 directions of these deviations. After whitening by this correlation, likelihood, score tests and
-standard errors have their usual form. The residuals that remain after a test are taken with the
-best linear predictions of the deviations removed.
+standard errors have their usual form. Tests of the residual structure use residuals from which the
+best linear predictions of the deviations are subtracted.
 """
 
 from __future__ import annotations

@@ -43,8 +43,8 @@ class ErrorsInMotion:
         Standard errors of the motion, relative to those in `errors`.
     by_delay
         Derivative of the prediction with respect to a common time delay of the forces, one (n,)
-        array a run; None without a delay. The part of the residuals that a
-        delay explains is projected out.
+        array a run; None without a delay. The part of the residuals that a delay explains is
+        projected out.
     """
 
     errors: tuple[MotionErrors | None, ...]

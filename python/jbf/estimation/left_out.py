@@ -28,8 +28,8 @@ EVALUATIONS = 12
 SHORT = 3.0
 """Length per parameter, in standard deviations, up to which a step is accepted without a search.
 
-Noise alone causes steps of this length to the remaining runs. A search continues from the end of a
-longer step.
+Noise alone causes steps of this length in a fit to the remaining runs. A search continues from the
+end of a longer step.
 """
 STRAIGHT = 0.05
 """Permitted deviation of a predicted change from the linear one, as a fraction of the change.
@@ -253,7 +253,7 @@ def _predicted(
         there = problem.encode(solution.values) + way
         step = problem.decode(there, solution.values)
         inside = np.allclose(problem.encode(step), there, rtol=0.0, atol=1e-9)
-        # With many maxima, a step does not show which one a search in the remaining runs reaches.
+        # With many maxima, a step does not show which one the remaining runs would reach.
         smooth = solution.converged and not any(find_effect(e).peaks for e in solution.effects)
         if inside and smooth and square <= SHORT**2 * len(way):
             residuals = problem.residuals(step, group)

@@ -139,8 +139,8 @@ def estimate_noise(
     """Estimate the noise model with the smallest innovations of the given residuals.
 
     The noise is white unless colour exceeds its threshold. The standard deviation of the coloured
-    part is limited to `most_n`, N, where that is known. The error of a wrong model is as
-    smooth as coloured noise, and would be absorbed by it.
+    part is limited to `most_n`, N, where that is known. The error of a wrong model is as smooth as
+    coloured noise, and would be absorbed by it.
     """
     shortest = 2.0 * min(steps)
     longest = max(LONGEST_MEMORY_S, 2.0 * shortest)

@@ -1,8 +1,8 @@
-"""Records: files in; runs, a rig and the motion that each run imposed out.
+"""Records: read runs and rigs from files, and estimate the motion that each run imposed.
 
-Comes in: CSV files of runs, the rig's TOML file, or arrays. Goes out: `Run` (checked columns, SI),
+Input: CSV files of runs, the TOML file of the rig, or arrays. Output: `Run` (checked columns, SI),
 `Rig`, and `ImposedMotion` (speed, acceleration and path with their errors, rests, and the samples
-at which the sign of the motion is known). Knows nothing of models.
+at which the sign of the motion is known). This package does not depend on models.
 
 May import: `jbf.errors`, `jbf.text_files`, `jbf.units`.
 """

@@ -1,6 +1,7 @@
-"""What people pass to the public functions: the right kind of thing, or one clear line.
+"""Type checks of the arguments of the public functions, with one-line errors.
 
-Checks of kinds only; what a record or a rig must hold for some purpose is asked where it is used.
+Only types are checked here. The contents that a run or a rig must have for a given purpose are
+checked where they are used.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Array = npt.NDArray[np.float64]
 
 
 def described(value: object) -> str:
-    """A value as an error calls it: `a list`, `None`, the text itself."""
+    """Describe a value for an error message: `a list`, `None`, or the text itself in quotes."""
     if value is None:
         return "None"
     if isinstance(value, str):
@@ -36,14 +37,14 @@ def described(value: object) -> str:
 
 
 def of_kind(value: object, kind: type[Kind], what: str, mend: str) -> Kind:
-    """The value, where it is of that kind; an InputError calls it `what`."""
+    """Return the value if it has the given type; otherwise raise an InputError about `what`."""
     if not isinstance(value, kind):
         raise InputError(problem=f"{what} is {described(value)}", mend=mend)
     return value
 
 
 def the_rig(value: object) -> Rig:
-    """A rig; an InputError says how to come by one."""
+    """Return the value if it is a rig; otherwise raise an InputError with a remedy."""
     mend = "give a jbf.Rig, first of all (jbf.Rig() for a law in newtons)"
     if isinstance(value, str | os.PathLike):
         mend = f"read it: jbf.read_rig({quoted(os.fspath(value))})"
@@ -51,7 +52,7 @@ def the_rig(value: object) -> Rig:
 
 
 def one_run(value: object) -> Run:
-    """A run; an InputError says how to come by one."""
+    """Return the value if it is a run; otherwise raise an InputError with a remedy."""
     mend = "give a jbf.Run"
     if isinstance(value, str | os.PathLike):
         mend = f"read it: jbf.read_run({quoted(os.fspath(value))})"
@@ -61,8 +62,10 @@ def one_run(value: object) -> Run:
 
 
 def check_run(run: Run) -> None:
-    """An InputError where a run holds what `Run.from_arrays` would have refused: a constructor that
-    trusts its arguments, or a selection, made it."""
+    """Raise an InputError if a run holds values that `Run.from_arrays` would have rejected.
+
+    Such a run comes from the constructor, which does not check its arguments, or from a selection.
+    """
     for column, values in ({"velocity_m_s": run.velocity_m_s} | run.columns()).items():
         good = isinstance(values, np.ndarray) and values.dtype == np.float64 and values.ndim == 1
         if not good or np.ma.is_masked(values):
@@ -76,12 +79,12 @@ def check_run(run: Run) -> None:
 
 
 def list_of_runs(value: object) -> list[Run]:
-    """Runs as a list, none of them anything else.
+    """Return runs as a list, after a check that every item is a run.
 
     Raises
     ------
     InputError
-        One run that stands alone, a path, a rig, or nothing of the kind.
+        The value is a single run, a path, a rig, or not an iterable of runs.
     """
     mend = "give a list of jbf.Run"
     if isinstance(value, Run):
@@ -104,12 +107,12 @@ def list_of_runs(value: object) -> list[Run]:
 
 
 def names(value: object, what: str) -> tuple[str, ...]:
-    """Names as a tuple; a word that stands alone is no list of names.
+    """Return names as a tuple; a single string is rejected, because it is not a list of names.
 
     Parameters
     ----------
     what
-        The argument's name.
+        Name of the argument, for error messages.
     """
     if isinstance(value, str):
         raise InputError(
@@ -130,7 +133,7 @@ def names(value: object, what: str) -> tuple[str, ...]:
 
 
 def whole_number(value: object, what: str, least: int = 0) -> int:
-    """A whole number, not below `least`."""
+    """Return the value as an integer that is at least `least`; raise an InputError otherwise."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         shown = str(value) if isinstance(value, Real) else described(value)
         raise InputError(problem=f"{what} is {shown}", mend=f"give a whole number from {least} on")
@@ -138,13 +141,13 @@ def whole_number(value: object, what: str, least: int = 0) -> int:
 
 
 def check_callable(value: object, what: str) -> None:
-    """An InputError where this is neither None nor a function."""
+    """Raise an InputError if the value is neither None nor callable."""
     if value is not None and not callable(value):
         raise InputError(problem=f"{what} is {described(value)}", mend="give a function, or None")
 
 
 def one_of(value: object, known: Iterable[Word], what: str) -> Word:
-    """One of the known words; an InputError names the nearest."""
+    """Return the value if it is one of the known words; an InputError suggests the nearest one."""
     words = list(known)
     for word in words:
         if isinstance(value, str) and value == word:
@@ -157,7 +160,7 @@ def one_of(value: object, known: Iterable[Word], what: str) -> Word:
 
 
 def by_name(value: object, what: str) -> dict[str, Any]:
-    """Values by name as a dict of its own."""
+    """Return a mapping with string keys as a new dict."""
     mend = f'write them by name: {what}={{"NAME": VALUE}}'
     if not isinstance(value, Mapping):
         raise InputError(problem=f"{what} is {described(value)}", mend=mend)
@@ -170,7 +173,7 @@ def by_name(value: object, what: str) -> dict[str, Any]:
 def numbers(
     value: object, what: str, dtype: npt.DTypeLike = np.float64, *, flat: bool = False
 ) -> npt.NDArray[Any]:
-    """An array of numbers, contiguous; `flat` where it must have the shape (N,)."""
+    """Return a contiguous array of numbers; with `flat`, its shape must be (N,)."""
 
     def wrong(shown: str) -> InputError:
         return InputError(problem=f"{what} {shown}", mend="give numbers, one a sample")

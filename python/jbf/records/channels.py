@@ -1,8 +1,9 @@
-"""Channels that were read by clocks of their own: side by side at all instants of all of them.
+"""Channels sampled by separate clocks, merged on the union of their time stamps.
 
-At an instant at which a channel was not read its array holds the straight line between its
-readings, so that every array is one of numbers; `Run.read` says which values were read. The motion
-is estimated from readings alone, and a model is compared at the readings of the force alone.
+At an instant at which a channel was not sampled, its array holds the linear interpolation between
+its readings, so that every array is numeric. `Run.read` marks the values that were sampled. The
+motion is estimated from sampled values only, and a model is compared with the force at the instants
+of the force readings only.
 """
 
 from __future__ import annotations
@@ -20,22 +21,30 @@ Mask = npt.NDArray[np.bool_]
 Channels = Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]
 
 OWN_CLOCK = 0.05
-"""Share of a column's cells that must be empty for it to have a clock of its own: fewer are gaps in
-a file, to be mended there."""
+"""Smallest share of empty cells for a column to be treated as a channel with its own clock.
+
+Fewer empty cells are gaps in the file, which the user has to repair.
+"""
 ALONE = ("friction_n", *MOTION)
-"""Columns that need as many readings as a run."""
+"""Columns that need as many readings as a run needs samples."""
 
 
 def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[str, Mask]]:
-    """Columns at the instants of all channels while the motion lasts, and where each was read;
-    those that were read everywhere are not in the second.
+    """Merge channels on the union of their time stamps, within the period that the motion covers.
 
     Parameters
     ----------
     channels
         Column name to its instants, s, and its values there, each of shape (n,).
     name
-        What an error calls the run.
+        Name of the run in error messages.
+
+    Returns
+    -------
+    columns : dict of str to ndarray
+        `time_s` and the interpolated columns.
+    read : dict of str to ndarray
+        Masks of the sampled instants; columns sampled at every instant are omitted.
     """
     clocks, values = {}, {}
     for column, (time_s, given) in channels.items():
@@ -64,8 +73,10 @@ def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[
 
 
 def with_own_clock(time_s: Array, values: Array) -> tuple[Array, Array]:
-    """The instants and readings of a column, without what is missing where that is a clock's; a
-    few missing ones are left to be refused."""
+    """Return the instants and readings of a column, without missing values if it has its own clock.
+
+    A small number of missing values is kept, so that the later checks reject them.
+    """
     there = np.isfinite(values)
     if there.all() or np.count_nonzero(~there) < max(MIN_SAMPLES, OWN_CLOCK * len(values)):
         return time_s, values
@@ -73,12 +84,12 @@ def with_own_clock(time_s: Array, values: Array) -> tuple[Array, Array]:
 
 
 def filled(time_s: Array, values: Array, there: Mask) -> Array:
-    """A column with straight lines where it was not read."""
+    """Return a column with linear interpolation at the samples where `there` is False."""
     return frozen(np.interp(time_s, time_s[there], values[there]))
 
 
 def of_motion(read: Mapping[str, Mask]) -> Mask | None:
-    """Where the motion was read: at the instants of its quickest channel; None where everywhere."""
+    """Mask of the most densely sampled motion channel; None if all motion channels are complete."""
     masks = [read[column] for column in MOTION if column in read]
     return max(masks, key=lambda mask: int(mask.sum())) if masks else None
 

@@ -1,4 +1,4 @@
-"""What the columns of a run must hold, whether they come from arrays or from a file."""
+"""Checks of the columns of a run, for arrays and for files."""
 
 from __future__ import annotations
 
@@ -24,20 +24,23 @@ COLUMNS = (
     "load_n",
     "temperature_c",
 )
-"""Columns with a meaning, in the order in which `Run.write_csv` writes them."""
+"""Columns with a defined meaning, in the order in which `Run.write_csv` writes them."""
 POINT = "point"
-"""A column in the place of `time_s`: the number of a steady state, as of a Stribeck curve."""
+"""Column that replaces `time_s`: the number of a steady state, as in a Stribeck curve."""
 POINT_S = 60.0
 """Nominal spacing of steady states on the time axis of a run, s."""
 SLOW = "temperature_c"
-"""A column that may have gaps."""
+"""Column that may have gaps."""
 LARGEST = 1e12
-"""Beyond it no instant, force, speed, place or temperature in SI units is one of a machine: the
-cell is broken or the unit another (nanoseconds since 1970). Sums of fourth powers stay finite."""
+"""Largest plausible absolute value of a known column in SI units.
+
+A larger value indicates a corrupt cell or a wrong unit (nanoseconds since 1970). Sums of fourth
+powers stay finite up to this limit.
+"""
 SHORTEST_S = 1e-12
-"""The same of the time from sample to sample."""
+"""Shortest plausible time step between samples, s."""
 MOTION = ("velocity_m_s", "position_m", "angle_rad")
-"""Columns any one of which tells the motion."""
+"""Columns each of which is sufficient to determine the motion."""
 
 
 def listed(names: Iterable[str]) -> str:
@@ -66,7 +69,7 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
         )
     try:
         array = np.asarray(values)
-        # Text, dates and complex numbers would convert to something nobody meant.
+        # Text, dates and complex numbers would be converted to values that the user did not intend.
         if array.dtype.kind not in "biufO":
             raise wrong(f"holds {array.dtype}, not numbers")
         if array.dtype.kind == "O":
@@ -90,18 +93,18 @@ def check_columns(
     rows: Sequence[int] | None,
     known: Collection[str] = COLUMNS,
 ) -> None:
-    """An InputError where a column does not hold what its name promises.
+    """Raise an InputError if a column does not hold valid values for its name.
 
     Parameters
     ----------
     name
-        What an error calls the run, where no file is known.
+        Name of the run in error messages, when no file is known.
     columns
         Column name to values.
     path, rows
-        The file they came from, and each sample's line in it.
+        The file that the columns were read from, and the line of each sample in it.
     known
-        Columns with a meaning, whose values must be those of a machine.
+        Columns with a defined meaning, whose values must be plausible for a machine.
     """
     file = path if rows is not None and path is not None else name
 
@@ -129,7 +132,7 @@ def check_columns(
             )
         bad = np.flatnonzero(~np.isfinite(values))
         if column == SLOW and np.isfinite(values).any():
-            # Read more seldom than the rest: straight lines will stand between its readings.
+            # The temperature may be sampled more slowly; its gaps are interpolated linearly later.
             bad = np.flatnonzero(np.isinf(values))
         if bad.size:
             raise wrong(

@@ -1,14 +1,14 @@
-"""How many of what, in words: `1 run`, `3 runs`."""
+"""Counts in words: `1 run`, `3 runs`."""
 
 from __future__ import annotations
 
 
 def count_of(count: int, one: str, many: str = "") -> str:
-    """A number and what it counts.
+    """Return a count with its noun in the singular or the plural.
 
     Parameters
     ----------
     one, many
-        What is counted, of one and of several; with an s where the latter is not given.
+        Singular and plural of the noun; the default plural is the singular with an s.
     """
     return f"{count} {one if count == 1 else many or one + 's'}"

@@ -1,7 +1,7 @@
 """Reading a run from CSV.
 
-Each column is tried as numbers at once, and the bad cell looked for only when that fails: a good
-file costs a few milliseconds and a bad one still gets its row and column named.
+Each column is first converted to numbers as a whole, and an invalid cell is located only if that
+fails. A valid file is therefore read in milliseconds, and an error still names row and column.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ OF_DRIVES = (
     "motor_velocity_rad_s",
     "motor_speed_rpm",
 )
-"""Columns that only a rig with a drive can tell the meaning of."""
+"""Columns that can be interpreted only with a rig that has a drive."""
 _HEADER_EXAMPLE = "time_s,velocity_m_s,friction_n"
 _ALIASES = {
     "t": "time_s",
@@ -71,15 +71,15 @@ _ALIASES = {
     "normal_n": "load_n",
     "normal_load_n": "load_n",
 }
-"""Other names that people give a column, for the suggestion only."""
+"""Common alternative names of columns, used only for suggestions."""
 
 
 def _near_miss(
     word: str, absent: Iterable[str], aliases: Mapping[str, str] = _ALIASES
 ) -> str | None:
-    """The absent column that `word` looks like a slip of.
+    """Return the absent column that `word` is probably a misspelling of, or None.
 
-    A word of more parts than the column (``position_ref_m``) is a quantity of its own.
+    A word with more parts than the column (``position_ref_m``) is treated as a different quantity.
     """
     absent = list(absent)
     alias = aliases.get(word.lower())
@@ -112,7 +112,7 @@ def _checked_header(
     for name in header:
         if name and header.count(name) > 1:
             raise wrong(name, "stands twice in the header", "keep one and rename or drop the other")
-    # A drive's file holds much else: there only what must be there is looked for.
+    # The file of a drive has many other columns, so only the required ones are checked there.
     absent = [name for name in (COLUMNS if of_drive is None else required) if name not in header]
     aliases = _ALIASES if of_drive is None else _ALIASES | DRIVE_ALIASES
     misses = {
@@ -159,8 +159,11 @@ def _bad_cell(path: Path, row: int, column: str, cell: str) -> InputError:
 
 
 def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]:
-    """Header, its line, the rows of cells, and the line of each row; blank lines are skipped."""
-    # Universal newlines, and no other character that str.splitlines would take for one.
+    """Return the header, its line, the rows of cells, and the line of each row.
+
+    Blank lines are skipped.
+    """
+    # Universal newlines only; str.splitlines would also split at other characters.
     lines = list(io.StringIO(read_text(path), newline=None))
     first = 0
     while first < len(lines) and (
@@ -197,28 +200,28 @@ def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]
 def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = True) -> Run:
     """Read one run from CSV.
 
-    The header names the columns; ``time_s``, ``friction_n`` and a motion (``velocity_m_s``, or
-    ``position_m``, or ``angle_rad`` and a rig with a bearing) must be there, the other `COLUMNS`
-    may be. Any further column whose cells are all finite numbers is kept in
-    `Run.extra`, any other is ignored. Empty cells, of a column that has many, are instants at which
-    it was not read: it has a clock of its own. ``point`` in the place of ``time_s`` numbers steady
-    states, as of a Stribeck curve. Comma, semicolon or tab part the cells; blank
-    lines, and lines before the header that start with ``#``, are skipped.
+    The header names the columns. ``time_s``, ``friction_n`` and a motion (``velocity_m_s``, or
+    ``position_m``, or ``angle_rad`` and a rig with a bearing) are required; the other `COLUMNS` are
+    optional. Any further column whose cells are all finite numbers is kept in `Run.extra`; any
+    other column is ignored. If a column has many empty cells, they are instants at which it was not
+    sampled: it has its own clock. ``point`` in place of ``time_s`` numbers steady states, as in a
+    Stribeck curve. Cells are separated by commas, semicolons or tabs. Blank lines, and lines before
+    the header that start with ``#``, are skipped.
 
     Parameters
     ----------
     path : path
         The file.
     rig : Rig, optional
-        What it was recorded on. Its drive, where it has one, says which columns hold friction and
-        motion (``docs/drives.md``) and what converts them.
+        The rig of the recording. Its drive, if it has one, defines which columns hold friction and
+        motion (``docs/drives.md``) and how they are converted.
     need_friction : bool
-        False lets ``friction_n`` be absent, as in a motion to predict for.
+        False allows ``friction_n`` to be absent, as in a motion for a prediction.
 
     Raises
     ------
     InputError
-        The file or a cell of it is wrong; the message names file, row, column and the mend.
+        The file or a cell of it is invalid; the message names file, row, column and remedy.
     """
     path = path_of(path)
     name_of_run = name_of(path)
@@ -283,9 +286,9 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
 
 
 def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:
-    """Steady states in the order of their speeds, on a time axis of their own.
+    """Sort steady states by speed and give them a time axis.
 
-    What neighbours differ by is then their noise, in whatever order they were measured.
+    Differences between neighbours are then noise, in whatever order the states were measured.
     """
     order = np.argsort(columns[speed], kind="stable")
     found = {name: frozen(values[order]) for name, values in columns.items()}
@@ -295,10 +298,10 @@ def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:
 def _by_its_own_clock(
     cells: Sequence[str], others: Sequence[Sequence[str]]
 ) -> tuple[Array, Mask] | None:
-    """The readings of a channel with a clock of its own, and where it was read; None where a cell
-    is no number, or so few are empty that they are gaps.
+    """Return the readings of a channel with its own clock, and the mask of its non-empty cells.
 
-    A quick channel is seldom empty: then each row that lacks it is there for a slow one's sake.
+    None if a cell is not a number, or if the empty cells are too few to be more than gaps. A fast
+    channel has few empty cells: then every row that lacks it must belong to a slow channel.
     """
     there = _filled_cells(cells)
     if not there.any():
@@ -325,8 +328,8 @@ def _is_a_clock(there: Mask) -> bool:
 
 
 def _required(header: Sequence[str], need_friction: bool) -> list[str]:
-    """Columns that must be there, of a machine without a drive in its rig."""
-    # The first that tells the motion will do; where there is none, the speed is missing.
+    """Required columns for a rig without a drive."""
+    # The first motion column in the header suffices; without any, the speed is reported as missing.
     motion = next((column for column in MOTION if column in header), MOTION[0])
     if any(_near_miss(name, MOTION[:1]) for name in header):
         motion = MOTION[0]

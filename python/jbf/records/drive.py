@@ -1,4 +1,4 @@
-"""A drive, slide or joint as a section of `rig.toml`: what moves, and as what friction was read."""
+"""A drive, slide or joint as a section of `rig.toml`: its motion and its friction measurement."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ _CONSTANTS: dict[tuple[str, str], tuple[str, ...]] = {
     ("rotary", "none"): (),
     ("linear", "none"): (),
 }
-"""For each motion and reading the constants that turn it into a force or a torque: one of them."""
+"""Constants that convert a reading into a force or a torque, by motion and reading.
+
+Exactly one of the listed constants is required.
+"""
 _ALL_CONSTANTS = tuple(dict.fromkeys(name for names in _CONSTANTS.values() for name in names))
 _SENSORS = {
     "force": "the force sensor",
@@ -42,27 +45,27 @@ _SENSORS = {
 
 @dataclass(frozen=True)
 class Drive:
-    """A rotary or linear drive, and what its columns are.
+    """A rotary or linear drive, and the meaning of its columns.
 
     Attributes
     ----------
     motion : str
-        `rotary` (answers in N m and rad) or `linear` (in N and m).
+        `rotary` (results in N m and rad) or `linear` (in N and m).
     friction : str
-        What was recorded: `force`, `torque`, `current` (A), `percent` of a rated value, `voltage`
-        (V; answers are in volts), or `none`: a coast-down or free swing, whose friction is the
-        known mass or inertia times the deceleration.
+        The recorded quantity: `force`, `torque`, `current` (A), `percent` of a rated value,
+        `voltage` (V; results are in volts), or `none`: a coast-down or free swing, whose friction
+        is the known mass or inertia times the deceleration.
     torque_constant_n_m_a, force_constant_n_a : float, optional
-        Torque of the motor, N m, or force of a linear motor, N, for one ampere.
+        Torque of the motor, N m, or force of a linear motor, N, per ampere.
     rated_torque_n_m, rated_force_n : float, optional
-        What 100 % are, at the motor.
+        Torque or force at 100 %, at the motor.
     gear_ratio : float
-        Turns of the motor for one turn of what it drives: the joint, or the screw.
+        Turns of the motor per turn of the driven part: the joint, or the screw.
     pitch_m : float, optional
-        Way of a linear drive for one turn of its screw (lead), or of its pinion or pulley, m.
+        Travel of a linear drive per turn of its screw (lead), or of its pinion or pulley, m.
     inertia_kg_m2, mass_kg : float, optional
-        Known moved inertia or mass. Reported next to the estimate of `inertia_leak`; required for
-        `friction = "none"`, where it makes a force of the deceleration.
+        Known moved inertia or mass. It is reported next to the estimate of `inertia_leak`. It is
+        required for `friction = "none"`, where it converts the deceleration into a force.
     """
 
     motion: Kind
@@ -120,26 +123,26 @@ class Drive:
 
     @property
     def moved(self) -> float | None:
-        """Known moved inertia (kg m^2) or mass (kg); None where it is not known."""
+        """Known moved inertia (kg m^2) or mass (kg); None if unknown."""
         return self.inertia_kg_m2 if self.motion == "rotary" else self.mass_kg
 
     @property
     def _of_motor(self) -> float | None:
-        """Torque of the motor for one unit of the reading; None of a force or a linear motor."""
+        """Torque of the motor per unit of the reading; None for a force or a linear motor."""
         if self.torque_constant_n_m_a is not None:
             return self.torque_constant_n_m_a
         return None if self.rated_torque_n_m is None else self.rated_torque_n_m / 100.0
 
     @property
     def motor_rad(self) -> float | None:
-        """Radians of the motor for a unit of way (rad or m); None where no turn is known."""
+        """Motor angle, rad, per unit of travel (rad or m); None if no pitch is given."""
         if self.motion == "rotary":
             return self.gear_ratio
         return None if self.pitch_m is None else self.gear_ratio * 2.0 * math.pi / self.pitch_m
 
     @property
     def unit_n(self) -> float:
-        """What one ampere or one percent is where the drive moves, N or N m."""
+        """Force or torque at the driven part per ampere or per percent, N or N m."""
         if self.force_constant_n_a is not None:
             return self.force_constant_n_a
         if self.rated_force_n is not None:
@@ -150,14 +153,14 @@ class Drive:
 
     @property
     def quantities(self) -> Quantities:
-        """The units and words of its answers."""
+        """Units and words of the results."""
         kind = ROTARY if self.motion == "rotary" else LINEAR
         read = kind.read_by(_SENSORS[self.friction])
         return read.in_volts() if self.friction == "voltage" else read
 
     @classmethod
     def from_mapping(cls, content: object, prefix: str) -> Drive:
-        """A drive from its section; an InputError names the key, after `prefix`."""
+        """Build a drive from its TOML section; errors name the key, preceded by `prefix`."""
         known = [f.name for f in fields(cls)]
         section: Mapping[str, Any] = table(content, prefix)
         refuse_unknown(section, known, f"{prefix}.")

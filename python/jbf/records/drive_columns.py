@@ -1,8 +1,8 @@
-"""The columns of a drive's file, and what they are where the drive moves, converted on reading.
+"""Columns of the file of a drive, and their conversion to the driven part when they are read.
 
-Columns that begin with `motor_`, the current and the percentages are the motor's; `gear_ratio` and
-`pitch_m` carry them to the joint or the slide. Of several columns for one quantity the first in the
-lists below is read.
+Columns that begin with `motor_`, the current and the percentages refer to the motor. They are
+converted to the joint or the slide with `gear_ratio` and `pitch_m`. If several columns hold the
+same quantity, the first in the lists below is read.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Array = npt.NDArray[np.float64]
 
 ALWAYS = ("time_s", "load_n", "temperature_c")
 RPM = 2.0 * math.pi / 60.0
-"""Radians a second of one turn a minute."""
+"""One turn per minute in radians per second."""
 ALIASES = {
     "torque": "torque_n_m",
     "torque_nm": "torque_n_m",
@@ -48,7 +48,7 @@ ALIASES = {
     "velocity": "velocity_m_s",
     "force_n": "friction_n",
 }
-"""Other names that people give a drive's columns, for the suggestion only."""
+"""Common alternative names of the columns of a drive, used only for suggestions."""
 _ENDS = {
     "_n_m": "1 N m",
     "_a": "1 A",
@@ -58,14 +58,16 @@ _ENDS = {
     "_rad_s": "1 rad/s",
     "_rad": "1 rad",
 }
-"""What one unit of a column is, by the end of its name."""
+"""Text for one unit of a column, by the end of its name."""
 _TURNED = ("angle_rad", "motor_angle_rad")
 
 
 @dataclass(frozen=True)
 class DriveColumns:
-    """What a rig's drive has read: for each quantity its columns, and the size of one unit of each
-    where the drive moves."""
+    """Columns that a drive may have recorded.
+
+    For each quantity: its columns, and the size of one unit of each at the driven part.
+    """
 
     drive: Drive
     friction: dict[str, float]
@@ -74,7 +76,7 @@ class DriveColumns:
 
     @classmethod
     def of(cls, drive: Drive) -> DriveColumns:
-        """The columns that a drive of this kind may have."""
+        """Return the columns that a drive of this kind may have."""
         motor = drive.motor_rad
         if drive.motion == "rotary":
             speed, place = {"velocity_rad_s": 1.0, "speed_rpm": RPM}, {"angle_rad": 1.0}
@@ -87,12 +89,14 @@ class DriveColumns:
 
     @property
     def known(self) -> tuple[str, ...]:
-        """Every column with a meaning here."""
+        """All columns with a defined meaning for this drive."""
         return (*ALWAYS, *self.friction, *self.speed, *self.place)
 
     def required(self, header: Sequence[str], need_friction: bool) -> list[str]:
-        """What must be there: the time, a motion, a friction; of each the one in the header, or
-        else the first."""
+        """Return the required columns: the time, a motion and a friction.
+
+        For each quantity this is the column in the header, or else the first one possible.
+        """
 
         def one(names: Sequence[str]) -> str:
             return next((name for name in names if name in header), names[0])
@@ -101,7 +105,7 @@ class DriveColumns:
         return found + ([one([*self.friction])] if need_friction and self.friction else [])
 
     def refuse_strangers(self, path: Path, row: int, header: Sequence[str]) -> None:
-        """An InputError where a column of another kind of machine stands in the file."""
+        """Raise an InputError if the file has a column of another kind of machine."""
         section = f'the rig\'s [drive] has motion = "{self.drive.motion}"'
         for name, mend in _strangers(self).items():
             if name in header:
@@ -113,7 +117,7 @@ class DriveColumns:
     def converted(
         self, name: str, columns: Mapping[str, Array]
     ) -> tuple[dict[str, Array], tuple[Finding, ...]]:
-        """The columns as every run has them, and what was done to them, as findings."""
+        """Return the columns under the names used in a run, and the conversions as findings."""
         kept = dict(columns)
         found: list[Finding] = []
         for target, sizes, si in self._targets():
@@ -132,14 +136,14 @@ class DriveColumns:
         return kept, tuple(found)
 
     def called(self, columns: Mapping[str, Array]) -> dict[str, str]:
-        """What each column that is read is called in a run."""
+        """Return the name in a run of each column that is read."""
         read = (
             (next((c for c in sizes if c in columns), ""), t) for t, sizes, _ in self._targets()
         )
         return {column: target for column, target in read if column}
 
     def _targets(self) -> tuple[tuple[str, Mapping[str, float], str], ...]:
-        """Column of a run, the file's columns for it with their sizes, its unit."""
+        """Column name in a run, columns of the file for it with their unit sizes, and the unit."""
         unit = self.drive.quantities
         place = "angle_rad" if self.drive.motion == "rotary" else "position_m"
         return (
@@ -187,7 +191,7 @@ def _strangers(columns: DriveColumns) -> dict[str, str]:
 
 
 def _whole(angle: Array) -> Array:
-    """An angle that does not start again at each turn; one of many turns stays as it is."""
+    """Unwrap an angle that restarts at each turn; return a multi-turn angle unchanged."""
     wraps = float(np.ptp(angle)) <= 2.0 * math.pi * (1.0 + 1e-9)
     return np.unwrap(angle) if wraps else angle
 

@@ -1,4 +1,4 @@
-"""A campaign as a folder: `rig.toml` beside the runs as CSV; and folders of such folders."""
+"""Campaign folders (`rig.toml` and the runs as CSV), and folders of such folders."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from jbf.text_files import path_of
 
 
 def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
-    """The rig and the runs of a folder that holds `rig.toml` and CSV files.
+    """Read the rig and the runs of a folder that holds `rig.toml` and CSV files.
 
     Raises
     ------
     InputError
-        There is no rig, no run, or one of them is wrong.
+        There is no rig or no run, or one of them is invalid.
     """
     folder = path_of(folder)
     path = folder / "rig.toml"
@@ -31,12 +31,12 @@ def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
 
 
 def campaigns_in(folder: PathLike) -> dict[str, Path]:
-    """Every folder in a folder that holds a rig or a run, by name.
+    """Find the subfolders of a folder that hold a rig or a run, by name.
 
     Raises
     ------
     InputError
-        There is none.
+        No subfolder holds a rig or a run.
     """
     folder = path_of(folder)
     found = {

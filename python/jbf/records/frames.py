@@ -1,4 +1,4 @@
-"""Columns of a data frame or a table, by name, without asking for the library that made it."""
+"""Numeric columns of a data frame or table by name, without importing its library."""
 
 from __future__ import annotations
 
@@ -15,14 +15,16 @@ Array = npt.NDArray[np.float64]
 
 
 def columns_of(frame: object, name: str) -> dict[str, Array]:
-    """The numeric columns of a frame (pandas, polars), an Arrow table, anything that exports itself
-    by Arrow's C stream where pyarrow is there, or a mapping of arrays; an index that is called
-    `time_s` is a column, too. What is missing in a column is nan.
+    """Return the numeric columns of a table by name; missing values are nan.
+
+    The table is a frame (pandas, polars), an Arrow table, any object that exports Arrow's C stream
+    if pyarrow is installed, or a mapping of arrays. An index that is named `time_s` is also a
+    column.
 
     Raises
     ------
     InputError
-        It is nothing of the kind.
+        The object is not a table with named columns.
     """
     names = _names(frame)
     if names is None and hasattr(frame, "__arrow_c_stream__"):
@@ -47,7 +49,7 @@ def _names(frame: object) -> list[str] | None:
         return [str(name) for name in frame]
     for attribute in ("column_names", "columns"):
         names = getattr(frame, attribute, None)
-        # pyarrow's `columns` are the columns themselves.
+        # The attribute `columns` of pyarrow holds the columns themselves, not their names.
         if names is not None and not callable(names):
             given = list(names)
             if all(isinstance(column, str) for column in given) and hasattr(frame, "__getitem__"):
@@ -68,12 +70,12 @@ def _by_arrow(frame: object, name: str) -> Any:
 
 
 def _numbers(column: Any) -> Array | None:
-    """A column as numbers; None where it holds something else."""
+    """Return a column as numbers; None if it holds anything else."""
     if hasattr(column, "to_numpy") and not hasattr(column, "__array__"):
         column = column.to_numpy()
     values = np.asarray(column)
     if values.dtype.kind == "O":
-        # Nulls among numbers; text and dates stay what they are.
+        # Replace nulls among numbers by nan; columns of text and dates are rejected.
         try:
             values = np.array([np.nan if v is None else v for v in values.tolist()])
         except (TypeError, ValueError):

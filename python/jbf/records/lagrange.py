@@ -1,4 +1,4 @@
-"""Lagrange's polynomial through a few samples, at one more instant."""
+"""Lagrange interpolation of a few samples at a further instant."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Array = npt.NDArray[np.float64]
 
 
 def weights_at_zero(t: Array) -> Array:
-    """Weights, at zero, of values at times, shape (points, ...)."""
+    """Lagrange weights at time zero for values at the times `t`, shape (points, ...)."""
     weights = np.ones_like(t)
     for j in range(len(t)):
         for k in range(len(t)):

@@ -1,7 +1,8 @@
-"""The quantities in which a rig's friction and motion are told: units, and the words for them.
+"""Units and words for the friction and motion of a rig.
 
-Every law in newtons holds for any pair of a force and its way: a force over metres, or a torque
-over radians, at a radius of one. The numbers are the same; this module knows what they are called.
+Every law in newtons and metres holds for any pair of a force and its displacement: a force over
+metres, or a torque over radians, that is, at a radius of one. The numbers are the same; this module
+holds their units and names.
 """
 
 from __future__ import annotations
@@ -30,24 +31,24 @@ _FORCES = re.compile(r"\(N m\)|N m\b|N\b")
 
 @dataclass(frozen=True)
 class Quantities:
-    """What a rig's numbers are.
+    """Units and words for the numbers of a rig.
 
     Attributes
     ----------
     motion
         `bearing` (a shaft in bearings: newtons at the journal's surface), `linear` or `rotary`.
     force, speed, length
-        Units of friction, speed and way.
+        Units of friction, speed and displacement.
     friction, velocity
-        Friction and speed as an axis of a plot calls them, without the unit.
+        Labels of friction and speed on the axis of a plot, without the unit.
     noun
-        What friction is: `force` or `torque`.
+        The kind of friction quantity: `force` or `torque`.
     mover
-        What moves.
+        The moving part.
     sensor
-        What reads the friction.
+        The sensor of the friction.
     friction_column, speed_column
-        What a written record calls them.
+        Column names in a written record.
     """
 
     motion: Motion
@@ -63,7 +64,7 @@ class Quantities:
     speed_column: str = "velocity_m_s"
 
     def unit(self, si: str) -> str:
-        """What a unit of the catalogue, whose laws are in newtons and metres, is here."""
+        """Convert a unit of the catalogue (newtons and metres) to the unit of this rig."""
         known = {"bearing": {}, "linear": _LINEAR, "rotary": _ROTARY}[self.motion]
         unit = known.get(si, si)
         if self.force in ("N", "N m"):
@@ -73,11 +74,11 @@ class Quantities:
         return _FORCES.sub(self.force, unit)
 
     def read_by(self, sensor: str) -> Quantities:
-        """The same, read by another sensor."""
+        """Return a copy with another sensor."""
         return replace(self, sensor=sensor)
 
     def in_volts(self) -> Quantities:
-        """The quantities of a motor whose voltage stands for its force or torque.
+        """Return the quantities of a motor whose voltage replaces its force or torque.
 
         Coulomb friction is then in V, viscous friction (with the back-EMF) in V s/rad or V s/m, and
         inertia in V s^2/rad or V s^2/m: the constants kS, kV and kA of a feedforward.
@@ -87,7 +88,7 @@ class Quantities:
         )
 
     def to_dict(self) -> dict[str, str]:
-        """For JSON: the units of what the keys end in `_n`, `_m_s` and `_m` of."""
+        """Units for JSON, of the quantities whose keys end in `_n`, `_m_s` and `_m`."""
         return {"force": self.force, "velocity": self.speed, "length": self.length}
 
 

@@ -1,4 +1,4 @@
-"""The load that a record tells: a force, or a pressure that stands for one."""
+"""The recorded load: a force, or a pressure that represents one."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ LEAST_LOAD = 1e-9
 
 
 def recorded_load(rig: Rig, run: Run) -> Array | None:
-    """The load of each sample, shape (N,); None where none was recorded.
+    """Return the load of each sample, shape (N,); None if none was recorded.
 
-    `load_n`, N; or, on an axis without a bearing, the column `pressure_pa`, in bar (1e5 Pa): what a
-    seal's friction grows with. Parameters "over load" are then N a bar. On a rotary drive, the size
-    of the column `load_n_m`, N m: the torque that a gear transmits.
+    The load is `load_n`, N. On an axis without a bearing it may be the column `pressure_pa`,
+    converted to bar (1e5 Pa), on which the friction of a seal depends. Parameters "over load" are
+    then in N per bar. On a rotary drive it may be the magnitude of the column `load_n_m`, N m: the
+    torque that a gear transmits.
     """
     if run.load_n is not None:
         return run.load_n

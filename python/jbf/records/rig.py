@@ -1,4 +1,4 @@
-"""A rig: the bearing, its lubricant and its load, or a drive, as a TOML file and frozen values."""
+"""A rig (bearing, lubricant and load, or a drive) as a TOML file and as frozen dataclasses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jbf.units.quantity import quantities
 
 MOST_BEARINGS = 1000
 COLDEST_C, WARMEST_C = -100.0, 1000.0
-"""Temperatures of a lubricant."""
+"""Range of temperatures of a lubricant, degrees Celsius."""
 
 _Section = TypeVar("_Section", "Bearing", "Lubricant", "Load")
 
@@ -30,16 +30,16 @@ def _make_positive(section: object, *names: str) -> None:
 
 @dataclass(frozen=True)
 class Bearing:
-    """Geometry of one journal bearing and the shaft that turns in it.
+    """Geometry of one journal bearing and of the shaft that turns in it.
 
     Attributes
     ----------
     radius_m, length_m, clearance_m : float
-        Journal radius, length, radial clearance, m; the clearance is below the radius.
+        Journal radius, length and radial clearance, m; the clearance is less than the radius.
     mass_kg : float
         Rotating mass, kg.
     count : int
-        Bearings on the shaft, at least 1.
+        Number of bearings on the shaft, at least 1.
     """
 
     radius_m: float
@@ -72,15 +72,15 @@ class Bearing:
 
 @dataclass(frozen=True)
 class Lubricant:
-    """The lubricant.
+    """Viscosity of the lubricant.
 
     Attributes
     ----------
     viscosity_pa_s : float
-        Its dynamic viscosity, Pa s.
+        Dynamic viscosity, Pa s.
     temperature_c : float, optional
-        The temperature at which it has that viscosity, degrees Celsius; a model with
-        `vogel_viscosity` has its law's parameters there.
+        Temperature at which the viscosity holds, degrees Celsius. In a model with
+        `vogel_viscosity`, the parameters of the law refer to this temperature.
     """
 
     viscosity_pa_s: float
@@ -135,9 +135,10 @@ def _section(
 
 @dataclass(frozen=True)
 class Rig:
-    """What a run was measured on; a law that needs no bearing leaves its sections None.
+    """The machine that a run was measured on; sections that a law does not need are None.
 
-    A `drive` says in which quantities a machine without bearings was recorded and is told.
+    A `drive` defines the quantities of the recording and of the results for a machine without
+    journal bearings.
     """
 
     bearing: Bearing | None = None
@@ -164,15 +165,18 @@ class Rig:
 
     @property
     def quantities(self) -> Quantities:
-        """The units and words of its friction and motion."""
+        """Units and words of the rig's friction and motion."""
         if self.drive is not None:
             return self.drive.quantities
         return LINEAR if self.bearing is None else OF_BEARING
 
     @property
     def radius_m(self) -> float | None:
-        """Way for one radian of the recorded angle: the journal's radius, m, or one of a rotary
-        drive, whose way is its angle; None where an angle is no way."""
+        """Displacement per radian of the recorded angle; None if an angle is not a displacement.
+
+        This is the radius of the journal, m, or 1 for a rotary drive, whose displacement is its
+        angle.
+        """
         if self.bearing is not None:
             return self.bearing.radius_m
         return 1.0 if self.quantities.motion == "rotary" else None
@@ -181,17 +185,17 @@ class Rig:
     def from_mapping(
         cls, mapping: Mapping[str, Any], *, file: PathLike | None = None, prefix: str = ""
     ) -> Rig:
-        """A rig from the nested mapping that its TOML holds.
+        """Build a rig from the nested mapping of its TOML file.
 
-        A quantity is a number in the unit that its key ends in, or text with a unit of its own,
-        such as "10 mm".
+        A quantity is a number in the unit that its key ends in, or text with an explicit unit, such
+        as "10 mm".
 
         Parameters
         ----------
         file : path, optional
-            Named in an error.
+            File to name in an error.
         prefix : str
-            Put before each key in an error, such as ``"rig."`` inside a model file.
+            Prefix of each key in an error, such as ``"rig."`` inside a model file.
 
         Raises
         ------
@@ -213,7 +217,7 @@ class Rig:
 
     @classmethod
     def thesis(cls, table: str = "4.2") -> Rig:
-        """The thesis's rig with the load of its table "4.2", "4.3", "4.4" or "4.5"."""
+        """The rig of the thesis with the load of its table "4.2", "4.3", "4.4" or "4.5"."""
         loads_n = {"4.2": 104.0, "4.3": 83.5, "4.4": 104.0, "4.5": 83.5}
         if table not in loads_n:
             raise InputError(
@@ -225,7 +229,7 @@ class Rig:
         return cls(Bearing(**sizes), lubricant, Load(normal_n=loads_n[table]))
 
     def to_mapping(self) -> dict[str, dict[str, Any]]:
-        """The nested mapping of plain values; sections and keys that are None are left out."""
+        """Return the nested mapping of plain values, without sections and keys that are None."""
         return {
             name: {key: value for key, value in section.items() if value is not None}
             for name, section in asdict(self).items()
@@ -233,7 +237,7 @@ class Rig:
         }
 
     def write(self, path: PathLike) -> None:
-        """Write the rig as TOML, whole or not at all; reading it gives an equal rig.
+        """Write the rig as TOML, atomically; reading the file gives an equal rig.
 
         Raises
         ------

@@ -34,37 +34,38 @@ PathLike = str | os.PathLike[str]
 class Run(Shown):
     """One recorded run; every array has shape (N,), is float64 and read-only.
 
-    The constructor trusts its arguments; `Run.from_arrays` and `read_run` check them.
+    The constructor does not check its arguments; `Run.from_arrays` and `read_run` do.
 
     Attributes
     ----------
     name : str
-        What reports call the run.
+        Name of the run in reports.
     time_s : ndarray
         Time, strictly increasing, s.
     velocity_m_s : ndarray
-        Signed surface speed, m/s; nan where it was not recorded and an angle stands for it.
+        Signed surface speed, m/s; nan if only an angle was recorded.
     friction_n : ndarray or None
         Tangential friction force of one bearing, N.
     angle_rad, position_m : ndarray or None
-        Where the journal (rad) or the slider (m) is.
+        Angle of the journal, rad, or position of the slider, m.
     load_n : ndarray or None
         Normal load on one bearing, above zero, N.
     temperature_c : ndarray or None
-        Temperature, degrees Celsius; where it was read more seldom, straight lines between.
+        Temperature, degrees Celsius; linearly interpolated if it was sampled more slowly.
     extra : dict of str to ndarray
-        The other numeric columns, units as their names say.
+        The other numeric columns, in the units of their names.
     path : Path or None
-        The file it came from.
+        The file that the run was read from.
     speed_recorded : bool
-        False where the speed is but a difference of the position, or left to the angle.
+        False if the speed is only a difference of the position, or is left to the angle.
     quantities : Quantities
-        Units and words; those of a rotary drive have N m in the place of N and rad in that of m.
+        Units and words; those of a rotary drive have N m in place of N and rad in place of m.
     reading : tuple of Finding
-        What was converted when the run was read.
+        Conversions that were made when the run was read.
     read : dict of str to ndarray
-        Where a channel with a clock of its own was read, bool of shape (N,); between its readings
-        its array is a straight line. A column that is not here was read at every instant.
+        Mask of the instants at which a channel with its own clock was sampled, bool, shape (N,).
+        Between them its array is linearly interpolated. A column without a mask was sampled at
+        every instant.
     """
 
     name: str
@@ -91,7 +92,7 @@ class Run(Shown):
 
     @property
     def steady(self) -> bool:
-        """Whether each sample is a steady state, as of a Stribeck curve."""
+        """True if each sample is a steady state, as in a Stribeck curve."""
         return POINT in self.extra
 
     @property
@@ -100,14 +101,14 @@ class Run(Shown):
         return float(self.time_s[-1] - self.time_s[0]) if len(self) else 0.0
 
     def columns(self) -> dict[str, Array]:
-        """The arrays that are there, by column name: known ones first, then `extra`."""
+        """Return the arrays that are present, by column name: known ones first, then `extra`."""
         known = {name: getattr(self, name) for name in COLUMNS}
         if not self.speed_recorded:
             del known["velocity_m_s"]
         return {name: a for name, a in known.items() if a is not None} | self.extra
 
     def _called(self) -> dict[str, Array]:
-        """`columns` by the names that tell their units."""
+        """Return `columns` under names that state their units."""
         called = {
             "friction_n": self.quantities.friction_column,
             "velocity_m_s": self.quantities.speed_column,
@@ -115,11 +116,11 @@ class Run(Shown):
         return {called.get(name, name): a for name, a in self.columns().items()}
 
     def _arrays(self) -> dict[str, Array]:
-        """The same, and the speed in any case."""
+        """Return `columns` with the speed in any case."""
         return {"velocity_m_s": self.velocity_m_s} | self.columns()
 
     def select(self, which: slice | npt.ArrayLike) -> Run:
-        """The samples that a slice or a boolean mask of shape (N,) keeps, as a run.
+        """Return the samples that a slice or a boolean mask of shape (N,) keeps, as a run.
 
         A selection may be shorter than `MIN_SAMPLES`, and a mask may leave gaps in time.
 
@@ -165,15 +166,15 @@ class Run(Shown):
         name: str = "run",
         path: PathLike | None = None,
     ) -> Run:
-        """A run from lists, arrays or pandas series of one length N, copied and checked.
+        """Build a run from lists, arrays or pandas series of one length N, copied and checked.
 
-        Without a speed, a position or an angle must tell the motion.
+        Without a speed, a position or an angle is required to define the motion.
 
         Raises
         ------
         InputError
-            A column is not N finite numbers, N < `MIN_SAMPLES`, time does not increase, or a
-            load is not above zero. Samples are counted from 0.
+            A column is not N finite numbers, N < `MIN_SAMPLES`, time does not increase, or a load
+            is not above zero. Samples are counted from 0.
         """
         given: dict[str, npt.ArrayLike | None] = {
             "time_s": time_s,
@@ -215,7 +216,7 @@ class Run(Shown):
     def from_channels(
         cls, channels: Channels, *, name: str = "run", path: PathLike | None = None
     ) -> Run:
-        """A run of channels that were read by clocks of their own: nothing is resampled.
+        """Build a run from channels with separate clocks, without resampling.
 
         Parameters
         ----------
@@ -226,7 +227,8 @@ class Run(Shown):
         Raises
         ------
         InputError
-            A channel is not finite numbers at increasing instants, or nothing tells the motion.
+            A channel is not finite numbers at increasing instants, or no channel defines the
+            motion.
         """
         columns, read = side_by_side(channels, name)
         check_columns(name, columns, None, None)
@@ -235,15 +237,15 @@ class Run(Shown):
 
     @classmethod
     def from_frame(cls, frame: object, *, name: str = "run", path: PathLike | None = None) -> Run:
-        """A run of a data frame (pandas, polars), an Arrow table or a mapping of arrays whose
-        columns are called as in a file; columns that hold no numbers are ignored.
+        """Build a run from a data frame (pandas, polars), an Arrow table or a mapping of arrays.
 
-        A column of which a twentieth or more is missing (nan, null) has a clock of its own.
+        Columns are named as in a file; those that are not numeric are ignored. A column with 5 % or
+        more missing values (nan, null) has its own clock.
 
         Raises
         ------
         InputError
-            As `from_arrays`; `time_s` is missing.
+            As in `from_arrays`; also if `time_s` is missing.
         """
         columns = columns_of(frame, name)
         time_s = columns.pop("time_s", None)
@@ -262,7 +264,7 @@ class Run(Shown):
 
     @classmethod
     def of_columns(cls, name: str, columns: Mapping[str, Array], path: Path | None) -> Run:
-        """A run of columns that have been checked."""
+        """Build a run from columns that have been checked."""
         recorded = "velocity_m_s" in columns
         if not recorded:
             columns = dict(columns) | {"velocity_m_s": _made_speed(columns)}
@@ -282,8 +284,10 @@ class Run(Shown):
         )
 
     def at(self, time_s: Array, friction_n: Array) -> Run:
-        """The run at other instants within it, with the friction read there, N; every other column
-        in straight lines between its samples."""
+        """Return the run at other instants within it, with the friction there, N.
+
+        All other columns are interpolated linearly.
+        """
         others = {
             name: frozen(np.interp(time_s, self.time_s, values))
             for name, values in self._arrays().items()
@@ -300,7 +304,7 @@ class Run(Shown):
         )
 
     def write_csv(self, path: PathLike) -> None:
-        """Write the run as CSV, whole or not at all; reading it gives the same bits.
+        """Write the run as CSV, atomically; reading the file gives bitwise equal values.
 
         Raises
         ------
@@ -310,7 +314,7 @@ class Run(Shown):
         write_text(path, self.to_csv())
 
     def to_csv(self) -> str:
-        """The run as the text of a CSV file, its columns in the units that their names tell."""
+        """Return the run as CSV text, with columns in the units of their names."""
         columns = self._called()
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
@@ -318,7 +322,7 @@ class Run(Shown):
         # repr of a float is the shortest text that reads back to the same bits.
         cells = [list(map(repr, a.tolist())) for a in columns.values()]
         for own, of_column in zip(self.columns(), cells, strict=True):
-            # An empty cell is an instant at which the channel was not read.
+            # An empty cell is an instant at which the channel was not sampled.
             for i in np.flatnonzero(~self.read[own]).tolist() if own in self.read else ():
                 of_column[i] = ""
         writer.writerows(zip(*cells, strict=True))
@@ -326,7 +330,7 @@ class Run(Shown):
 
 
 def _whole(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
-    """A temperature, C, with straight lines over its gaps, and what is said of them."""
+    """Interpolate the gaps of a temperature, C, linearly, and report them as a finding."""
     there = np.isfinite(celsius)
     if there.all():
         return celsius, ()
@@ -338,21 +342,21 @@ def _whole(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Findi
 
 
 def _made_speed(columns: Mapping[str, Array]) -> Array:
-    """A speed of the position, m/s; nan where only an angle is known, whose radius a rig tells."""
+    """Speed from the position, m/s; nan if only an angle is known, whose radius is in the rig."""
     if "position_m" in columns:
         return frozen(np.gradient(columns["position_m"], columns["time_s"]))
     return frozen(np.full(len(columns["time_s"]), np.nan))
 
 
 def require(run: Run, columns: str | Iterable[str], why: str) -> None:
-    """Raise the one-line error when a run lacks a column that someone needs.
+    """Raise a one-line error if a run lacks a required column.
 
     Parameters
     ----------
     columns : str or iterable of str
         Column names, for example ``"angle_rad"``.
     why : str
-        Who needs it, as a subject: ``"the effect position_ripple"``.
+        The part that requires the column, as a subject: ``"the effect position_ripple"``.
 
     Raises
     ------
@@ -371,12 +375,12 @@ def require(run: Run, columns: str | Iterable[str], why: str) -> None:
 
 
 def run_on(rig: Rig, run: Run) -> Run:
-    """The run in the quantities of its rig.
+    """Return the run with the quantities of its rig.
 
     Raises
     ------
     InputError
-        It was read for a machine of another kind, or without the rig that its columns need.
+        The run was read for another kind of machine, or without the rig that its columns require.
     """
     wanted = rig.quantities
     if run.quantities == wanted:

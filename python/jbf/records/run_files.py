@@ -1,4 +1,4 @@
-"""Runs from files, folders and patterns, each under a name of its own."""
+"""Reading runs from files, folders and glob patterns, each under a unique name."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _expanded(item: PathLike) -> list[Path]:
 
 
 def _unique_names(paths: Sequence[Path]) -> list[str]:
-    """The stem of each path, with as many parent folders as tell equal stems apart."""
+    """Return the stem of each path, with as many parent folders as distinguish equal stems."""
     whole = [real_path(path) for path in paths]
 
     def name(path: Path, depth: int) -> str:
@@ -55,14 +55,14 @@ def read_runs(
 ) -> list[Run]:
     """Read runs from files, folders (every .csv in it, sorted) and glob patterns.
 
-    A rig with a drive says what the columns are, as in `read_run`.
+    A rig with a drive defines the meaning of the columns, as in `read_run`.
 
-    Names are the file stems; runs with equal stems get parent folders too: ``a/sweep``.
+    Names are the file stems; runs with equal stems are prefixed by parent folders: ``a/sweep``.
 
     Raises
     ------
     InputError
-        As `read_run`; also when nothing is found or a file comes twice.
+        As in `read_run`; also if no file is found or a file is given twice.
     """
     if isinstance(paths, str | os.PathLike) or not isinstance(paths, Iterable):
         items = [path_of(paths)]

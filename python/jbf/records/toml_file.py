@@ -1,4 +1,4 @@
-"""TOML files, and checks of what stands in them that name the key."""
+"""Reading TOML files, and checks of their values whose errors name the key."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ PathLike = str | os.PathLike[str]
 
 
 def number(value: object, key: str) -> float:
-    """A TOML number as float, infinity and nan included.
+    """Convert a TOML number to float; infinity and nan are accepted.
 
     Raises
     ------
     InputError
-        Not a number; like all errors of this file's helpers it names `key` but no file.
+        The value is not a number. Like all errors of the helpers in this module, it names `key` but
+        no file.
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         shown = quoted(value) if isinstance(value, str) else f"a {type(value).__name__}"
@@ -35,12 +36,14 @@ def number(value: object, key: str) -> float:
 
 
 LEAST, MOST = 1e-12, 1e12
-"""No size, mass, viscosity, load or constant in SI units is beyond; what is made of several of
-them stays finite."""
+"""Limits of any size, mass, viscosity, load or constant in SI units.
+
+Values that are computed from several of them stay finite.
+"""
 
 
 def positive(value: object, key: str) -> float:
-    """A number above zero of a size that a machine may have; raises as `number`."""
+    """Convert to a positive number of a plausible magnitude; raise as `number` does."""
     found = number(value, key)
     if not (0.0 < found < math.inf):
         raise InputError(
@@ -54,19 +57,19 @@ def positive(value: object, key: str) -> float:
 
 
 def table(value: object, key: str) -> Mapping[str, Any]:
-    """A TOML table as a mapping; raises `InputError` when it is something else."""
+    """Return a TOML table as a mapping; raise an `InputError` if it is not a table."""
     if not isinstance(value, Mapping):
         raise InputError(key=key, problem="is not a table", mend=f"write it as [{key}] with keys")
     return value
 
 
 def refuse_unknown(found: Iterable[str], known: Iterable[str], prefix: str = "") -> None:
-    """Raise for the first key of `found` that is not in `known`, with the nearest known one.
+    """Raise for the first key of `found` that is not in `known`, and suggest the nearest known key.
 
     Raises
     ------
     InputError
-        Names the key, `prefix` before it, but no file.
+        Names the key, preceded by `prefix`, but no file.
     """
     known = list(known)
     for key in found:
@@ -77,18 +80,19 @@ def refuse_unknown(found: Iterable[str], known: Iterable[str], prefix: str = "")
 
 
 def read_toml(path: PathLike) -> dict[str, Any]:
-    """The content of a TOML file as plain Python values.
+    """Return the content of a TOML file as plain Python values.
 
     Raises
     ------
     InputError
-        The file cannot be read, or is not TOML; names the line.
+        The file cannot be read, or is not TOML; the error names the line.
     """
     text = read_text(path)
     try:
         return tomlkit.parse(text).unwrap()
     except (TOMLKitError, ValueError, RecursionError) as error:
-        # tomlkit writes the end of the text as a null character, and its own line and column.
+        # tomlkit reports the end of the text as a null character, and appends its own line and
+        # column.
         reason = (
             str(error).partition(" at line ")[0].replace("character: '\\x00'", "end").rstrip(".")
         )

@@ -1,7 +1,8 @@
-"""Findings: what the recording did to a run, before any physics.
+"""Data-quality findings: recording artefacts of a run, detected before any physics.
 
-Comes in: a `Run`. Goes out: `Examined`: findings (kind, channel, size, what was done) and the
-samples of the force that can be used. One kind a file. Knows nothing of models.
+Input: a `Run`. Output: `Examined`: findings (kind, channel, size, action taken) and the usable
+samples of the force. Each kind of finding has its own module. This package does not depend on
+models.
 
 May import: the rest of `jbf.records`.
 """

@@ -1,4 +1,4 @@
-"""The digits that a channel is written with."""
+"""Resolution of the values of a channel: the last decimal digit or the quantisation step."""
 
 from __future__ import annotations
 
@@ -8,13 +8,16 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 FEWEST_GAPS = 8
-"""Gaps between levels that show a converter's step,"""
+"""Number of gaps between levels from which a quantisation step is accepted."""
 MOST_STEPS = 20.0
-"""and the widest of them, in steps: of a wider one, an error of the step would be most."""
+"""Widest gap that is compared with whole steps, in steps.
+
+In a wider gap the accumulated error of the step would dominate.
+"""
 
 
 def last_digit(values: Array) -> float:
-    """The last decimal digit that samples are written with; of binary numbers their rounding."""
+    """Return the last decimal digit of the samples; for binary numbers, their rounding."""
     top = float(np.max(np.abs(values)))
     if top == 0.0:
         return 0.0
@@ -27,12 +30,12 @@ def last_digit(values: Array) -> float:
 
 
 def resolution(values: Array) -> float:
-    """Return the least difference that samples can have: the step of a converter, or a digit.
+    """Return the smallest difference that samples can have: a quantisation step or a digit.
 
     Notes
     -----
-    The levels of a converter are whole steps apart, to the last digit. All other values differ by
-    as little as a digit once there are enough of them.
+    Quantisation levels are whole steps apart, to the last digit. All other values differ by as
+    little as one digit if there are enough of them.
     """
     digit = last_digit(values)
     apart = np.diff(np.unique(values))

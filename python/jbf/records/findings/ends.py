@@ -1,8 +1,9 @@
-"""Ends of a channel that do not belong to it: the first samples before a converter is ready, the
-last ones of a buffer that was not full.
+"""Outliers at the ends of a channel.
 
-Within a record a sample that is off has neighbours on both sides that say so; at its ends it has
-those of one side. They say it where it is off by much more than anything in the record is.
+Examples are the first samples before a converter is ready, and the last samples of a buffer that
+was not full. An outlier within a record is detected from its neighbours on both sides. At an end
+there are neighbours on one side only. A sample there is an outlier if it deviates from them by much
+more than any sample within the record does.
 """
 
 from __future__ import annotations
@@ -17,19 +18,19 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 MOST = 3
-"""Samples at an end that may be off."""
+"""Largest number of outliers at each end."""
 TIMES = 4.0
-"""Times the largest distance of any sample within from what follows it."""
+"""Threshold, relative to the largest deviation of an inner sample from its successors."""
 LEAST_SAMPLES = 60
 
 
 def loose_ends(time: Array, values: Array, beside: int) -> Mask:
-    """True at the first and last samples that are off what comes next to them.
+    """Detect outliers among the first and last samples.
 
     Parameters
     ----------
     beside
-        How many samples say where the one next to them is: one its level, three a parabola.
+        Number of adjacent samples that predict a sample: one for a constant, three for a parabola.
     """
     found = np.zeros(len(values), dtype=bool)
     if len(values) < max(LEAST_SAMPLES, 2 * MOST + 2 * beside):
@@ -40,21 +41,21 @@ def loose_ends(time: Array, values: Array, beside: int) -> Mask:
 
 
 def _loose(time: Array, values: Array, beside: int) -> int:
-    """How many samples at the beginning are off."""
+    """Count the outliers at the beginning."""
     n = len(values) - beside
     t = np.stack([time[k : n + k] - time[:n] for k in range(1, beside + 1)])
     y = np.stack([values[k : n + k] - values[:n] for k in range(1, beside + 1)])
     off = np.abs(np.sum(weights_at_zero(t) * y, axis=0))
     within = float(np.max(off[MOST : n - MOST]))
     far = np.flatnonzero(off[:MOST] > TIMES * within)
-    # Of a record that never changes nobody knows by how much it may.
+    # If the inner samples never deviate, there is no scale to compare with.
     return int(far[-1]) + 1 if within > 0.0 and len(far) else 0
 
 
 def ends_finding(
     channel: str, what: str, run: str, mask: Mask, off: Array, unit: str, done: str
 ) -> Finding | None:
-    """What is said of ends that are off by so much; None where none is."""
+    """Return the finding for outliers at the ends, with deviations `off`, or None."""
     if not mask.any():
         return None
     half = len(mask) // 2

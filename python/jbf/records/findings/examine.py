@@ -1,4 +1,4 @@
-"""Examine a run: everything that its recording did, and which readings of the force can be used."""
+"""Examine a run: collect all findings of the force, and determine its usable readings."""
 
 from __future__ import annotations
 
@@ -24,14 +24,17 @@ Mask = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Examined:
-    """What was found in a run.
+    """Result of the examination of a run.
 
     Attributes
     ----------
+    findings
+        The data-quality findings.
     usable
-        False at readings of the force that tell nothing, shape (n,).
+        False at readings of the force that carry no information, shape (n,).
     native
-        The readings behind the samples, where the force was interpolated; None where it was not.
+        The original readings if the force was interpolated, held or partly filled in; None
+        otherwise.
     """
 
     findings: tuple[Finding, ...]
@@ -40,14 +43,14 @@ class Examined:
 
 
 def examine(run: Run, velocity_m_s: Array | None = None, period_s: float | None = None) -> Examined:
-    """Look for what loggers do to a record of friction.
+    """Detect the recording artefacts of a friction record.
 
     Parameters
     ----------
     velocity_m_s
-        The speed that was imposed, where more is known of it than the record says.
+        Estimated speed, m/s, if it is more accurate than the recorded one.
     period_s
-        At which other runs of the same logger read the force, where that is known.
+        Sampling period of the force in other runs of the same logger, s, if it is known.
     """
     velocity = run.velocity_m_s if velocity_m_s is None else velocity_m_s
     if run.friction_n is None:
@@ -60,7 +63,7 @@ def examine(run: Run, velocity_m_s: Array | None = None, period_s: float | None 
     held, still = find_held(run, np.zeros(len(run), dtype=bool))
     native = find_native(run.time_s[~still], run.friction_n[~still]) if held else None
     if native is not None:
-        # A line that stood still in between is one all the same.
+        # An interpolated record may also contain held stretches.
         return Examined((_interpolated(run, native), *held), np.ones(len(run), dtype=bool), native)
     native = find_repeated(run.time_s, run.friction_n)
     if native is not None:
@@ -76,7 +79,7 @@ def examine(run: Run, velocity_m_s: Array | None = None, period_s: float | None 
 
 
 def examine_readings(run: Run, velocity_m_s: Array) -> Examined:
-    """What is wrong with single readings of the force."""
+    """Detect single invalid readings of the force: outliers and saturation."""
     glitches, off = find_glitches(run, velocity_m_s)
     saturation, ends = find_saturation(run)
     return Examined((*glitches, *saturation), ~(off | ends))

@@ -1,8 +1,9 @@
-"""Samples that lie on the straight line between their neighbours: filled in, not read.
+"""Interpolated samples on the straight line between their neighbours.
 
-A channel with stamps of its own that an export drew onto the rows of another, or onto all instants
-of both, has its corners at rows, evenly spaced or not; lost samples that a logger replaced lie so.
-Noise puts hardly a sample there: how many it would is told by those that nearly lie there.
+They occur if an export interpolated a channel with its own time stamps onto the rows of another
+channel, or onto all instants of both. A logger may also replace lost samples like this. The corners
+of such a record are at rows, evenly spaced or not. Noise rarely puts a sample exactly on the line;
+the expected number is estimated from the samples close to it.
 """
 
 from __future__ import annotations
@@ -18,50 +19,52 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST_SHARE, LEAST = 0.02, 10
-"""Of the samples: below that nobody filled a channel in; and so many at least."""
+"""Smallest share and smallest number of interpolated samples for a finding."""
 BY_CHANCE = 10.0
-"""Times as many as chance puts there."""
+"""Minimum ratio of the number of samples on a line to the number expected by chance."""
 ROUNDING = 1.05
-"""Digits, or steps of a converter, that rounding of three samples puts between one and its line."""
+"""Deviation from the line due to the rounding of three samples, in digits or quantisation steps."""
 FINE = 0.02
-"""What is fine enough to tell a line by, as a share of how far samples beside one are off it."""
+"""Largest rounding at which lines are detectable, relative to the deviation of adjacent samples."""
 CORNERS = 12.0
-"""Samples from one on a line to a clear corner, on the whole: a smooth force goes straight on for
-longer."""
+"""Largest median distance from a sample on a line to a clear corner, in samples.
+
+A smooth force continues straight for longer.
+"""
 LONGEST = 50.0
-"""Samples a reading on the whole: beyond, the lines are the friction's own."""
+"""Largest ratio of samples to readings; beyond it the lines belong to the friction itself."""
 
 
 def find_filled_in(time: Array, values: Array) -> Native | None:
-    """The readings among a channel's samples; None where all are readings."""
+    """Return the original readings of a channel; None if all samples are readings."""
     if len(time) < 5:
         return None
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     off = np.abs(values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:])
     rounding = ROUNDING * resolution(values)
-    # Of equal samples nobody knows whether they were read: a held channel is another finding.
+    # Equal samples are excluded: a held channel is a separate finding.
     level = np.abs(values[2:] - values[:-2]) <= 2.0 * rounding
     line = (off <= rounding) & ~level
-    # Where friction itself goes straight on, the samples beside are nearly straight, too.
+    # If the friction itself is straight there, the adjacent samples are also nearly on a line.
     beside = (off > rounding) & (np.convolve(line, [1, 0, 1], "same") > 0)
     usual = float(np.median(off[beside])) if np.any(beside) else 0.0
     if usual == 0.0 or rounding > FINE * usual or _far_from_corners(line, off > usual):
         return None
     near = off[(off > rounding) & (off <= usual)]
-    # A converter's steps put samples on a line as often as they put them one step off it.
+    # Quantisation puts samples on a line as often as one step off it.
     chance = len(near) / usual * max(quantum_of(values), rounding)
     count = int(line.sum())
     if count < max(LEAST, LEAST_SHARE * len(time), BY_CHANCE * chance):
         return None
     read = np.concatenate(([True], ~line, [True]))
-    # Friction that goes on straight lines itself, or a curve, has no noise at its corners.
+    # If the friction itself follows straight lines or a curve, its corners have no noise.
     if read.sum() * LONGEST < len(time) or is_smooth(values[read]):
         return None
     return Native(time[read], values[read], float(np.median(np.diff(time[read]))))
 
 
 def _far_from_corners(line: Mask, corner: Mask) -> bool:
-    """Whether most samples on lines are far from the nearest corner."""
+    """Return whether most samples on lines are far from the nearest corner."""
     if not corner.any() or not line.any():
         return True
     place, corners = np.flatnonzero(line), np.flatnonzero(corner)

@@ -1,4 +1,4 @@
-"""A finding: one thing that the recording did to a channel of a run."""
+"""A data-quality finding: one recording artefact in a channel of a run."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Finding:
-    """What the recording did.
+    """One recording artefact of a run.
 
     Attributes
     ----------
@@ -17,11 +17,11 @@ class Finding:
     channel
         Name of the column.
     run
-        Name of the run; several, with commas, where one finding is theirs in common.
+        Name of the run; several names, separated by commas, if the finding is common to them.
     size
-        How large, in `unit`.
+        Magnitude, in `unit`.
     done
-        What was done about it: `set aside`, `weighed`, `none`, ...
+        Action taken: `set aside`, `weighed`, `none`, ...
     words
         The finding in a sentence.
     """
@@ -35,5 +35,5 @@ class Finding:
     words: str
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON, as the file contract has it."""
+        """Return the finding for JSON, in the format of the file contract."""
         return dict(vars(self))

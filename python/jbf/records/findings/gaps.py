@@ -1,4 +1,4 @@
-"""Gaps: rows that are missing."""
+"""Gaps: missing rows."""
 
 from __future__ import annotations
 
@@ -9,23 +9,26 @@ from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
 
 EVEN = 0.5
-"""Steps of an even record differ from the usual one by less than this share, but for gaps."""
+"""Largest relative deviation of a time step from the median in an evenly sampled record."""
 MOSTLY = 0.9
-"""Share of the steps that must be the usual one for a longer one to be a gap."""
+"""Share of the steps that must be close to the median for a longer step to be a gap."""
 
 STRETCH = 4
-"""Window, in steps, in which the jitter of a stamp cancels."""
+"""Window, in steps, over which the jitter of a time stamp cancels."""
 
 
 def find_gaps(run: Run) -> list[Finding]:
-    """Rows missing from an evenly sampled record. Nothing is filled in: a model steps over them."""
+    """Find missing rows in an evenly sampled record; they are not filled in.
+
+    A model integrates across the gap.
+    """
     steps = np.diff(run.time_s)
     usual = float(np.median(steps))
     even = np.abs(steps - usual) < EVEN * usual
     if even.mean() < MOSTLY:
         return []
-    # A missing row makes every stretch that contains it longer by one step. Jitter makes a step
-    # longer and its neighbours shorter.
+    # A missing row lengthens every window that contains it by one step. Jitter lengthens one step
+    # and shortens its neighbours.
     missing = np.rint(steps / usual) - 1.0
     for length in range(2, min(STRETCH, len(steps)) + 1):
         window = np.lib.stride_tricks.sliding_window_view(steps, length).sum(axis=1) / usual

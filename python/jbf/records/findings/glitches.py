@@ -1,4 +1,4 @@
-"""Glitches: single samples far off what the samples on both sides agree on."""
+"""Outliers: single samples far from both of their neighbours."""
 
 from __future__ import annotations
 
@@ -14,23 +14,28 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 FAR = 8.0
-"""Local standard deviations that a sample must be off both its neighbours, to the same side."""
+"""Least deviation from both neighbours, to the same side, in local standard deviations."""
 CHANGES = 3.0
-"""Times the usual change between neighbours that it must be off: no corner of a smooth force is."""
+"""Least deviation relative to the usual change between neighbours.
+
+No corner of a smooth force reaches it.
+"""
 WINDOW = 41
-"""Samples over which the local noise is taken."""
+"""Window of the local noise, samples."""
 LOUD = 0.8
-"""Least local noise, as a share of the usual: beside readings that stand still there is none."""
+"""Lower bound of the local noise relative to the usual noise; near constant readings it is zero."""
 RARE = 0.02
-"""A record in which more samples than this are far off has large noise, not glitches."""
+"""Largest share of outliers; with more of them, the record has large noise instead."""
 LEAST_SAMPLES = 100
 SLOW, BESIDE = 0.02, 3
-"""Where the speed turns round or rises from rest (a share of its top), so many samples to either
-side may hold a peak of the friction itself."""
+"""Speed below which the shaft is slow, relative to the top speed, and a range in samples.
+
+Within this range of a reversal, or of a start from rest, the friction itself may have a peak.
+"""
 
 
 def glitches(values: Array) -> Mask:
-    """True at samples that stick out: a jump, up or down, has its neighbours to either side."""
+    """Detect outliers: samples with a step to both neighbours, in the same direction."""
     n = len(values)
     found = np.zeros(n, dtype=bool)
     if n < LEAST_SAMPLES:
@@ -41,7 +46,7 @@ def glitches(values: Array) -> Mask:
     before, after = change[:-1], -change[1:]
     off = np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0)
     bend = np.abs(before + after)
-    # White noise bends by sqrt(6) of its standard deviation.
+    # The second difference of white noise has sqrt(6) times its standard deviation.
     local = ndimage.median_filter(bend, WINDOW, mode="reflect") / 0.6745 / np.sqrt(6.0)
     usual = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
     step = ndimage.median_filter(np.abs(change), WINDOW, mode="reflect")
@@ -53,7 +58,14 @@ def glitches(values: Array) -> Mask:
 
 
 def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
-    """Glitches of the force, and where they are; a peak at a reversal or a start is none."""
+    """Find the outliers of the force; a peak at a reversal or a start from rest is not one.
+
+    Returns
+    -------
+    findings : list of Finding
+    mask : ndarray
+        True at the outliers, shape (n,).
+    """
     assert run.friction_n is not None
     mask = glitches(run.friction_n) & ~_breakaway(velocity_m_s)
     loose = _loose_ends(run, velocity_m_s, mask)
@@ -76,7 +88,7 @@ def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
 
 
 def _loose_ends(run: Run, velocity_m_s: Array, mask: Mask) -> Mask:
-    """Ends of the force that are off, beside those that stick out within; but for a start."""
+    """Detect outliers at the ends, in addition to the given ones; not at reversals or starts."""
     assert run.friction_n is not None
     loose, good = np.zeros(len(mask), dtype=bool), ~mask
     loose[good] = loose_ends(run.time_s[good], run.friction_n[good], 1)
@@ -84,17 +96,17 @@ def _loose_ends(run: Run, velocity_m_s: Array, mask: Mask) -> Mask:
 
 
 def _next_to(run: Run, mask: Mask) -> Array:
-    """The force as the samples say that do not stick out."""
+    """Interpolate the force across the masked outliers."""
     assert run.friction_n is not None
     said: Array = np.interp(run.time_s, run.time_s[~mask], run.friction_n[~mask])
     return said
 
 
 def _breakaway(velocity_m_s: Array) -> Mask:
-    """True at samples beside a reversal or an end of a rest."""
+    """Mask of the samples next to a reversal or an end of a rest."""
     top = float(np.max(np.abs(velocity_m_s), initial=0.0))
     way = np.where(np.abs(velocity_m_s) > SLOW * top, np.sign(velocity_m_s), 0.0)
-    # In a slow reversal the sign turns far from both ends of what is slow.
+    # In a slow reversal the sign changes far from both ends of the slow stretch.
     turns = np.flatnonzero((np.diff(way) != 0.0) | (velocity_m_s[1:] * velocity_m_s[:-1] < 0.0))
     beside = np.zeros(len(way), dtype=bool)
     for off in range(1 - BESIDE, BESIDE + 1):

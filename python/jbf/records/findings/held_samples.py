@@ -1,4 +1,4 @@
-"""Held samples: a channel that stands still, to the digit, while it should move."""
+"""Held samples: a channel that repeats exactly the same value while it should change."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST = 5
-"""So many equal readings in a row, where a converter's steps do not make them likely, are held."""
+"""Smallest number of equal readings in a row, where quantisation does not make them likely."""
 CHANCE = 1e-6
-"""Probability that a record shows so long a row of equal readings by chance."""
+"""Probability that a record contains a row of equal readings of this length by chance."""
 
 
 def held(values: Array) -> Mask:
-    """True at readings that repeat the one before, in rows too long for chance."""
+    """Mask of the readings that repeat the previous one, in rows that are too long for chance."""
     n = len(values)
     same = np.concatenate(([False], np.diff(values) == 0.0))
     edges = np.diff(np.concatenate(([0], same.astype(np.int8), [0])))
-    # A long row is one that began: it does not make long rows likely.
+    # Only the beginnings are counted, so that one long row does not make long rows likely.
     begun = float(np.sum(edges == 1)) / max(n - int(same.sum()), 1)
     share = min(max(begun, _by_steps(values), 1e-4), 0.9999)
-    # A converter's own rows of equal readings: p^k of k in a row, at n places.
+    # Rows of equal readings by quantisation: probability p^k for k in a row, at n places.
     least = max(LEAST, int(np.ceil(np.log(CHANCE / max(n, 1)) / np.log(share))))
     found = np.zeros(n, dtype=bool)
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
@@ -41,28 +41,34 @@ def held(values: Array) -> Mask:
 
 
 def _by_steps(values: Array) -> float:
-    """Probability that noise leaves a reading in the middle of a converter's step where it is."""
+    """Probability that noise keeps a reading in the middle of its quantisation step."""
     step, noise = step_of(values), noise_of(values)
     if step == 0.0:
         return 0.0
-    # Rounding adds a twelfth of the square of the step.
+    # Quantisation adds a variance of the square of the step over 12.
     own = math.sqrt(max(noise**2 - step**2 / 12.0, 1e-4 * step**2))
     return math.erf(0.5 * step / own / math.sqrt(2.0))
 
 
 def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
-    """Stretches in which the force stands still, and where they are.
+    """Find stretches in which the force does not change.
 
     Parameters
     ----------
     explained
-        True at readings of which something else is known to be wrong.
+        True at readings with another known defect.
+
+    Returns
+    -------
+    findings : list of Finding
+    mask : ndarray
+        True at the held readings, shape (n,).
     """
     assert run.friction_n is not None
     force = run.friction_n
     mask = held(force) & ~explained
     if mask.any() and is_without_noise(force[~mask]):
-        # A command that stands at its limit is what the drive did.
+        # A command that stays at its limit is real output of the drive.
         read = force[~explained]
         mask &= (force != np.max(read)) & (force != np.min(read))
     if not mask.any():

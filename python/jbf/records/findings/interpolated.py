@@ -1,9 +1,8 @@
-"""Interpolated samples: a slow channel drawn as straight lines onto the instants of a faster one.
+"""Interpolated samples: a slow channel interpolated linearly at the instants of a faster one.
 
-Between the instants at which the force was read, such a record is a polygon, to the last digit. The
-readings are its corners: their period and phase are searched so that a polygon with corners there
-goes through every sample. Nothing is resampled: the corners are what was read, and the samples in
-between never were.
+Such a record is a polygon, to the last digit. Its corners are the original readings. Their period
+and phase are searched such that a polygon with these corners passes through every sample. Nothing
+is resampled: the corners are the measured readings, and the samples between them were not measured.
 """
 
 from __future__ import annotations
@@ -20,59 +19,77 @@ from jbf.records.findings.steps import step_of
 Array = npt.NDArray[np.float64]
 
 WINDOW = 40
-"""Samples of a first look."""
+"""Window length of the first search, samples."""
 LONGER = 240
-"""Samples of a look for shorter periods: nearly as many corners as samples leave a polygon little
-to be tested by."""
+"""Window length of the search for shorter periods, samples.
+
+If a polygon has nearly as many corners as samples, few degrees of freedom remain to test it.
+"""
 SHORT = (1.05, 1.3)
 """Range of periods searched in a channel that is hardly slower than its record, samples."""
 BEATS, NEAR = 4, np.linspace(-1.0, 1.0, 9)
-"""Number of the strongest beat frequencies that are tried, and offsets from each, in units of the
-reciprocal of the analysed length."""
+"""Number of the strongest beat frequencies that are tried, and offsets from each.
+
+The offsets are in units of the reciprocal of the analysed length.
+"""
 HEARD = 960
 """Length of the analysed segment, samples."""
 LOOKS = 3
-"""First looks along the record, and as many where it bends most: coarse steps are flat for long."""
+"""Number of first windows along the record, and of further ones where it bends most.
+
+A coarsely quantised record is constant over long stretches.
+"""
 MOST_BENDS = 0.5
-"""Share of the samples at which a record bends from which on it does so everywhere."""
+"""Share of the samples with a bend from which the record is treated as bending everywhere."""
 PERIODS = np.exp(
     np.concatenate(
         [np.arange(np.log(1.2), np.log(8.0), 0.005), np.arange(np.log(8.0), np.log(25.0), 0.02)]
     )
 )
-"""Periods looked for, in samples: a window of few periods tells them less sharply."""
+"""Periods that are searched, in samples; the grid is coarser where a window has few periods."""
 PHASES = np.arange(0.0, 1.0, 0.1)
-"""Phases looked for, in periods."""
+"""Phases that are searched, in periods."""
 FOLLOWED = 8
-"""Of them followed."""
+"""Number of the best candidates that are refined."""
 LEAST_FREE = 6
-"""Samples of a window beyond its corners."""
+"""Smallest number of degrees of freedom of a window: samples minus corners."""
 LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
-"""What a polygon leaves, as shares of the noise: for a second look, for one at a short period
-(whose grid is coarser for so long a window), and to be believed."""
+"""Largest RMS residual of a polygon, relative to the noise.
+
+For a second search; for one at a short period, whose grid is coarser for its long window; and for
+acceptance.
+"""
 ELSEWHERE, CLEARLY = (0.31, 0.5, 0.69), 0.03
-"""Phases, in periods off the best, at which a polygon must leave more, and the share of that which
-the best may leave."""
+"""Other phases, in periods from the best one, and the largest ratio of the residuals.
+
+The residual at the best phase must be below this share of the smallest residual at the others.
+"""
 FEW = 3.0
-"""Times the roughness of usual bends that a window with a few larger ones may have."""
+"""Upper bound of the roughness of a window with a few large bends, relative to the usual bends."""
 DIGITS, NEARLY = 3.0, 0.05
-"""Times what rounding to the last digit leaves, and the share of the noise that this may be."""
+"""Residual allowed for rounding to the last digit, relative to that of rounding.
+
+The second value is its upper limit relative to the noise.
+"""
 ENDS = 20.0
-"""Last digits by which a corner may miss the end of the range at which it was read."""
+"""Largest distance of a corner from the end of the range for which it is set to the end, digits."""
 FAR, ROUGH = 13, 0.93
-"""Samples apart, and a ratio of bends, by which a record is as rough as noise."""
+"""Sample distance and ratio of second differences from which a record is as rough as noise."""
 ROUNDING = 1e-7
-"""Share of the whole range below which noise is none: that of digits, and of the search."""
+"""Share of the range below which noise counts as zero: digits, and the tolerance of the search."""
 SMOOTH = 0.5
-"""Third over second differences of a curve; noise, drawn as lines or not, has more than one."""
+"""Limit of the ratio of third to second differences for a curve; for noise it is more than one."""
 MANY_CORNERS, MOST_CORNERS = 0.9, 0.955
-"""Corners a sample: from the first on they must be rougher than a curve; more than the second would
-be the samples themselves."""
+"""Numbers of corners per sample.
+
+From the first on, the corners must be rougher than a curve. More than the second would be the
+samples themselves.
+"""
 
 
 @dataclass(frozen=True)
 class Native:
-    """The readings behind an interpolated record: instants, s, and values, shape (m,)."""
+    """Original readings of an interpolated record: instants, s, and values, shape (m,)."""
 
     time_s: Array
     values: Array
@@ -80,7 +97,7 @@ class Native:
 
 
 def find_native(time: Array, values: Array) -> Native | None:
-    """The readings of a slow channel behind its samples; None where the samples are its own."""
+    """Recover the readings of a slow channel from its samples; None if the samples are readings."""
     n = len(time)
     if n < 2 * WINDOW or _as_rough_as_noise(values) or is_smooth(values):
         return None
@@ -102,7 +119,7 @@ def find_native(time: Array, values: Array) -> Native | None:
 
 
 def find_native_of(time: Array, values: Array, period_s: float) -> Native | None:
-    """The same where the period is known: another run of the same logger told it."""
+    """Recover the readings with a known period, from another run of the same logger."""
     if len(time) < 2 * WINDOW or is_smooth(values):
         return None
     noise = _noise(values, max(ROUNDING * float(np.ptp(values)), 4.0 * last_digit(values)))
@@ -114,9 +131,9 @@ def find_native_of(time: Array, values: Array, period_s: float) -> Native | None
 
 
 def _noise(values: Array, rounding: float) -> float:
-    """How rough a window is, as the noise of readings would be; zero of a straight line.
+    """Roughness of a window as the standard deviation of white noise; zero for a straight line.
 
-    Not more for one large jump, nor less for stretches without any bend.
+    A single large jump does not increase it, and stretches without bends do not reduce it.
     """
     bends = np.abs(np.diff(values, 2))
     rms = float(np.sqrt(np.mean(bends**2) / 6.0))
@@ -127,19 +144,19 @@ def _noise(values: Array, rounding: float) -> float:
 
 
 def _exact(values: Array, noise: float) -> float:
-    """What a polygon may leave: next to nothing, or what rounding to the last digit does."""
+    """Largest RMS residual of an accepted polygon: a share of the noise, or digit rounding."""
     digits = DIGITS * resolution(values) / np.sqrt(12.0)
     return float(max(EXACT * noise, min(digits, NEARLY * noise)))
 
 
 def _where_to_look(values: Array, rounding: float) -> list[int]:
-    """Where windows of a first look begin: along the record, and where it bends most often."""
+    """First samples of the search windows: along the record, and where it bends most often."""
     last = len(values) - WINDOW
     bends = np.abs(np.diff(values, 2)) > rounding
     along: list[int] = np.linspace(0, last, LOOKS).astype(int).tolist()
     if bends.mean() > MOST_BENDS:
         return along
-    # Of the window that begins at each sample.
+    # Number of bends in the window that begins at each sample.
     often = np.convolve(bends, np.ones(WINDOW - 2), "valid")[: last + 1]
     for _ in range(LOOKS):
         busiest = int(np.argmax(often))
@@ -149,19 +166,19 @@ def _where_to_look(values: Array, rounding: float) -> list[int]:
 
 
 def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
-    """The same of a channel that is hardly slower than its record."""
+    """Recover the readings of a channel that is hardly slower than its record."""
     n = len(time)
     if n < 2 * LONGER:
         return None
     first = (n - LONGER) // 2
     t, y = time[first : first + LONGER], values[first : first + LONGER]
-    # The usual one: of jumps behind a filter such a polygon leaves little, too.
+    # The median: relative to the RMS, the polygon residual of filtered jumps is small, too.
     noise = float(np.median(np.abs(np.diff(y, 2))) / 0.6745 / np.sqrt(6.0))
     if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONGER * step:
         return None
     periods, phases = _grid(_beats(time, values, step))
     each = lefts(t, y, periods, phases)
-    # Through a curve that a filter has made smooth any such polygon goes nearly.
+    # Any such polygon nearly fits a curve that was smoothed by a filter.
     usual = float(np.median(each))
     best = np.argsort(each, kind="stable")[:FOLLOWED]
     for left, period, phase in np.stack([each, periods, phases])[:, best].T.tolist():
@@ -176,8 +193,10 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
 
 
 def _beats(time: Array, values: Array, step: float) -> Array:
-    """Periods, s, with which the roughness of a record comes and goes: halfway between two readings
-    of a channel a line is smoother than at them."""
+    """Candidate periods, s, from the modulation of the roughness of a record.
+
+    An interpolated sample halfway between two readings is smoother than one at a reading.
+    """
     n = min(len(time), HEARD)
     first = (len(time) - n) // 2
     place = (time[first + 1 : first + n - 1] - time[first]) / step
@@ -192,20 +211,20 @@ def _beats(time: Array, values: Array, step: float) -> Array:
 
 
 def _grid(periods: Array) -> tuple[Array, Array]:
-    """Each period with each phase, s."""
+    """All pairs of period and phase, s."""
     each = np.repeat(periods, len(PHASES))
     return each, np.tile(PHASES, len(periods)) * each
 
 
 def _as_rough_as_noise(values: Array) -> bool:
-    """True where neighbours differ as much as samples far apart: nothing was drawn between them."""
+    """Return True if adjacent samples differ as much as distant ones, so none are interpolated."""
     near = np.median(np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2]))
     far = np.median(np.abs(values[2 * FAR :] - 2.0 * values[FAR:-FAR] + values[: -2 * FAR]))
     return bool(near > ROUGH * far)
 
 
 def is_smooth(values: Array, share: float = SMOOTH) -> bool:
-    """True of a record without noise: a polygon goes through any smooth curve."""
+    """Return True for a record without noise: a polygon fits any smooth curve."""
     second, third = np.abs(np.diff(values, 2)), np.abs(np.diff(values, 3))
     return bool(np.quantile(third, 0.7) < share * np.quantile(second, 0.7))
 
@@ -219,11 +238,11 @@ def _whole(
     phase: float,
     noise: float,
 ) -> Native | None:
-    """The corners of the whole record, from what a window of so many samples tells of them."""
+    """Extend the polygon of a window of `length` samples to the whole record; None if it fails."""
     n = len(time)
     begin = first
     while length < n:
-        # Four times as long a stretch makes the period four times as sharp.
+        # A stretch that is four times as long determines the period four times as accurately.
         length = min(4 * length, n)
         origin = time[begin]
         begin = max(min(first - length // 2, n - length), 0)
@@ -240,14 +259,16 @@ def _whole(
 def _longest(
     time: Array, values: Array, period: float, phase: float, noise: float
 ) -> tuple[float, float]:
-    """The longest multiple of a period whose polygon fits: corners at a fraction of the true one
-    fit as well, and are not readings."""
+    """Return the longest multiple of a period whose polygon fits.
+
+    Corners at a fraction of the true period fit equally well, but are not readings.
+    """
     for times in (17, 13, 11, 7, 5, 3, 2):
         for k in range(times):
             longer = (times * period, phase + k * period)
             left, _, _ = polygon(time, values, *longer)
             if left < NEARLY * noise:
-                # So many times the error of a period that was good enough.
+                # The error of the shorter period is multiplied, too, so refine again.
                 longer = sharpened(time, values, *longer, near=True)
                 left, _, _ = polygon(time, values, *longer)
             if left < _exact(values, noise):
@@ -262,7 +283,7 @@ def _whole_of(
     inside = (knots >= time[0]) & (knots <= time[-1]) & np.isfinite(corners)
     if left > _exact(values, noise) or inside.sum() > MOST_CORNERS * len(time):
         return None
-    # Through a record that a filter has made smooth, a polygon of any phase goes nearly.
+    # A polygon of any phase nearly fits a record that was smoothed by a filter.
     elsewhere = [polygon(time, values, period, phase + s * period)[0] for s in ELSEWHERE]
     if left > CLEARLY * min(elsewhere):
         return None
@@ -270,15 +291,15 @@ def _whole_of(
     native = Native(knots[inside], read, period)
     if step_of(read, drawn=True) > 0.0:
         return native
-    # Corners on a curve, or on a plateau, are of a record without noise; those nearly as close as
-    # samples go through any curve.
+    # Corners on a curve, or on a plateau, belong to a record without noise. Corners that are nearly
+    # as close as samples fit any curve.
     curved = SMOOTH if inside.sum() < MANY_CORNERS * len(time) else 2.0 * SMOOTH
     flat = np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(read)
     return None if flat or is_smooth(read, curved) else native
 
 
 def _at_ends(read: Array, values: Array) -> Array:
-    """Corners that stand at an end of the range, to what digits leave of them, at that end."""
+    """Set corners near an end of the range, within the accuracy of the digits, to that end."""
     near = max(ENDS * last_digit(values), ROUNDING * float(np.ptp(values)))
     for end in (float(np.min(values)), float(np.max(values))):
         read = np.where(np.abs(read - end) < near, end, read)
@@ -286,8 +307,11 @@ def _at_ends(read: Array, values: Array) -> Array:
 
 
 def _first_look(t: Array, y: Array, step: float, noise: float) -> list[tuple[float, float]]:
-    """Periods and phases, s, with which a polygon nearly goes through a window's samples, best
-    first: with corners nearly as many as samples a wrong one may come nearer on this grid."""
+    """Find periods and phases, s, of polygons that nearly fit a window, best first.
+
+    Several are returned, because with nearly as many corners as samples a wrong one may be closer
+    on this grid.
+    """
     long_enough = len(t) - np.ceil(np.ptp(t) / (PERIODS * step)) - 2 >= LEAST_FREE
     periods, phases = _grid(PERIODS[long_enough] * step)
     each = lefts(t, y, periods, phases)

@@ -1,4 +1,4 @@
-"""A noisy load: a column that is nothing but white noise about a load that does not change."""
+"""Noisy load: a load column that consists of white noise about a constant load."""
 
 from __future__ import annotations
 
@@ -11,14 +11,17 @@ Array = npt.NDArray[np.float64]
 
 LEAST_SAMPLES = 100
 CHANCE = 1e-4
-"""Probability with which white noise is taken for a load that changes."""
+"""Probability of classifying a constant load with white noise as a changing one."""
 EVEN = 1e-9
-"""A column that varies by less than this share does not."""
+"""Relative range below which a column is constant."""
 
 
 def only_noise(load: Array) -> bool:
-    """True of a column whose changes are white noise: no line of its periodogram sticks out
-    (Fisher 1929), and its power rises evenly from slow to fast (Bartlett 1954)."""
+    """Return True for a column whose changes are white noise.
+
+    No line of its periodogram is significant (Fisher 1929), and its cumulative power rises evenly
+    with frequency (Bartlett 1954).
+    """
     n = len(load)
     if n < LEAST_SAMPLES or np.ptp(load) <= EVEN * float(np.mean(load)):
         return False
@@ -32,12 +35,12 @@ def only_noise(load: Array) -> bool:
 
 
 def steady_load(load: Array) -> Array:
-    """The load less its noise, where it is nothing else: its mean, at every sample."""
+    """Return the mean at every sample if the load is only noise about it; else return the load."""
     return np.full(len(load), float(np.mean(load))) if only_noise(load) else load
 
 
 def find_noisy_load(name: str, load: Array | None) -> list[Finding]:
-    """A load that is only noise about its mean."""
+    """Find a load that consists only of noise about its mean."""
     if load is None or not only_noise(load):
         return []
     size = float(np.std(load))

@@ -1,4 +1,4 @@
-"""Force and motion that were read by clocks of their own."""
+"""Force and motion sampled by separate clocks."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jbf.records.run import Run
 
 
 def own_clock(run: Run) -> list[Finding]:
-    """A finding where the force was not read at the instants of the motion."""
+    """Return a finding if the force was not sampled at the instants of the motion."""
     force, motion = run.read.get("friction_n"), of_motion(run.read)
     if force is None and motion is None:
         return []

@@ -1,6 +1,6 @@
-"""Polygons with corners evenly spaced in time: what one leaves of samples, and the best near it.
+"""Polygons with corners evenly spaced in time: residual of the best fit, and refinement.
 
-Corners are whatever fits best: samples are linear in them, so only period and phase are searched.
+The samples are linear in the values at the corners, so only period and phase are searched.
 """
 
 from __future__ import annotations
@@ -12,31 +12,52 @@ from scipy import linalg
 Array = npt.NDArray[np.float64]
 
 USUAL_HALVINGS, MOST_HALVINGS = 9, 14
-"""Halvings of a search, and as many more as it goes on to come nearer,"""
+"""Usual and largest number of halvings of the search range.
+
+The search continues beyond the usual number while it improves.
+"""
 IN_VAIN = 4
-"""and those after which it has come nearer, or does not."""
+"""Number of halvings after which a search without improvement ends."""
 AT_ONCE = 2**13
-"""Samples of polygons that are solved at once."""
+"""Number of samples of polygons that are solved in one system."""
 
 
 def polygon(time: Array, values: Array, period: float, phase: float) -> tuple[float, Array, Array]:
-    """What the best polygon leaves (RMS a degree of freedom), and its corners: instants, values."""
+    """Fit the best polygon; return its RMS residual per degree of freedom, and its corners.
+
+    Returns
+    -------
+    residual : float
+    knots : ndarray
+        Instants of the corners, s.
+    corners : ndarray
+        Values at the corners; nan if undetermined.
+    """
     left, corners, first = _solved(time, values, np.array([period]), np.array([phase]))
     knots = time[0] + phase + period * (first[0] + np.arange(len(corners)))
     return float(left[0]), knots, corners
 
 
 def lefts(time: Array, values: Array, period: Array, phase: Array) -> Array:
-    """What the best polygons of several periods and phases leave, shape (m,)."""
+    """RMS residuals of the best polygons for several periods and phases, shape (m,)."""
     at_once = max(AT_ONCE // len(time), 1)
     parts = [slice(k, k + at_once) for k in range(0, len(period), at_once)]
     return np.concatenate([_solved(time, values, period[p], phase[p])[0] for p in parts])
 
 
 def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Array, Array, Array]:
-    """What the best polygons leave, shape (m,), all their corners in a row, and each one's first.
+    """Fit the best polygons.
 
-    Each is a tridiagonal system; in a row they are one, no two of them coupled.
+    Each fit is a tridiagonal system; concatenated, they are one system without coupling.
+
+    Returns
+    -------
+    residual : ndarray
+        RMS residual of each polygon, shape (m,).
+    corners : ndarray
+        Values at the corners of all polygons, concatenated.
+    first : ndarray
+        Number of the first corner of each polygon, shape (m,).
     """
     place = (time - time[0] - phase[:, None]) / period[:, None]
     whole = np.floor(place)
@@ -53,7 +74,7 @@ def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Ar
     diagonal = np.bincount(at, rest**2, total) + np.bincount(at + 1, share**2, total)
     beside = np.bincount(at, rest * share, total)
     right = np.bincount(at, rest * y, total) + np.bincount(at + 1, share * y, total)
-    # A corner that no sample is near (a gap, an end) is not known.
+    # A corner without nearby samples (a gap, an end) is undetermined.
     band = np.stack([np.concatenate(([0.0], beside[:-1])), diagonal + 1e-9])
     corners = linalg.solveh_banded(band, right, overwrite_ab=True, overwrite_b=True)
     gap = (y - rest * corners[at] - share * corners[at + 1]).reshape(place.shape)
@@ -66,8 +87,14 @@ def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Ar
 def sharpened(
     time: Array, values: Array, period: float, phase: float, *, near: bool = False
 ) -> tuple[float, float]:
-    """Period and phase that fit best near those given, to a fraction of the stretch; `near` where
-    those given are known to be right, and little is to be gained at first."""
+    """Refine period and phase near the given ones, to a fraction of the initial range.
+
+    Parameters
+    ----------
+    near
+        True if the given values are known to be right. Then the early abort is disabled and more
+        halvings are allowed.
+    """
     length = float(time[-1] - time[0])
     reach_period, reach_phase = 0.12 * period**2 / length, 0.06 * period
     best = (np.inf, period, phase)
@@ -83,7 +110,7 @@ def sharpened(
             best = (float(left[least]), float(periods[least]), float(phases[least]))
         if k == 0:
             first = best[0]
-        # What a true polygon leaves falls with every halving, in proportion.
+        # For a true polygon, the residual falls in proportion with every halving.
         if k == IN_VAIN and best[0] > 0.5 * first and not near:
             break
         if k >= USUAL_HALVINGS and best[0] > 0.9 * before:

@@ -1,4 +1,4 @@
-"""A friction that pushes: its sign turned, the force drives the motion that it should brake."""
+"""Wrong sign of the friction: the force drives the motion instead of opposing it."""
 
 from __future__ import annotations
 
@@ -13,22 +13,25 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 SURE = 8.0
-"""Standard errors by which the force must push,"""
+"""Standard errors by which the force must drive the motion."""
 SHARE = 0.3
-"""and share of the force's own swing: what offset, inertia and a spring leave is not a sign."""
+"""Least driving force relative to the standard deviation of the force.
+
+A smaller one may remain from offset, inertia and a spring.
+"""
 STRETCHES = 12
-"""Parts of the record that are left out in turn, for the error."""
+"""Number of parts of the record that are left out in turn, for the standard error."""
 LEAST = 100
-"""Samples of motion that tell something, a quarter of them each way."""
+"""Least number of samples in motion; at least a quarter of them in each direction."""
 SLOW = 0.02
-"""Share of the top speed below which a force need not be friction's."""
+"""Share of the top speed below which the force may be due to other causes than friction."""
 
 
 def find_pushing(run: Run, motion: ImposedMotion, usable: Mask) -> list[Finding]:
-    """A force that goes with the motion, whichever way that is.
+    """Find a force that acts in the direction of the motion.
 
-    An offset, a mass and a spring push at times as well: their forces are fitted beside the one
-    that turns with the motion. A record of one direction cannot tell an offset from friction.
+    An offset, an inertia and a spring also act in this direction at times; their forces are fitted
+    together with the friction. A record of one direction cannot separate an offset from friction.
     """
     assert run.friction_n is not None
     v = motion.velocity_m_s
@@ -56,7 +59,7 @@ def find_pushing(run: Run, motion: ImposedMotion, usable: Mask) -> list[Finding]
 
 
 def _with_way(x: Array, force: Array) -> tuple[float, float]:
-    """The force that turns with the motion, and its standard error from stretches left out."""
+    """Return the force that reverses with the motion, and its standard error by the jackknife."""
     part = np.arange(len(force)) * STRETCHES // len(force)
     normal = np.stack([x[part == k].T @ x[part == k] for k in range(STRETCHES)])
     right = np.stack([x[part == k].T @ force[part == k] for k in range(STRETCHES)])

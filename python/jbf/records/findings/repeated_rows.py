@@ -1,7 +1,7 @@
-"""Rows that repeat the one before: a logger asks oftener than its link has something new.
+"""Repeated rows: a logger that polls more often than its link delivers new values.
 
-Motion and force then stand still together and jump together, while the drive moves on. Such a row
-is no reading: its stamp is later than what it says.
+Motion and force then repeat together and jump together, while the drive moves on. Such a row is not
+a reading: its time stamp is later than its values.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ from jbf.records.run import Run
 Mask = npt.NDArray[np.bool_]
 
 COUNTS = 2.0
-"""Counts of the encoder that a drive must go by from one row to the next to be seen to move."""
+"""Least travel from one row to the next for a drive to be in motion, in encoder counts."""
 LEAST_ROWS = 40
-"""Rows that must repeat the one before while the drive moves,"""
+"""Least number of repeated rows in motion."""
 LEAST_SHARE = 0.02
-"""share of the rows in motion that they must be,"""
+"""Least share of repeated rows among the rows in motion."""
 TOGETHER = 0.9
-"""and share of the repeated positions in motion that must be whole rows."""
+"""Least share of whole rows among the repeated positions in motion."""
 LONGER = 2.0
-"""Rows that repeat for so many times as long as any does in motion are those of a rest."""
+"""Ratio of the duration of a repeat to the longest one in motion from which it is a rest."""
 
 
 def repeated_rows(run: Run) -> Mask | None:
-    """True at rows that repeat the one before; None where the record has none to speak of."""
+    """Mask of the rows that repeat the previous one; None if there are too few."""
     place = run.angle_rad if run.angle_rad is not None else run.position_m
     if place is None or not run.speed_recorded or run.read:
         return None
     place = np.unwrap(place) if place is run.angle_rad else place
     steps, way = np.diff(run.time_s), np.abs(np.diff(place))
     by_speed = np.abs(run.velocity_m_s[:-1]) * steps
-    # Whatever the speed's unit is: the way in all is the way in all.
+    # The ratio of the total displacements makes the result independent of the unit of the speed.
     unit = float(np.sum(way)) / max(float(np.sum(by_speed)), 1e-300)
     moving = unit * by_speed > COUNTS * step_of(place)
     same = np.ones(len(steps), dtype=bool)
@@ -52,7 +52,7 @@ def repeated_rows(run: Run) -> Mask | None:
 
 
 def _of_rests(run: Run, same: Mask, moving: Mask) -> Mask:
-    """True at repeats that last longer than the link is ever silent: nothing new is their news."""
+    """Mask of the repeats that last longer than those in motion: rests without new values."""
     edges = np.diff(np.concatenate(([0], same.astype(np.int8), [0])))
     firsts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     lasted = run.time_s[ends] - run.time_s[firsts]
@@ -69,7 +69,7 @@ def _of_rests(run: Run, same: Mask, moving: Mask) -> Mask:
 
 
 def as_read(run: Run) -> Run:
-    """The run without such rows, which then says so."""
+    """Return the run without repeated rows, with a finding that reports them."""
     again = repeated_rows(run)
     if again is None:
         return run

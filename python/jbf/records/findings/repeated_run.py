@@ -1,5 +1,8 @@
-"""Runs that were given twice: the same recording under another name, perhaps on another clock or
-from another turn of the shaft. It tells nothing more, and would count twice as much."""
+"""Runs that were given twice: the same recording under another name.
+
+The copy may have another time origin or another turn of the shaft. It adds no information, and
+would double the weight of the recording.
+"""
 
 from __future__ import annotations
 
@@ -14,13 +17,13 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 
 SHIFTED = ("time_s", "angle_rad", "position_m")
-"""Columns that may begin anywhere."""
+"""Columns whose origin may differ."""
 ALIKE = 1e-6
-"""Of its span, how far such a column may be off: what a shift rounds."""
+"""Tolerance of such a column relative to its range, for the rounding of a shift."""
 
 
 def copies(runs: Sequence[Run]) -> dict[int, int]:
-    """Places of runs that are another run again, each to the place of the first."""
+    """Indices of runs that repeat an earlier run, mapped to the index of the first one."""
     found: dict[int, int] = {}
     for i, run in enumerate(runs):
         for first in range(i):
@@ -31,7 +34,7 @@ def copies(runs: Sequence[Run]) -> dict[int, int]:
 
 
 def same_recording(a: Run, b: Run) -> bool:
-    """Are two runs one recording, to the sample?"""
+    """Return whether two runs are the same recording, sample by sample."""
     one, other = a.columns(), b.columns()
     if a.friction_n is None or len(a) != len(b) or set(one) != set(other):
         return False
@@ -46,7 +49,7 @@ def _same(name: str, a: Array, b: Array) -> bool:
 
 
 def repeated(first: Run, again: Run) -> Finding:
-    """What is said of a run that was given twice."""
+    """Return the finding for a run that was given twice."""
     words = f"it is run {first.name} again, sample by sample"
     size = float(len(again))
     return Finding("repeated_run", "friction_n", again.name, size, "samples", "left out", words)

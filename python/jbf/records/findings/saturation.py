@@ -1,4 +1,4 @@
-"""Saturation: a force that stands at the end of its range."""
+"""Saturation: readings of the force at the end of its range."""
 
 from __future__ import annotations
 
@@ -13,24 +13,27 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST = 5
-"""So many readings at one extreme, to the digit, where noise would make each another,"""
+"""Least number of identical readings at an extreme, where noise would make them differ."""
 TIMES = 2.0
-"""and so many times as many as at any of the next levels: tails of a noise thin out."""
+"""Least ratio of their number to that at any of the adjacent levels; tails of noise decrease."""
 NEXT = 3
-"""Levels next to the extreme that are looked at."""
+"""Number of levels next to the extreme that are compared."""
 COARSE = 0.6
-"""Noise, in steps of the converter, below which a plateau is one level without saturation."""
+"""Noise, in quantisation steps, below which a plateau is one level without saturation."""
 ALIKE = 0.2
-"""Lower quartile of a noise's third differences over their median; it is 0.47 of white noise."""
+"""Lower quartile of the third differences of noise over their median; 0.47 for white noise."""
 ROUGH = 1.2
-"""Third over second differences of a noise: 1.8 where it is white; a curve has less than one."""
+"""Ratio of third to second differences of noise: 1.8 for white noise, less than one for a curve."""
 REACH = 15
-"""Samples round one at an end that are set aside with it: of those there only the low ones are
-left. (Not by their own size, which would leave the low ones.)"""
+"""Window of samples around a saturated one that are set aside with it.
+
+In this window only the lower values are not clipped. A selection by value would keep them and bias
+the force.
+"""
 
 
 def saturated(values: Array) -> tuple[Mask, list[float]]:
-    """True round readings that stand at an end of the range; and these ends."""
+    """Return a mask of the samples near readings at an end of the range; and these ends."""
     from scipy import ndimage  # most of a second to import
 
     mask = np.zeros(len(values), dtype=bool)
@@ -48,20 +51,27 @@ def saturated(values: Array) -> tuple[Mask, list[float]]:
 
 
 def _noise(values: Array) -> float:
-    """Noise where nothing stands still: readings at an end have none."""
+    """Standard deviation of the noise, without the constant readings at the ends; 0 if smooth."""
     inner = (values > np.min(values)) & (values < np.max(values))
     inside = np.flatnonzero(inner[:-3] & inner[1:-2] & inner[2:-1] & inner[3:])
     if len(inside) < 30:
         return 0.0
     low, middle = np.quantile(np.abs(np.diff(values, 3)[inside]), [0.25, 0.5])
     bend = float(np.median(np.abs(np.diff(values, 2)[inside])))
-    # The bends of a law that has no noise are of any size, most next to none, or smooth.
+    # Bends of a law without noise are smooth or of any size, most of them nearly zero.
     noisy = low > ALIKE * middle and middle > ROUGH * bend
     return float(middle / 0.6745 / np.sqrt(20.0)) if noisy else 0.0
 
 
 def find_saturation(run: Run) -> tuple[list[Finding], Mask]:
-    """Readings at the end of the force's range, and where they are."""
+    """Find readings at the end of the range of the force.
+
+    Returns
+    -------
+    findings : list of Finding
+    mask : ndarray
+        True at the samples to set aside, shape (n,).
+    """
     assert run.friction_n is not None
     mask, ends = saturated(run.friction_n)
     if not ends:

@@ -1,9 +1,9 @@
-"""A slow channel that repeats its last reading until the next: rows of equal samples at a rate.
+"""A slow channel that holds its last reading until the next: rows of equal samples at a rate.
 
-The first sample of each row is a reading, made since the sample before. Over a record, the beat of
-the two clocks tells when to a fraction of a sample. A converter with coarse steps may read the same
-twice, and one at the end of its range does for long: then some rows are as long as two readings, or
-more.
+The first sample of each row is a reading that was taken after the previous sample. Over a record,
+the beat of the two clocks determines the instant to a fraction of a sample. Coarse quantisation may
+give the same reading twice, and saturation many times. Some rows are then as long as two readings,
+or more.
 """
 
 from __future__ import annotations
@@ -17,20 +17,26 @@ Array = npt.NDArray[np.float64]
 
 LEAST_ROWS = 40
 LEAST_SHARE = 0.02
-"""Share of the samples that must repeat the one before."""
+"""Least share of the samples that repeat the previous one."""
 EVEN = 1e-3
-"""Samples are evenly spaced where they are off an even grid by less than this share of a step."""
+"""Largest deviation of samples from an even grid, as a share of a step."""
 WITHIN = 1.02
-"""Steps within which all rows must begin, as seen from a steady clock: random rows wander."""
+"""Range, in steps, within which all rows must begin relative to a steady clock.
+
+The beginnings of random rows drift further.
+"""
 SHORTEST, LONGEST = 2.0, 60.0
-"""Periods, in samples, of a clock that is looked for where some of its readings are equal. Rows of
-chance begin within a step of a clock of two, one in two; forty of them never."""
+"""Range of the clock periods searched if some readings are equal, samples.
+
+A random row begins within a step of a clock of period two with probability one half; forty rows
+never do.
+"""
 FINE = 0.2
-"""Steps by which neighbours of that search part over the rows of a first look."""
+"""Phase difference between adjacent trial periods over the rows of the first window, steps."""
 
 
 def find_repeated(time: Array, values: Array) -> Native | None:
-    """The readings of a slow channel that stands still between them; None where it is none."""
+    """Recover the readings of a slow channel that is held between them; None if it is not one."""
     step = float(np.median(np.diff(time)))
     if np.max(np.abs(np.diff(time) / step - 1.0)) > EVEN:
         return None
@@ -41,7 +47,7 @@ def find_repeated(time: Array, values: Array) -> Native | None:
     begins = time[first]
     native = _of_clock(time, values, begins, np.arange(rows), step)
     if native is None:
-        # Where readings are equal, in coarse steps or at the end of a range, rows are missing.
+        # If readings are equal, by quantisation or saturation, rows are missing.
         count = _readings_before(begins / step)
         native = None if count is None else _of_clock(time, values, begins, count, step)
     return native
@@ -50,9 +56,9 @@ def find_repeated(time: Array, values: Array) -> Native | None:
 def _of_clock(
     time: Array, values: Array, begins: Array, count: npt.NDArray[np.intp], step: float
 ) -> Native | None:
-    """The readings, where rows begin within a step after ticks of such numbers of a clock."""
+    """Recover the readings if each row begins within a step after its tick number of a clock."""
     period = float(np.polyfit(count, begins, 1)[0])
-    # A finer look: rows at both ends hold the clock to a fraction of a step.
+    # Finer search: rows at both ends determine the period to a fraction of a step.
     spread, period = min(
         (float(np.ptp(begins - p * count)), float(p))
         for p in period + np.linspace(-2.0, 2.0, 81) * step / count[-1]
@@ -64,23 +70,24 @@ def _of_clock(
     phase = 0.5 * (float(np.max(early)) - step + float(np.min(early)))
     every = np.arange(count[-1] + 1)
     ticks: Array = phase + period * every.astype(np.float64)
-    # Equal readings begin no row: they are what stands at the first sample after them.
+    # Equal readings begin no row; their value is that of the first sample after them.
     shown = np.minimum(np.searchsorted(time, ticks), len(time) - 1)
     shown[count] = np.searchsorted(time, begins)
     return Native(ticks, values[shown], period)
 
 
 def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
-    """How many readings a slow clock made before each row began, the first 0; None where rows begin
-    at no steady clock's. The longest period that will do: rows of a clock are those of any fraction
-    of its period.
+    """Number of readings of a slow clock before each row began; the first is 0.
+
+    None if the rows begin at the ticks of no steady clock. The longest period that fits is taken,
+    because any fraction of the period of a clock also fits.
 
     Parameters
     ----------
     begins
-        Where rows begin, in samples, shape (m,), m at least `LEAST_ROWS`.
+        Beginnings of the rows, in samples, shape (m,), m at least `LEAST_ROWS`.
     """
-    # The rows that come closest to one another tell a period with the least ambiguity.
+    # The rows that are closest together determine the period with the least ambiguity.
     near = int(np.argmin(begins[LEAST_ROWS - 1 :] - begins[: len(begins) - LEAST_ROWS + 1]))
     look = begins[near : near + LEAST_ROWS] - begins[near]
     grid = np.exp(np.arange(np.log(SHORTEST), np.log(LONGEST), FINE / look[-1]))
@@ -92,7 +99,7 @@ def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
 
 
 def _spread(begins: Array, periods: Array) -> Array:
-    """Within how many steps rows begin as seen from clocks of such periods, shape (p,)."""
+    """Range of the phases of the rows relative to clocks of the given periods, steps, shape (p,)."""
     phases = np.sort(np.mod(begins[None, :], periods[:, None]), axis=1)
     around = np.concatenate([np.diff(phases, axis=1), phases[:, :1] + periods[:, None]], axis=1)
     around[:, -1] -= phases[:, -1]
@@ -101,7 +108,7 @@ def _spread(begins: Array, periods: Array) -> Array:
 
 
 def _followed(begins: Array, near: int, period: float) -> npt.NDArray[np.intp] | None:
-    """Numbers of ticks, from a few rows out to all of them."""
+    """Tick numbers of all rows, extended from a few rows outwards; None if they drift apart."""
     low, high = near, near + LEAST_ROWS
     while True:
         rows = begins[low:high]

@@ -1,7 +1,7 @@
-"""A slow thermometer: one that is read more seldom than the force, in coarse steps, or with noise.
+"""A slow thermometer: one that is sampled less often than the force, coarsely, or with noise.
 
-What a temperature changes, it changes slowly: iron and oil take many seconds to warm. A model asks
-for the temperature of the body, not for the jumps of its reading.
+Temperature effects are slow, because iron and oil take many seconds to warm. A model requires the
+temperature of the body, without the jumps of its readings.
 """
 
 from __future__ import annotations
@@ -16,23 +16,25 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 
 HELD = 0.5
-"""A reading that repeats the one before at more than this share of the samples is held."""
+"""Share of repeated samples from which a reading is held."""
 SMOOTH_S = 2.0
-"""Seconds over which a noisy reading is averaged."""
+"""Averaging time for a noisy reading, s."""
 NOISE_K = 0.1
-"""Noise below this, K, changes an oil by half a percent: nothing is done about it."""
+"""Noise below this, K, changes the viscosity of an oil by half a percent, and is not averaged."""
 
 
 def recorded_temperature(run: Run) -> Array | None:
-    """The temperature that a run tells, C, shape (n,), without the steps and the noise of its
-    thermometer; None where none was recorded."""
+    """Return the temperature of a run, C, shape (n,), without held steps and noise.
+
+    None if no temperature was recorded.
+    """
     if run.temperature_c is None:
         return None
     return _steady(run.time_s, run.temperature_c)[0]
 
 
 def find_slow_temperature(run: Run) -> list[Finding]:
-    """What was done to the recorded temperature."""
+    """Report the corrections of the recorded temperature."""
     if run.temperature_c is None:
         return []
     _, held_s, noise_k = _steady(run.time_s, run.temperature_c)
@@ -51,8 +53,10 @@ def find_slow_temperature(run: Run) -> list[Finding]:
 
 
 def _steady(time: Array, celsius: Array) -> tuple[Array, float, float]:
-    """The temperature of the body, C; how long its readings are held, s; their noise, K. Each is
-    zero where nothing was done."""
+    """Temperature of the body, C; hold time of its readings, s; their noise, K.
+
+    The latter two are zero if no correction was made.
+    """
     drawn, held_s = _through_jumps(time, celsius)
     noise_k = noise_of(drawn)
     if noise_k < NOISE_K:
@@ -61,7 +65,10 @@ def _steady(time: Array, celsius: Array) -> tuple[Array, float, float]:
 
 
 def _through_jumps(time: Array, celsius: Array) -> tuple[Array, float]:
-    """Straight lines through the middles of a staircase's jumps, and how long its steps are, s."""
+    """Interpolate through the midpoints of the jumps of a staircase.
+
+    Also returns the median duration of its steps, s.
+    """
     jumps = np.flatnonzero(np.diff(celsius) != 0.0)
     if not len(jumps) or len(jumps) > (1.0 - HELD) * (len(celsius) - 1):
         return celsius, 0.0
@@ -74,9 +81,9 @@ def _through_jumps(time: Array, celsius: Array) -> tuple[Array, float]:
 
 
 def _averaged(time: Array, celsius: Array) -> Array:
-    """The mean over `SMOOTH_S` about each sample, on straight lines between the samples."""
+    """Mean over `SMOOTH_S` around each sample, with linear interpolation between samples."""
     area = np.concatenate(([0.0], np.cumsum(0.5 * np.diff(time) * (celsius[1:] + celsius[:-1]))))
-    # Symmetric, so that a steady rise stays what it is up to both ends.
+    # The window is symmetric, so that a steady rise is unchanged up to both ends.
     half = np.minimum(0.5 * SMOOTH_S, np.minimum(time - time[0], time[-1] - time))
     early, late = time - half, time + half
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""A force without noise: a command of the controller, or a reading behind a filter."""
+"""A force without noise: a command of the controller, or a filtered reading."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST = 200
-"""Samples in motion that tell."""
+"""Least number of samples in motion."""
 ORDERS = (4, 6)
-"""Orders of difference that are compared."""
+"""Orders of the differences that are compared."""
 FALLING = 0.5
-"""Ratio of the noise by the higher order to that by the lower one: of white noise it is 1."""
+"""Ratio of the noise estimates of the higher and the lower order; it is 1 for white noise."""
 DIGITS = 1e-4
-"""Share of the force's standard deviation below which noise is that of digits, and no sensor's."""
+"""Share of the standard deviation of the force below which noise is digit rounding only."""
 
 
 def is_without_noise(force: Array) -> bool:
-    """Whether a force in motion has no white noise that could be seen.
+    """Return whether a force in motion has no detectable white noise.
 
     Notes
     -----
@@ -37,12 +37,12 @@ def is_without_noise(force: Array) -> bool:
 
 
 def find_smooth_force(run: Run, sliding: Mask) -> list[Finding]:
-    """A finding where the force is a command, or was filtered.
+    """Return a finding if the force is a command, or was filtered.
 
     Parameters
     ----------
     sliding
-        True at the samples in motion whose readings can be used, shape (n,).
+        True at the samples in motion with usable readings, shape (n,).
     """
     assert run.friction_n is not None
     force = run.friction_n[sliding]

@@ -1,4 +1,4 @@
-"""Steps: readings that are whole multiples of a converter's step."""
+"""Quantisation: readings that are whole multiples of a step."""
 
 from __future__ import annotations
 
@@ -13,25 +13,28 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 MOST_LEVELS = 0.2
-"""Readings that come in fewer levels than this share of the samples come in steps."""
+"""Largest ratio of levels to samples for quantised readings."""
 FEWEST_LEVELS = 4
-"""Readings of fewer levels are those of a law without noise: forth, back and rest."""
+"""Readings with fewer levels belong to a law without noise: forward, backward and rest."""
 CRUMBS, ALL = 0.03, 0.9
-"""Share by which levels may be off a whole number of steps apart (or of five), and share of those
-that are not: the levels of a law without noise are any distance apart."""
+"""Largest deviation of gaps between levels from whole steps, and the share that must comply.
+
+The deviation is relative to the gap, or to five steps if that is larger. The levels of a law
+without noise are any distance apart.
+"""
 CRUMB = 1e-3
-"""Corners nearer than this share of the smallest step that may be are one level."""
+"""Corners closer than this share of the smallest possible step are one level."""
 MATTERS = 0.5
-"""Steps below this share of the noise are not worth a word."""
+"""Ratio to the noise below which steps are not reported."""
 
 
 def step_of(values: Array, *, drawn: bool = False) -> float:
-    """The step in which readings come; zero where they come in none.
+    """Return the quantisation step of the readings; zero if they are not quantised.
 
     Parameters
     ----------
     drawn
-        They are the corners of a record drawn as lines, known to the digits of its file.
+        True for the corners of an interpolated record, known to the digits of its file.
     """
     if len(values) < FEWEST_LEVELS:
         return 0.0
@@ -39,7 +42,7 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
     if len(levels) < FEWEST_LEVELS or len(levels) > MOST_LEVELS * len(values):
         return 0.0
     apart = np.diff(levels)
-    # Levels that nobody visited leave multiples; digits of the file leave crumbs.
+    # Levels without samples give multiples of the step; digits of the file give small residues.
     step = float(np.median(apart[apart <= 1.5 * np.median(apart)]))
     times = apart / step
     whole = np.abs(times - np.round(times)) < CRUMBS * np.maximum(times, 5.0)
@@ -47,7 +50,7 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
 
 
 def _near_levels(values: Array) -> Array:
-    """The levels among values that are nearly on them, ascending: the middle value of each."""
+    """Return the levels of values close to them, ascending: the middle value of each group."""
     ordered = np.sort(values)
     near = CRUMB * float(np.ptp(ordered)) / (MOST_LEVELS * len(ordered))
     begins = np.flatnonzero(np.concatenate(([True], np.diff(ordered) > near)))
@@ -57,8 +60,10 @@ def _near_levels(values: Array) -> Array:
 
 
 def find_steps(run: Run, usable: Mask, *, drawn: bool = False) -> list[Finding]:
-    """Steps of the force that are as large as its noise, where its readings can be used; `drawn`
-    as in `step_of`."""
+    """Find quantisation steps of the force that are comparable with its noise.
+
+    Only usable readings are examined; `drawn` as in `step_of`.
+    """
     assert run.friction_n is not None
     force = run.friction_n[usable]
     step = step_of(force, drawn=drawn)

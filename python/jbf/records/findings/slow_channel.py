@@ -99,7 +99,7 @@ def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
 
 
 def _spread(begins: Array, periods: Array) -> Array:
-    """Range of the phases of the rows relative to clocks of the given periods, steps, shape (p,)."""
+    """Range, in steps, of the phases of the rows for each clock period, shape (p,)."""
     phases = np.sort(np.mod(begins[None, :], periods[:, None]), axis=1)
     around = np.concatenate([np.diff(phases, axis=1), phases[:, :1] + periods[:, None]], axis=1)
     around[:, -1] -= phases[:, -1]

@@ -1,6 +1,6 @@
-"""The imposed motion: from a recorded speed and path to the motion that a model is driven with.
+"""The imposed motion: estimate the motion that drives a model from the recorded speed and path.
 
-`imposed` calls the steps in their order: what of the records can be believed (`believed`), where
-the shaft rests (`rests`), the readings and their errors (`readings`), and the fixed-interval
-smoother (`smoothing`, `em`). `docs/motion.md` describes the model.
+`imposed` calls the steps in order: validation of the records (`believed`), detection of rests
+(`rests`), the readings and their errors (`readings`), and the fixed-interval smoother (`smoothing`,
+`em`). `docs/motion.md` describes the model.
 """

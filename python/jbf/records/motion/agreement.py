@@ -1,4 +1,4 @@
-"""Do the recorded speed and the recorded path tell the same motion?"""
+"""Consistency of the recorded speed with the recorded path."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 CONTRADICTION = 10.0
-"""Standard errors by which path and speed must differ to contradict one another,"""
+"""Least difference of path and speed for a contradiction, in standard errors."""
 CONTRADICTION_REACH = 3
-"""and samples to each side whose acceleration that spoils."""
+"""Number of samples on each side whose acceleration is affected."""
 RARE = 0.01
 """Largest share of the samples that may be contradictions."""
 
@@ -18,11 +18,10 @@ RARE = 0.01
 def contradiction_of(
     time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float
 ) -> Array:
-    """How far speed and path contradict one another round each sample, m/s: a filter that settles,
-    a glitch. Zero where they agree.
+    """Difference between speed and path around each sample, m/s; zero where they agree.
 
-    Zero everywhere, if that is the way of the whole record: then its errors are larger than they
-    look.
+    Causes are a filter that settles, or an outlier. If most of the record disagrees, the result is
+    zero everywhere: then its errors are larger than estimated.
     """
     dt = np.diff(time)
     gap = np.abs(np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * dt)

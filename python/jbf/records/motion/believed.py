@@ -1,4 +1,4 @@
-"""What of the recorded path and speed can be believed, before a motion is estimated from them."""
+"""Validation of the recorded path and speed before the motion is estimated from them."""
 
 from __future__ import annotations
 
@@ -37,31 +37,31 @@ NOT_AS_RECORDED = (
     "filtered_speed",
     "no_speed",
 )
-"""Kinds of finding of a motion whose column is left aside as a whole, or converted."""
+"""Kinds of findings of a motion whose column is discarded or converted as a whole."""
 
 
 @dataclass(frozen=True, eq=False)
 class Believed:
-    """The records of a motion, less what contradicts itself.
+    """The records of a motion after correction of inconsistent parts.
 
     Attributes
     ----------
     path
-        The path, m; None where only the speed tells of it.
+        The path, m; None if only the speed was recorded.
     step
-        The encoder's, m.
+        The encoder step, m.
     speed
         The speed, m/s.
     speed_measured
-        False where the speed is but a difference of the path, and tells nothing besides.
+        False if the speed is only a difference of the path, without further information.
     findings
-        What was found, and what was done about it.
+        The findings, with the actions taken.
     arm_m
-        Metres of path for a unit of the position's column.
+        Metres of path per unit of the position column.
     loose
-        True at ends of which the motion is not known.
+        True at the ends where the motion is unknown, shape (n,).
     hum
-        A speed that is one of a rest, m/s.
+        Largest speed, m/s, that is also accepted as a rest; the count of an offset speed.
     """
 
     path: Array | None
@@ -75,15 +75,17 @@ class Believed:
 
 
 def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) -> Believed:
-    """Examine the records of a run's motion.
+    """Examine the records of the motion of a run.
+
+    Outliers are corrected first, because they hide other defects. The validity of a channel as a
+    whole is then checked before its single samples.
 
     Parameters
     ----------
+    radius_m
+        Journal radius, m; None if unknown.
     stamps_s
-        The stamps as recorded, s, where the run's instants are those of an even clock.
-
-    Glitches go first, for they hide the rest; what a channel is worth as a whole is asked before
-    its single samples.
+        The recorded time stamps, s, if the instants of the run are those of an even clock.
     """
     name, time, speed = run.name, run.time_s, run.velocity_m_s
     corrected = stamps_s is not None
@@ -111,7 +113,7 @@ def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) ->
         return replace(alone, arm_m=position.arm_m)
     zero = unit = None
     hum = 0.0
-    # A difference of the positions has no unit or zero of its own that could be wrong.
+    # A difference of the positions has no separate unit or zero that could be wrong.
     aside = derived_speed(name, stamps_s, position.path_m, speed)
     if aside is None:
         speed, hum, zero = speed_zero(name, time, position.path_m, speed, step, said.speed)
@@ -150,7 +152,7 @@ def _path_alone(
     loose: Mask,
     unit: str,
 ) -> Believed:
-    """The records of a motion whose speed was not recorded."""
+    """Return the records of a motion without a recorded speed."""
     speed = centred_speed(time, path)
     words = "no speed was recorded"
     made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "the path alone tells it", words)

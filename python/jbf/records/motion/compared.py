@@ -1,7 +1,7 @@
-"""Path and speed over the same short windows, so that one can be asked about the other.
+"""Path and speed over the same short windows, for their comparison.
 
-The change of the path over a window is the mean of the true speed there; the recorded speed is
-averaged over the same window. Neither is smoothed more than the other, whatever the motion.
+The change of the path over a window is the mean of the true speed there, and the recorded speed is
+averaged over the same window. Both are therefore smoothed equally, whatever the motion.
 """
 
 from __future__ import annotations
@@ -17,26 +17,40 @@ from jbf.records.motion.roughness import step_of
 Array = npt.NDArray[np.float64]
 
 HALF_WIDTHS = (2, 4, 8)
-"""Half widths of the windows, in samples: the path is coarse, or not."""
+"""Half widths of the windows, in samples, for a fine and for a coarse path."""
 WIDE = (*HALF_WIDTHS, 16, 32, 64)
-"""The same where a ratio is asked, which no width bends: a slow motion logged fast goes by a count
-in tens of samples."""
+"""Half widths for ratios, which are independent of the width.
+
+In a slow motion with fast sampling, one count takes tens of samples.
+"""
 WHOLE = 1.2
-"""A window that is longer than so many times the usual has a gap in it,"""
+"""Largest ratio of the duration of a window to the median; a longer window contains a gap."""
 LONG = 2.5
-"""and so has one with a step of so many usual ones"""
+"""Least ratio to the usual step for a step to be a gap."""
 SHARE = 0.05
-"""that is this share of it: of a fast motion nobody knows how far it went there."""
+"""Least share of the window for a step to be a gap.
+
+The displacement of a fast motion in such a step is unknown.
+"""
 COMMON = 0.9
-"""Share of the steps that no usual one is below, however uneven they are."""
+"""Quantile of the time steps that defines the usual step, however uneven they are."""
 LEAST = 60
-"""Windows that tell something together."""
+"""Least number of windows for a comparison."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """Mean speeds over windows, m/s: by path, by speed; the path's own acceleration, m/s^2; what a
-    count of the path makes of a speed, m/s."""
+    """Path and speed over windows of one width.
+
+    Attributes
+    ----------
+    by_path, by_speed
+        Mean speeds over the windows by the path and by the speed, m/s.
+    acceleration
+        Acceleration by the path, m/s^2.
+    count
+        Speed that corresponds to one encoder count per window, m/s.
+    """
 
     by_path: Array
     by_speed: Array
@@ -47,7 +61,7 @@ class Compared:
 def compared(
     time: Array, path: Array, speed: Array, half_widths: tuple[int, ...] = HALF_WIDTHS
 ) -> Iterator[Compared]:
-    """Path and speed over windows of several widths, wide ones last."""
+    """Yield path and speed over windows of several widths, in ascending order of width."""
     whole = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
     steps = np.diff(time)
     usual = float(np.quantile(steps, COMMON)) if len(steps) else 0.0

@@ -1,8 +1,7 @@
-"""A recorded speed that was made of the recorded path: a difference of counts over some samples.
+"""A recorded speed that was derived from the recorded path: a difference over some samples.
 
-Such a speed is redundant, comes in coarse steps, and is late where the difference looks back. It is
-identified where it equals the difference within 5 % of its own step in 90 % of the samples in
-motion.
+Such a speed is redundant, has coarse steps, and is delayed if it is a backward difference. It is
+identified where it equals the difference within 5 % of its step in 90 % of the samples in motion.
 """
 
 from __future__ import annotations
@@ -16,24 +15,24 @@ from jbf.records.motion.roughness import noise_of, quantum_of, step_of
 Array = npt.NDArray[np.float64]
 
 SPANS = range(1, 13)
-"""Differences over so many samples are looked for."""
+"""Numbers of samples over which differences are tried."""
 USUAL = 0.95
-"""Quantile that stands for the largest speed; a few percent of it are motion."""
+"""Quantile that represents the largest speed; a sample above 2 % of it is in motion."""
 ALIKE = 0.9
-"""Share of the samples in motion at which the speed must be the difference."""
+"""Least share of the samples in motion at which the speed equals the difference."""
 TO = 0.05
-"""A speed is the difference where it is so near to it, as a share of its own coarse step."""
+"""Tolerance of the equality, as a share of the step of the difference."""
 COARSE = 3.0
-"""A difference that is smoother than so many times that is as good as a measured speed."""
+"""Noise of a difference, relative to the tolerance, below which it is kept as a measured speed."""
 
 
 def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
-    """A finding where a speed is a difference of the path; None where it was measured."""
+    """Return a finding if the speed is a difference of the path; None if it was measured."""
     if len(time) < 4 * SPANS[-1]:
         return None
     step = quantum_of(path) or step_of(path)
-    # Over some samples: a slow difference is zero between two counts. And not of the largest one:
-    # messages that arrive at once make a difference without bounds.
+    # Averaged over some samples, because a slow difference is zero between two counts. A quantile
+    # replaces the maximum, because messages that arrive together make the difference unbounded.
     local = np.convolve(np.abs(speed), np.ones(SPANS[-1]) / SPANS[-1], "same")
     moving = local > 0.02 * float(np.quantile(np.abs(speed), USUAL))
     usual = float(np.median(np.diff(time)))
@@ -43,7 +42,7 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
         middle = moving[span // 2 : span // 2 + len(difference)]
         if noise_of(difference[middle]) < COARSE * tolerance:
             continue
-        # Looking back, and to both sides.
+        # Backward and centred differences.
         for after in sorted({0, span // 2}):
             where = slice(span - after, len(time) - after)
             kept = moving[where]
@@ -64,6 +63,6 @@ def _finding(name: str, span: int, late_s: float) -> Finding:
 
 
 def centred_speed(time: Array, path: Array) -> Array:
-    """A speed of the path alone that is not late: what a rest is known by."""
+    """Speed from the path without delay, m/s; used to detect rests."""
     found: Array = np.gradient(path, time)
     return found

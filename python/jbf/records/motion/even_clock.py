@@ -1,4 +1,4 @@
-"""The even clock that time stamps with jitter may have been read from."""
+"""The even clock behind time stamps with jitter."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 LONGEST_RESIDUAL, USUAL_RESIDUAL = 10.0, 1.0
-"""Distances from an even clock of the latest stamp and of nine in ten of them, samples."""
+"""Largest distance from an even clock, and its 90 % quantile, in samples."""
 
 
 def even_clock(time_s: Array) -> Array | None:
-    """Instants of the even clock that the stamps may have been read from, s.
+    """Estimate the instants of the even clock that produced the stamps, s.
 
-    None where the stamps are even, or far from an even clock. Missing samples are allowed.
+    None if the stamps are even, or far from an even clock. Missing samples are allowed.
     """
     steps = np.diff(time_s)
     if len(steps) < 2:

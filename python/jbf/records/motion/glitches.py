@@ -1,5 +1,4 @@
-"""Glitches of a motion: a single position far off the path on both sides, a single speed that the
-path does not know of."""
+"""Outliers of a motion: single positions far from the path, or single speeds that contradict it."""
 
 from __future__ import annotations
 
@@ -17,34 +16,37 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 FAR = 8.0
-"""Local standard deviations that a sample must be off,"""
+"""Least deviation of a sample, in local standard deviations."""
 COUNTS = 3.0
-"""and counts of the encoder, whose rounding is less than one and a half off a cubic,"""
+"""Least deviation, in encoder counts; rounding deviates by less than 1.5 counts from a cubic."""
 BESIDE = 0.825
-"""and the samples beside, the other way, so much of what it makes of them (two thirds at even
-steps): of a corner, or a step, they are three quarters of that."""
+"""Least opposite deviation of the adjacent samples, relative to the effect of an outlier on them.
+
+That effect is two thirds of the deviation at even steps. At a corner or a step the ratio is three
+quarters.
+"""
 JUMP = 0.4
-"""and so much of the change of the speed from before to after, times a step."""
+"""Least deviation relative to the change of the speed across the sample times a time step."""
 CHANGES = 3.0
-"""Of a speed: times the change that is usual between neighbours, which a corner never is,"""
+"""For a speed: least deviation relative to the usual change of neighbours; no corner reaches it."""
 ALIKE = 0.5
-"""and the way there and the way back differ by no more than this factor."""
+"""For a speed: least ratio of the smaller to the larger of the two steps of an outlier."""
 WINDOW = 41
-"""Samples over which the local noise, and the usual change, are taken."""
+"""Window of the local noise and of the usual change, samples."""
 RARE = 0.02
-"""A record in which more samples than this are far off has large noise, not glitches."""
+"""Largest share of outliers; with more of them, the record has large noise instead."""
 RARE_ALONE = 0.003
-"""The same where no path confirms what a speed says: a slip of the shaft may be as short."""
+"""Largest share of outliers of a speed without a path; a slip of the shaft may be as short."""
 LEAST_SAMPLES = 60
 ASIDE = "left out of the motion"
 
 
 def mend_position(name: str, time: Array, position: Position) -> tuple[Position, Finding | None]:
-    """The path without its glitches, each put where its neighbours say."""
+    """Interpolate the path across its outliers."""
     path = position.path_m
     least, mask = COUNTS * step_of(path), np.zeros(len(path), dtype=bool)
     while mask.sum() <= RARE * len(path):
-        # Two that stand side by side: without the one the other is single.
+        # Of two adjacent outliers, the second is detected once the first is excluded.
         good = np.flatnonzero(~mask)
         more = good[_off(time[good], path[good], least)]
         if not len(more):
@@ -62,7 +64,7 @@ def mend_position(name: str, time: Array, position: Position) -> tuple[Position,
 def mend_speed(
     name: str, time: Array, speed: Array, path: Array | None, unit: str = "m/s"
 ) -> tuple[Array, Finding | None]:
-    """The speed without its glitches; with a path only those that the path does not share."""
+    """Interpolate the speed across its outliers; if there is a path, only where it disagrees."""
     n = len(speed)
     if n < LEAST_SAMPLES:
         return speed, None
@@ -73,7 +75,7 @@ def mend_speed(
     bend = _around(np.abs(before + after)) / 0.6745 / np.sqrt(6.0)
     off[off <= FAR * bend] = 0.0
     mask = np.concatenate(([False], off != 0.0, [False]))
-    # To the filter of a record without noise every corner is far off.
+    # In a record without noise, every corner would exceed the threshold.
     if np.median(np.abs(before + after)) == 0.0:
         return speed, None
     if path is not None and mask.any():
@@ -90,7 +92,7 @@ def mend_speed(
 def mend_path_ends(
     name: str, time: Array, position: Position
 ) -> tuple[Position, Mask, list[Finding]]:
-    """The path with ends that are off on the line that comes next to them, and which they are."""
+    """Extrapolate the path across outliers at its ends; also return their mask and the findings."""
     path = position.path_m
     mask = loose_ends(time, path, 3)
     mended = _between(time, path, mask)
@@ -102,7 +104,10 @@ def mend_path_ends(
 def mend_speed_ends(
     name: str, time: Array, speed: Array, path: Array | None, unit: str
 ) -> tuple[Array, Mask, list[Finding]]:
-    """The same of a speed; with a path only where that does not go so fast."""
+    """Extrapolate the speed across outliers at its ends; with a path, only if the path disagrees.
+
+    Also returns their mask and the findings.
+    """
     mask = loose_ends(time, speed, 1)
     mended = _between(time, speed, mask)
     if path is not None and mask.any():
@@ -114,7 +119,7 @@ def mend_speed_ends(
 
 
 def _off(time: Array, path: Array, least: float) -> Mask:
-    """True at samples far off a cubic through two neighbours on either side."""
+    """Mask of the samples far from a cubic through two neighbours on either side."""
     n = len(path)
     found = np.zeros(n, dtype=bool)
     if n < LEAST_SAMPLES:
@@ -125,31 +130,31 @@ def _off(time: Array, path: Array, least: float) -> Mask:
     off = -np.sum(weights * y, axis=0)
     size = np.abs(off)
     far = size > np.maximum(FAR * _around(size) / 0.6745, least)
-    # The cubics of its neighbours have its weight: they are off the other way by that share of it.
+    # The cubics of adjacent samples include this sample: they deviate oppositely, by its weight.
     for beside, weight in (
         (np.pad(off, (1, 0))[:-1], np.pad(weights[2], (1, 0))[:-1]),
         (np.pad(off, (0, 1))[1:], np.pad(weights[1], (0, 1))[1:]),
     ):
         far &= (-beside * off > BESIDE * weight * size**2) & (np.abs(beside) < size)
-    # Where the speed itself jumps, the steps on both sides differ by three times that.
+    # At a jump of the speed, the steps on both sides differ by three times the deviation.
     far &= size > JUMP * np.abs((y[3] - y[2]) - (y[1] - y[0]))
     found[2:-2] = far
     return found
 
 
 def _both_sides(change: Array) -> tuple[Array, Array]:
-    """How far each inner sample is above the one before, and above the one after."""
+    """Difference of each inner sample from the previous one, and from the next one."""
     return change[:-1], -change[1:]
 
 
 def _least(before: Array, after: Array) -> Array:
-    """The smaller of both, where they are of one sign and about as large; zero elsewhere."""
+    """Return the smaller of both differences, or zero if sign or magnitude do not match."""
     less, more = (
         np.minimum(np.abs(before), np.abs(after)),
         np.maximum(np.abs(before), np.abs(after)),
     )
     off = np.where((before * after > 0.0) & (less > ALIKE * more), less, 0.0)
-    # What is beside a glitch is off as seen from it.
+    # The neighbour of an outlier also deviates from it, so only the largest is kept.
     most = np.maximum(np.pad(off, (1, 0))[:-1], np.pad(off, (0, 1))[1:])
     found: Array = np.where(off > most, off, 0.0)
     return found
@@ -163,8 +168,10 @@ def _median(values: Array, window: int) -> Array:
 
 
 def _around(sizes: Array) -> Array:
-    """The usual size round each sample, over a window that lies about it or to either side: beside
-    a rest half a window is quiet."""
+    """Usual size around each sample: the largest median over windows around it or to either side.
+
+    Next to a rest, half of a centred window is free of noise.
+    """
     from scipy import ndimage
 
     found: Array = ndimage.maximum_filter1d(_median(sizes, WINDOW), WINDOW, mode="reflect")
@@ -172,21 +179,21 @@ def _around(sizes: Array) -> Array:
 
 
 def _missed(time: Array, path: Array, speed: Array) -> Array:
-    """How far path and speed disagree on both sides of each sample, m."""
+    """Displacement by which path and speed disagree on both sides of each sample, m."""
     gap = np.abs(np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * np.diff(time))
     both: Array = np.pad(gap, (1, 0)) + np.pad(gap, (0, 1))
     return both
 
 
 def _between(time: Array, values: Array, mask: Mask) -> Array:
-    """Masked samples on a cubic through the two good ones on either side."""
+    """Replace masked samples by a cubic through the two valid ones on either side."""
     mended: Array = values.copy()
     good = np.flatnonzero(~mask)
     for i in np.flatnonzero(mask):
         k = int(np.searchsorted(good, i))
         near = good[max(k - 2, 0) : k + 2]
         t, y = time[near] - time[i], values[near]
-        # A cubic within the record, a line at its ends.
+        # A cubic within the record, a straight line at its ends.
         mended[i] = np.dot(weights_at_zero(t), y)
     return mended
 

@@ -1,4 +1,4 @@
-"""Held readings of a path: it stands still while the shaft moves on, and catches up at once."""
+"""Held samples of a path: it repeats a value while the shaft moves on, and then catches up."""
 
 from __future__ import annotations
 
@@ -13,21 +13,22 @@ from jbf.records.motion.roughness import step_of
 Array = npt.NDArray[np.float64]
 
 LEAST = 3
-"""So many repeated readings in a row are held: an uneven clock reads twice at about one instant."""
+"""Least number of repeated readings in a row; jitter may cause two readings at about one instant.
+"""
 COUNTS = 5.0
-"""Counts of the encoder that the shaft must move on by while the path stands still."""
+"""Least displacement of the shaft during the held readings, in encoder counts."""
 CATCHES_UP = 0.3
-"""Share of what was missed by which the next reading may be off."""
+"""Largest error of the next reading, as a share of the missed displacement."""
 STEADY = 0.3
-"""Least way of the shaft from one held reading to the next, over the mean."""
+"""Least displacement from one held reading to the next, relative to the mean."""
 MOST = 0.3
-"""Share of a record that may be held; more is the way of the channel."""
+"""Largest share of held readings in a record; more of them are a property of the channel."""
 
 
 def mend_held(
     name: str, time: Array, position: Position, speed: Array, mover: str = "the shaft"
 ) -> tuple[Position, Finding | None]:
-    """The path with its held readings put where the speed says that the shaft was."""
+    """Replace held readings of the path by the position that follows from the speed."""
     path = position.path_m
     moved = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
     least = max(COUNTS * step_of(path), 1e-9 * float(np.ptp(path)))
@@ -39,7 +40,7 @@ def mend_held(
             continue
         if abs(moved[end] - moved[first]) < least:
             continue
-        # The shaft moved on all the time; at the ends of a rest, it did not.
+        # The shaft moved throughout; at the ends of a rest it did not.
         each = np.abs(np.diff(moved[first : end + 1]))
         if np.min(each) < STEADY * np.mean(each):
             continue

@@ -1,12 +1,12 @@
-"""Estimate the motion from position and velocity records.
+"""Estimation of the motion from position and velocity records.
 
-A recorded speed carries noise and a recorded angle the encoder's steps; a friction law needs the
-speed, its sign and the acceleration. Both records are readings of one motion, which a
+A recorded speed has noise, and a recorded angle has the steps of the encoder. A friction law
+requires the speed, its sign and the acceleration. Both records are readings of one motion, which a
 fixed-interval smoother estimates with its errors (`smoothing`).
 
-Records of real machines are less tidy than an encoder and a noise: positions finer than any step,
-speeds that a filter made from positions and that disagree with them, noise that comes and goes,
-rests in which the speed is a hum instead of zero. Each is looked for in the record itself.
+Records of real machines have further defects. Positions may be finer than any encoder step, speeds
+may be filtered differences that disagree with the positions, noise may vary, and the speed may not
+be zero at rest. Each defect is detected from the record itself.
 """
 
 from __future__ import annotations
@@ -43,16 +43,19 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 SIGN_SIGMA = 4.0
-"""A speed closer to zero than this many standard errors has no sign to rely on."""
+"""Smallest ratio of a speed to its standard error at which its sign is known."""
 EXACT = 1e-6
-"""Smallest standard error of a reading: of a velocity, relative to the largest one; of a position,
-relative to the largest displacement in one step."""
+"""Smallest relative standard error of a reading.
+
+For a velocity it is relative to the largest one; for a position, to the largest displacement in one
+step.
+"""
 WORTH = 0.1
 """Smallest delay of the velocity that is reported, samples."""
 AT_REST_SIGMA = 3.0
-"""Standard errors within which a speed is zero next to a rest."""
+"""Number of standard errors within which a speed next to a rest is zero."""
 GONE = 3.0
-"""Displacement from a rest, in standard errors, from which its direction is known: a count."""
+"""Least displacement from a rest at which its direction is known, in standard errors: a count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +70,11 @@ class MotionErrors:
     gain
         Regression of the errors at an instant on those at the next one, shape (n - 1, N, N).
     arm_m
-        Metres of path for a radian of the angle; 1 where the path is the angle.
+        Metres of path per radian of the angle; 1 if the path is the angle.
     velocity_delay_s
         Delay of the velocity relative to the position, s.
     smoothed
-        The posterior that they were taken from.
+        The posterior that the errors were taken from.
     """
 
     covariance: Array
@@ -101,15 +104,14 @@ class ImposedMotion:
     resting
         True where the shaft was at rest.
     sign_known
-        False where the sign of the motion, and so of the friction, cannot be known, and where the
+        False where the sign of the motion, and so of the friction, is unknown, and where the
         records of path and speed contradict one another.
     findings
-        What the recording did to path and speed, and what was done about it.
+        Recording artefacts of path and speed, with the actions taken.
     errors
-        Joint errors of the motion; None where they are not known.
+        Joint errors of the motion; None if unknown.
     clock_s
-        Instants of the even clock that the stamps were read from, s; None where the stamps are
-        taken as they are.
+        Instants of the even clock behind the stamps, s; None if the stamps are used unchanged.
     """
 
     velocity_m_s: Array
@@ -124,7 +126,7 @@ class ImposedMotion:
 
     @property
     def aside(self) -> set[str]:
-        """Columns that were left aside as a whole, or converted."""
+        """Columns that were discarded as a whole, or converted."""
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
     def rougher(self, time_s: Array, factor: float, *, same_corners: bool = False) -> ImposedMotion:
@@ -134,6 +136,8 @@ class ImposedMotion:
         ----------
         time_s
             The instants of this motion, s.
+        same_corners
+            True to keep the factors of the corners instead of estimating them again.
         """
         if self.errors is None or self.errors.smoothed is None:
             return self
@@ -154,8 +158,8 @@ class ImposedMotion:
     def at(self, time_s: Array, instants_s: Array) -> ImposedMotion:
         """The motion at other instants within it.
 
-        The posterior mean where it is known, else cubics through speed and acceleration; lines next
-        to a rest.
+        It is the posterior mean if that is known, and otherwise cubics through speed and
+        acceleration. Next to a rest it is linear.
 
         Parameters
         ----------
@@ -168,7 +172,7 @@ class ImposedMotion:
         v0, v1 = self.velocity_m_s[k], self.velocity_m_s[k + 1]
         a0, a1 = self.acceleration_m_s2[k], self.acceleration_m_s2[k + 1]
         rest = self.resting[k] & self.resting[k + 1]
-        # Beside a rest the speed is a line from where the shaft starts, or to where it ends.
+        # Next to a rest the speed is linear from where the shaft starts, or to where it stops.
         corner = self.resting[k] | self.resting[k + 1]
         from_s, to_s = time_s[k].copy(), time_s[k + 1].copy()
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -218,14 +222,13 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
     Parameters
     ----------
     run
-        The record; its angle or position is used where it is there, else the speed alone.
+        The record; its angle or position is used if present, otherwise the speed alone.
     radius_m
-        Journal radius, m: turns the angle into a path. None where it is not known: a position
-        then makes the axis a linear one, which is a rotary one of radius 1 m, and an angle tells
-        nothing of the speed.
+        Journal radius, m, which converts the angle into a path. None if it is unknown. A position
+        then defines a linear axis, which is equivalent to a rotary one of radius 1 m, and an angle
+        gives no information on the speed.
     starts
-        Errors of the readings of other runs of the same logger: further starting values for the
-        estimation.
+        Reading errors of other runs of the same logger: further starting values for the estimation.
     """
     if run.steady:
         return _steady(run)
@@ -268,8 +271,8 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
             rest, path, velocity, GONE * np.sqrt(errors.position_variance)
         )
     without_swings(rest, velocity, sign_known)
-    # A run that begins in motion begins with a deflected contact. Noise at standstill is no motion:
-    # with an unknown sign models start at rest.
+    # A run that begins in motion begins with a deflected contact. Noise at standstill is not
+    # motion: with an unknown sign, models start at rest.
     if n and begins_in_a_hum(time, velocity):
         sign_known[0] = False
     if n and not sign_known[0]:
@@ -297,7 +300,7 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
 
 
 def _steady(run: Run) -> ImposedMotion:
-    """The motion of steady states: their speeds, without acceleration and path."""
+    """Return the motion of steady states: their speeds, without acceleration and path."""
     if not run.speed_recorded:
         raise InputError(
             file=run.path or run.name,
@@ -310,8 +313,8 @@ def _steady(run: Run) -> ImposedMotion:
 
 
 def _clock(run: Run, radius_m: float | None) -> Array | None:
-    """The even clock that the stamps were read from, s; None where they are taken as they are."""
-    # Where channels have clocks of their own, the force's stamps are others.
+    """Return the even clock behind the stamps, s; None if the stamps are used unchanged."""
+    # If channels have separate clocks, the stamps of the force differ from those of the motion.
     even_s = None if run.read else even_clock(run.time_s)
     if even_s is None:
         return None
@@ -327,7 +330,7 @@ def _clock(run: Run, radius_m: float | None) -> Array | None:
 
 
 def _late(run: Run, delay_s: float) -> list[Finding]:
-    """A finding where the velocity was read on another clock than the position."""
+    """Return a finding if the velocity was sampled on another clock than the position."""
     if abs(delay_s) < WORTH * float(np.median(np.diff(run.time_s))):
         return []
     way = "later" if delay_s > 0.0 else "earlier"
@@ -336,7 +339,7 @@ def _late(run: Run, delay_s: float) -> list[Finding]:
 
 
 def _readings(records: Believed, time: Array, rest: Mask) -> Readings:
-    """The readings of a motion, with the smallest errors that they can have."""
+    """Return the readings of a motion, with their smallest possible errors."""
     n, path, speed = len(time), records.path, records.speed
     sure = sure_rests(rest)
     position, velocity = np.full(n, np.nan), np.where(sure, 0.0, np.nan)
@@ -345,7 +348,7 @@ def _readings(records: Believed, time: Array, rest: Mask) -> Readings:
     position_shape: Array = np.ones(n)
     if path is not None:
         position, position_step = path, quantum_of(path)
-        # The readings of a rest are one reading.
+        # All readings during a rest count as one reading.
         edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
         for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
             position_shape[first:end] = np.sqrt(end - first)

@@ -1,4 +1,4 @@
-"""Jitter: samples read off an even clock, whether the stamps say so or not."""
+"""Jitter: samples taken at instants off an even clock, whether or not the stamps report it."""
 
 from __future__ import annotations
 
@@ -11,38 +11,42 @@ from jbf.records.motion.roughness import noise_of, step_of
 Array = npt.NDArray[np.float64]
 
 LEAST = 0.01
-"""Share of a step below which instants that are off are not worth a word."""
+"""Smallest jitter that is reported, as a share of a step."""
 EVEN, MOSTLY = 0.5, 0.9
-"""So many of the steps are within this share of the usual one, in a record that has a rate."""
+"""Largest relative deviation from the usual step, and least share of steps within it.
+
+Otherwise the record has no sampling rate.
+"""
 ORDER = 5
-"""Differences that leave nothing of a smooth path."""
+"""Order of the differences; they vanish for a smooth path."""
 UNIT = np.sqrt(252.0)
-"""What such differences make of white noise of unit size: the root of 2 ORDER over ORDER."""
+"""Standard deviation of these differences for unit white noise: sqrt(binomial(2 ORDER, ORDER))."""
 WHITE = -0.45
-"""Correlation of neighbouring differences below which they are of noise: -5/6 if it is white."""
+"""Correlation of adjacent differences below which they are noise; it is -5/6 for white noise."""
 BEYOND = 3.0
-"""Noise of the path at speed over what it is where the shaft is slow, and over the encoder's."""
+"""Least ratio of the path noise at speed to that at slow motion, and to the encoder rounding."""
 COUNTS = 1.2
-"""and over a count: rounding that alternates makes a good one of it."""
+"""Least path noise in encoder counts; alternating rounding may resemble noise."""
 AGREE = 1.6
-"""Jitter is one at all speeds, to this factor."""
+"""Largest ratio of the jitter estimates at different speeds."""
 
 
 def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding | None:
-    """Stamps that are off an even clock.
+    """Find time stamps with jitter relative to an even clock.
 
     Parameters
     ----------
     corrected
-        Whether the instants of the even clock are used in their place.
+        True if the instants of the even clock are used instead.
     """
     steps = np.diff(time)
     usual = float(np.median(steps))
     near = np.abs(steps - usual) < EVEN * usual
     if len(steps) < 60 or near.mean() < MOSTLY:
         return None
-    # A rate that changes smoothly is no jitter. `noise_of` takes third differences, here of steps:
-    # fourth ones of the stamps, in which white noise is 70 of its squares, not 20.
+    # A sampling rate that changes smoothly is not jitter. `noise_of` takes third differences of the
+    # steps, which are fourth differences of the stamps. White noise has 70 times its variance in
+    # them, not 20 times.
     size = noise_of(steps[near]) * float(np.sqrt(20.0 / 70.0))
     if size < LEAST * usual:
         return None
@@ -52,8 +56,10 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
 
 
 def shaken_path(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
-    """A path whose noise grows with the speed: the encoder looked at other instants than the
-    stamps say."""
+    """Find a path whose noise grows with the speed.
+
+    The encoder was then read at other instants than the stamps state.
+    """
     usual = float(np.median(np.diff(time)))
     whole = np.abs(np.diff(time) / usual - 1.0) < LEAST
     if whole.mean() < MOSTLY:
@@ -95,5 +101,5 @@ def shaken_path(name: str, time: Array, path: Array, speed: Array) -> Finding | 
 
 
 def _correlation(a: Array, b: Array) -> float:
-    # Medians would do no better: both are of one noise, and a glitch has been mended.
+    # Medians are not needed: both have the same noise, and outliers have been corrected.
     return float(np.mean(a * b) / max(float(np.sqrt(np.mean(a**2) * np.mean(b**2))), 1e-300))

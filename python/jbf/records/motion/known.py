@@ -1,4 +1,4 @@
-"""The motion of a run that is to be recorded: known as it was planned, with nothing to estimate."""
+"""The motion of a planned run, which is known exactly and is not estimated."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from jbf.records.run import Run
 
 
 def known_motion(run: Run, radius_m: float | None) -> ImposedMotion:
-    """The motion of a run whose speed is exact.
+    """Return the motion of a run whose speed is exact.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ def known_motion(run: Run, radius_m: float | None) -> ImposedMotion:
     """
     velocity = run.velocity_m_s
     still = np.concatenate(([False], velocity == 0.0, [False]))
-    # A zero between two moving samples is a reversal or a bend.
+    # A single zero between two moving samples is a reversal or a bend, not a rest.
     resting = still[1:-1] & (still[:-2] | still[2:])
     angle = run.angle_rad
     if angle is None:

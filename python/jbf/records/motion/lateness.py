@@ -1,7 +1,7 @@
-"""A speed that is late: filtered, or a difference that looks back.
+"""Time delay of the speed: a filtered speed, or a backward difference.
 
-A speed that lags by a short time is the true speed less that time's worth of acceleration. Both are
-taken from the path, over windows over which the recorded speed is averaged, too.
+A speed with a short delay is the true speed minus the delay times the acceleration. Both are taken
+from the path, over the same windows over which the recorded speed is averaged.
 """
 
 from __future__ import annotations
@@ -15,17 +15,20 @@ from jbf.records.motion.compared import Compared, compared
 Array = npt.NDArray[np.float64]
 
 SURE = 6.0
-"""Standard errors by which a speed must be late,"""
+"""Least delay of the speed, in standard errors."""
 ALIKE = 0.9
-"""Correlation of speed and acceleration above which (a speed that dies out) late is but smaller."""
+"""Correlation of speed and acceleration above which a delay only scales the speed.
+
+This is the case for a speed that decays exponentially.
+"""
 WITHIN = 1.5
-"""Samples up to which the smoother corrects a late speed. A longer filter has a shape, too."""
+"""Largest delay that the smoother corrects, samples; a longer filter also has a shape."""
 STRETCHES = 12
-"""Parts of the record that are left out in turn, for the error."""
+"""Number of parts of the record that are left out in turn, for the standard error."""
 
 
 def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
-    """A finding where the speed is later than the path by more than the smoother corrects."""
+    """Return a finding if the speed lags the path by more than the smoother corrects."""
     sharpest = min(
         (_lateness(c) for c in compared(time, path, speed)),
         key=lambda found: found[1],
@@ -41,8 +44,11 @@ def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding
 
 
 def _lateness(c: Compared) -> tuple[float, float]:
-    """How late the speed is and its standard error, s: regression on speed and acceleration by the
-    path, stretches of the record left out in turn."""
+    """Estimate the delay of the speed and its standard error, s.
+
+    The speed is regressed on the speed and acceleration of the path; the error is by the jackknife
+    over parts of the record.
+    """
     part = np.arange(len(c.by_path)) * STRETCHES // len(c.by_path)
     x = np.stack([c.by_path, c.acceleration], axis=1)
     alike = abs(float(x[:, 0] @ x[:, 1])) / max(float(np.prod(np.linalg.norm(x, axis=0))), 1e-300)

@@ -1,4 +1,4 @@
-"""Where the journal or the slider was: the recorded path, in metres, with its column's name."""
+"""The recorded path of the journal or the slider, in metres, with the name of its column."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Position:
     path_m
         The path, m.
     column, unit
-        Of the record.
+        Name and unit of the recorded column.
     arm_m
-        Metres of path a unit of the column: the journal's radius, or one.
+        Metres of path per unit of the column: the journal radius, or one.
     """
 
     path_m: Array
@@ -33,12 +33,12 @@ class Position:
     arm_m: float
 
     def along(self, path_m: Array) -> Position:
-        """The same column with another path."""
+        """Return the same column with another path."""
         return replace(self, path_m=path_m)
 
 
 def recorded_position(run: Run, radius_m: float | None) -> Position | None:
-    """The path on record; None where only the speed tells of it."""
+    """Return the recorded path; None if only the speed was recorded."""
     if run.angle_rad is not None and radius_m is not None:
         return Position(np.unwrap(run.angle_rad) * radius_m, "angle_rad", "rad", radius_m)
     if run.position_m is not None:
@@ -49,8 +49,10 @@ def recorded_position(run: Run, radius_m: float | None) -> Position | None:
 
 
 def _by_its_speed(time: Array, angle: Array, speed: Array) -> Position | None:
-    """The path of an angle for which no radius is known: by the way a radian that its speed tells,
-    where that is the same all the time."""
+    """Convert an angle of unknown radius to a path, by its ratio to the speed.
+
+    None if this ratio is not constant.
+    """
     radius = way_per_unit(time, angle, speed)
     if radius is None:
         return None

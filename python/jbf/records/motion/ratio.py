@@ -1,4 +1,4 @@
-"""How many times as fast a path changes as the speed says, where that is the same all the time."""
+"""Constant ratio between the rate of change of a path and the recorded speed."""
 
 from __future__ import annotations
 
@@ -10,20 +10,22 @@ from jbf.records.motion.compared import WIDE, Compared, compared
 Array = npt.NDArray[np.float64]
 
 FAST = 0.3
-"""Share of the top speed above which a ratio tells something."""
+"""Share of the top speed above which the ratio is evaluated."""
 OFF = 0.2
-"""Path and speed whose ratio is further off one contradict one another,"""
+"""Least deviation of the ratio from one for path and speed to contradict one another."""
 SPREADS = 4.0
-"""where that is so many times its spread (half the range of its middle half),"""
+"""Least deviation relative to the spread (half the interquartile range)."""
 STEADY = 0.15
-"""and its spread is less than this share: a factor is the same all the time."""
+"""Largest relative spread of a constant factor."""
 SAME = 0.02
-"""A way for a radian that is so near to one metre is one: the speed is in radians, too."""
+"""Tolerance within which one metre per radian is exact: the speed is then also in radians."""
 
 
 def factor_between(time: Array, path: Array, speed: Array) -> float | None:
-    """How many times as fast the path changes as the speed says; None where they agree, or where
-    they are no multiples of one another."""
+    """Ratio of the rate of change of the path to the speed, if it differs from one.
+
+    None if they agree, or if their ratio is not constant.
+    """
     for c in compared(time, path, speed, WIDE):
         ratio, spread = _middle(c)
         if spread < STEADY * abs(ratio) and abs(ratio - 1.0) > max(OFF, SPREADS * spread):
@@ -32,8 +34,10 @@ def factor_between(time: Array, path: Array, speed: Array) -> float | None:
 
 
 def way_per_unit(time: Array, path: Array, speed: Array) -> float | None:
-    """Metres of way, by the speed, for a unit of the path, where nobody says how many; None where
-    they are no multiples of one another, or run against one another."""
+    """Metres of displacement, by the speed, per unit of the path, if no radius is given.
+
+    None if the ratio is not constant or is negative.
+    """
     for c in compared(time, path, speed, WIDE):
         ratio, spread = _middle(c)
         if spread < STEADY * ratio:
@@ -43,7 +47,7 @@ def way_per_unit(time: Array, path: Array, speed: Array) -> float | None:
 
 
 def slope_near(time: Array, path: Array, speed: Array, near: float) -> float:
-    """The ratio by least squares, over the windows that show one near a first one."""
+    """Ratio by least squares, over the windows whose ratio is close to a first estimate."""
     for c in compared(time, path, speed, WIDE):
         ratio, _ = _middle(c)
         if abs(ratio / near - 1.0) < OFF:
@@ -53,11 +57,11 @@ def slope_near(time: Array, path: Array, speed: Array, near: float) -> float:
 
 
 def _middle(c: Compared) -> tuple[float, float]:
-    """The ratio over windows of fast motion, and its spread."""
+    """Median ratio over windows of fast motion, and its spread."""
     fast = np.abs(c.by_speed) > FAST * np.quantile(np.abs(c.by_speed), 0.95)
     if fast.sum() < 20:
         return 1.0, np.inf
     low, middle, high = np.quantile(c.by_path[fast] / c.by_speed[fast], [0.25, 0.5, 0.75])
-    # A steady speed spreads by nothing, however coarse the counts are.
+    # At a steady speed the spread is zero, however coarse the counts are.
     coarse = c.count / float(np.median(np.abs(c.by_speed[fast])))
     return float(middle), float(0.5 * (high - low)) + coarse

@@ -14,7 +14,7 @@ from jbf._core import MotionReadings, SmoothedMotion
 Array = npt.NDArray[np.float64]
 
 SPAN = 5
-"""Samples over which a first guess of the speed is averaged."""
+"""Number of samples over which a first estimate of the speed is averaged."""
 AT_REST = 1e-3
 """Relative standard error of a velocity that is zero because the shaft is at rest."""
 
@@ -28,11 +28,11 @@ class ReadingErrors:
     position_variance, velocity_variance
         Variances of the readings, m^2 and (m/s)^2 (radians for a rotary motion).
     stamp_variance
-        Variance of the time stamps, s^2: adds `v^2 stamp_variance` to the position's variance.
+        Variance of the time stamps, s^2: adds `v^2 stamp_variance` to the variance of the position.
     intensity
         Intensity of the noise that drives the motion, (m/s^3)^2 s or (m/s^4)^2 s.
     order
-        Which derivative of the position is noise: the third, the jerk, or the fourth, the snap.
+        Order of the derivative of the position that is noise: three (jerk) or four (snap).
     velocity_delay_s
         Delay of the velocity relative to the position, s: the value recorded at t is the velocity
         at t minus this delay.
@@ -55,9 +55,9 @@ class Readings:
     time_s
         Instants, s, not decreasing.
     position, velocity
-        Readings, m and m/s. NaN where there is none.
+        Readings, m and m/s; nan where missing.
     position_floor, velocity_floor
-        Smallest variances that the readings can have, of an encoder's or a digit's step.
+        Smallest variances of the readings, from the step of an encoder or a digit.
     position_shape, velocity_shape
         Relative standard errors of the samples: factors of those in `ReadingErrors`. A velocity
         assigned at rest has the factor `AT_REST`.
@@ -72,7 +72,7 @@ class Readings:
     velocity_shape: Array
 
     def part(self, part: slice) -> Readings:
-        """The readings of some of the samples."""
+        """Return the readings of a part of the samples."""
         return replace(
             self,
             time_s=self.time_s[part],
@@ -83,7 +83,7 @@ class Readings:
         )
 
     def first_speed(self) -> Array:
-        """A first guess of the speed, for the effect of the stamps' errors, shape (n,)."""
+        """First estimate of the speed, for the effect of the errors of the stamps, shape (n,)."""
         if np.isfinite(self.velocity).all():
             return self.velocity
         time = self.time_s
@@ -114,18 +114,18 @@ class Readings:
         Parameters
         ----------
         corners
-            Factor of the noise's intensity in each step, shape (n - 1,).
+            Factor of the noise intensity in each step, shape (n - 1,).
         speed
-            A velocity at each sample, for the effect of the stamps' errors.
+            A velocity at each sample, for the effect of the errors of the stamps.
         """
         return self._core.smoothed(errors, corners, speed)
 
     def log_likelihood(self, errors: ReadingErrors, corners: Array, speed: Array) -> float:
-        """Log likelihood of the readings; arguments as of :meth:`smoothed`."""
+        """Log-likelihood of the readings; arguments as in :meth:`smoothed`."""
         return self._core.log_likelihood(errors, corners, speed)
 
     def lower_bound(self, errors: ReadingErrors, corners: Array) -> float:
-        """Variational lower bound of the log likelihood, marginal over the factors of all steps."""
+        """Variational lower bound of the log-likelihood, marginal over the factors of all steps."""
         return self._core.lower_bound(errors, corners, self.first_speed())
 
     def estimated(

@@ -1,4 +1,4 @@
-"""Where a shaft or a slider stands still, and where exactly."""
+"""Detection of the rests of a shaft or a slider, and of their ends."""
 
 from __future__ import annotations
 
@@ -13,23 +13,24 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 REST_SAMPLES = 3
-"""So many zero speeds in a row are a rest, not a crossing."""
+"""Least number of consecutive zero speeds for a rest; fewer are a zero crossing."""
 STILL_SAMPLES = 20
-"""So many samples without a step of the encoder, at speeds of a hum, are a rest, too."""
+"""Least number of samples without an encoder step, at speeds of noise size, for a rest."""
 STILL_STEPS = 1.5
-"""How far an encoder may seem to go meanwhile, in its steps,"""
+"""Largest apparent displacement of the encoder during a rest, in steps."""
 STILL_SHARE = 5e-3
-"""and the largest hum of a rest, as a share of the top speed."""
+"""Largest speed of a rest as a share of the top speed."""
 HUM_ERRORS = 5.0
-"""Standard deviations of the recorded speed's noise that a hum of a rest stays within."""
+"""Largest speed of a rest in standard deviations of the speed noise."""
 STANDS_OUT = 9.0
-"""Times the usual speed of a rest (six standard deviations of its hum) that are none."""
+"""Ratio to the median speed of a rest above which a sample is in motion (six standard deviations).
+"""
 LONGER = 2.0
-"""A rest is so many times as long as a reversal seems to stand still."""
+"""Least ratio of the duration of a rest to the time for which a reversal appears at rest."""
 
 
 def resting_samples(velocity_m_s: Array) -> Mask:
-    """True in stretches of at least `REST_SAMPLES` speeds that are exactly zero."""
+    """Mask of the stretches of at least `REST_SAMPLES` speeds that are exactly zero."""
     zero = velocity_m_s == 0.0
     edges = np.diff(np.concatenate(([0], zero.astype(np.int8), [0])))
     rest = np.zeros(len(zero), dtype=bool)
@@ -42,22 +43,23 @@ def resting_samples(velocity_m_s: Array) -> Mask:
 def still_samples(
     time_s: Array, path: Array, velocity_m_s: Array, step: float, hum: float = 0.0
 ) -> Mask:
-    """Select rests whose recorded speed is not quite zero, shape (n,).
+    """Detect rests whose recorded speed is not exactly zero, shape (n,).
 
-    In a rest of at least `STILL_SAMPLES` the encoder stays within its step and the speed within
-    `STILL_SHARE` of its top. A speed whose noise is larger than that tells nothing of a rest: then
-    the encoder must stay within its step for so long that the mean speed is as small.
+    In a rest of at least `STILL_SAMPLES` samples, the encoder stays within its step and the speed
+    within `STILL_SHARE` of its top. If the noise of the speed exceeds this limit, the speed does
+    not indicate a rest. The encoder must then stay within its step for long enough that the mean
+    speed is below the limit.
 
-    Not in slow reversals, which an encoder does not resolve either.
+    Slow reversals, which an encoder does not resolve either, are excluded.
 
     Parameters
     ----------
     path
         Recorded path, m.
     step
-        The encoder's step, m.
+        The encoder step, m.
     hum
-        A speed, m/s, that is one of a rest, too.
+        A speed, m/s, that is also accepted as a rest.
     """
     n = len(path)
     top = float(np.max(np.abs(velocity_m_s), initial=0.0))
@@ -72,7 +74,7 @@ def still_samples(
         if _reverses(time_s, velocity_m_s, int(first), int(end), step):
             resting[first:end] = False
             continue
-        # A speed that stands out of the rest's own hum where it ends is the motion's.
+        # A speed at the ends that exceeds the noise of the rest belongs to the motion.
         speed = np.abs(velocity_m_s[first:end])
         calm_at = np.flatnonzero(speed <= max(STANDS_OUT * float(np.median(speed)), hum))
         resting[first : first + calm_at[0]] = False
@@ -81,7 +83,7 @@ def still_samples(
 
 
 def _within_a_step(path: Array, slow: Mask, step: float, samples: int) -> Mask:
-    """True in stretches of so many slow samples in which the path stays within its step."""
+    """Mask of the stretches of at least `samples` slow samples with the path within its step."""
     n = len(path)
     if n < samples or not slow.any():
         return np.zeros(n, dtype=bool)
@@ -94,12 +96,12 @@ def _within_a_step(path: Array, slow: Mask, step: float, samples: int) -> Mask:
 
 
 def _ptp(values: npt.NDArray[Any], samples: int) -> Array:
-    """Range of values in each window of so many samples, shape (n - samples + 1,)."""
+    """Range of the values in each window of `samples` samples, shape (n - samples + 1,)."""
     low: Array = values.astype(float)
     high = low
     width = 1
     while width < samples:
-        # A window is two narrower ones that may overlap.
+        # A window is the union of two narrower ones that may overlap.
         shift = min(width, samples - width)
         low, high = np.minimum(low[:-shift], low[shift:]), np.maximum(high[:-shift], high[shift:])
         width += shift
@@ -108,23 +110,26 @@ def _ptp(values: npt.NDArray[Any], samples: int) -> Array:
 
 
 def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: float) -> bool:
-    """Whether a reversal at the acceleration from before to after, or two of them, would stay
-    within the encoder's step for about as long."""
+    """Return whether one or two reversals explain an apparent rest.
+
+    A reversal at the acceleration from before to after would stay within the encoder step for about
+    as long.
+    """
     way = min(end - first, STILL_SAMPLES)
     before, after = max(first - way, 0), min(end + way, len(time_s)) - 1
     v0, v1 = velocity_m_s[before], velocity_m_s[after]
-    # What rounding leaves of a speed is none.
+    # A speed of rounding size counts as zero.
     least = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity_m_s)))
     if min(abs(v0), abs(v1)) < least or v0 == v1 == 0.0:
         return False
-    # A speed that grazes zero has its reversals, too, or none.
+    # Also covers a speed that touches zero, with two reversals or none.
     rate = (abs(v0) + abs(v1)) / (time_s[after] - time_s[before])
     still_s = 2.0 * np.sqrt(2.0 * STILL_STEPS * step / rate)
     return bool(time_s[end - 1] - time_s[first] < LONGER * still_s)
 
 
 def sure_rests(rest: Mask) -> Mask:
-    """The inner part of each rest: at its ends the motion may be less than a count.
+    """Mask of the inner part of each rest; near its ends the motion may be less than a count.
 
     Ends at the first or the last sample are not shortened.
     """
@@ -140,10 +145,11 @@ def sure_rests(rest: Mask) -> Mask:
 
 
 def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2: Array) -> Mask:
-    """True at the first and the last samples of each rest that motion precedes or follows.
+    """Mask of the first and last samples of each rest that borders on motion.
 
-    The shaft stops and starts between samples: within one sample of it nobody knows which. A slow
-    start begins before its speed is one: by the motion beside the rest, so many samples before.
+    The shaft stops and starts between samples, so the state within one sample of it is unknown. A
+    slow start begins before its speed is visible: the number of samples before it follows from the
+    motion next to the rest.
     """
     beside = np.zeros(len(rest), dtype=bool)
     edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
@@ -164,8 +170,11 @@ def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2
 def backward_beside_rest(
     rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2: Array
 ) -> Mask:
-    """True from a rest to where the speed goes the way that it grows: what sets out does not slow
-    down, and what comes to rest does not speed up, by more than a sample's worth."""
+    """Mask of the samples next to a rest that decelerate after it or accelerate towards it.
+
+    A shaft that starts does not slow down, and one that stops does not speed up. Only speeds below
+    the change in one sample are considered.
+    """
     backward = np.zeros(len(rest), dtype=bool)
     step_s = np.gradient(time_s) if len(time_s) > 1 else np.zeros(len(time_s))
     small = np.abs(velocity_m_s) < np.abs(acceleration_m_s2) * step_s
@@ -183,9 +192,9 @@ def backward_beside_rest(
 
 
 def unsure_beside_rest(rest: Mask, path: Array, velocity_m_s: Array, least: float) -> Mask:
-    """True from a rest to where the path has gone the way of the speed by more than `least`, m.
+    """Mask from a rest to where the path has moved in the direction of the speed by `least`, m.
 
-    A polynomial swings where a motion sets in: by itself it does not tell the first way.
+    A polynomial oscillates at the onset of a motion, so it does not determine the first direction.
     """
     unsure = np.zeros(len(rest), dtype=bool)
     edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
@@ -201,8 +210,10 @@ def unsure_beside_rest(rest: Mask, path: Array, velocity_m_s: Array, least: floa
 
 
 def without_swings(rest: Mask, velocity_m_s: Array, sign_known: Mask) -> None:
-    """Take speeds beside a rest that go the other way, by no more than chance, as none, in
-    `velocity_m_s`: a shaft does not go back before it sets out."""
+    """Set reversed speeds next to a rest to zero in `velocity_m_s`, up to the first sure sign.
+
+    A shaft does not move backwards before it starts.
+    """
     edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         sure = np.flatnonzero(sign_known[first:end])

@@ -1,4 +1,4 @@
-"""The noise on a recorded signal, from its third differences."""
+"""Noise and resolution of a recorded signal, from its differences."""
 
 from __future__ import annotations
 
@@ -10,31 +10,31 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 UNEVEN = 3.0
-"""Noise so many times its usual size is uneven: locally it counts as it is."""
+"""Ratio of local to usual noise from which the noise is uneven and evaluated locally."""
 DIGITS = 1e-7
-"""Changes by less than this share of a signal's range are rounding: of a file's digits."""
+"""Share of the range of a signal below which changes are rounding to the digits of a file."""
 LEVELS = 10
-"""Different values that a signal in steps has at least."""
+"""Least number of different values of a quantised signal."""
 ALTERNATING, VARIOUS = 0.1, 6
 """Least share of sign changes, or least number of sizes, of the second differences of rounding."""
 PARTS = 6
-"""Parts of the smallest change that are tried as a step."""
+"""Largest divisor of the smallest change that is tried for the step."""
 WHOLE, MOSTLY = 0.05, 0.9
-"""Most changes of a signal that was recorded in steps are so near to a whole number of them."""
+"""Tolerance of whole steps, and share of the changes within it, for a quantised signal."""
 UNEVEN_SAMPLES = 101
-"""Samples over which local noise is taken."""
+"""Window of local noise, samples."""
 
 
 def noise_of(signal: Array, time_s: Array | None = None) -> float:
     """Standard deviation of white noise on a smooth signal, from its third differences.
 
-    Robust: half of the samples may do anything.
+    The estimate is robust: up to half of the samples may be arbitrary.
 
     Parameters
     ----------
     time_s
-        Instants of the samples, s, increasing; None if they are even. Divided differences, over
-        the root of the sum of their weights' squares, allow for uneven ones.
+        Instants of the samples, s, increasing; None if they are even. For uneven ones, divided
+        differences are used, normalised by the root sum of squares of their weights.
     """
     if time_s is None:
         return white_noise(signal, 3)
@@ -52,7 +52,7 @@ def noise_of(signal: Array, time_s: Array | None = None) -> float:
 
 
 def white_noise(signal: Array, order: int) -> float:
-    """Standard deviation of white noise on a smooth signal, from its differences of an order."""
+    """Standard deviation of white noise on a smooth signal, from differences of one order."""
     if len(signal) < 8:
         return 0.0
     change = np.abs(np.diff(signal, order))
@@ -60,11 +60,12 @@ def white_noise(signal: Array, order: int) -> float:
 
 
 def local_noise(signal: Array) -> Array | float:
-    """`noise_of`, sample by sample where the noise is uneven, else one number."""
+    """`noise_of` for each sample if the noise is uneven, otherwise as a single number."""
     usual = noise_of(signal)
     if len(signal) < 4 * UNEVEN_SAMPLES:
         return usual
-    from scipy import ndimage  # most of a second to import: not for a prediction of a short run
+    # Importing takes most of a second; not needed for the prediction of a short run.
+    from scipy import ndimage
 
     third = np.pad(np.abs(np.diff(signal, 3)), (1, 2), mode="reflect")
     local = ndimage.median_filter(third, UNEVEN_SAMPLES, mode="reflect") / 0.6745 / np.sqrt(20.0)
@@ -73,17 +74,17 @@ def local_noise(signal: Array) -> Array | float:
 
 
 def step_of(angle: Array) -> float:
-    """The encoder's step: the smallest change of angle on record."""
+    """Encoder step: the smallest recorded change of the angle."""
     steps = np.abs(np.diff(angle))
     steps = steps[steps > 1e-12]
     return float(np.min(steps)) if len(steps) else 0.0
 
 
 def quantum_of(signal: Array) -> float:
-    """The step in which a signal was recorded: its changes are multiples of it; zero without one.
+    """Quantisation step of a signal, of which its changes are multiples; zero if not quantised.
 
-    The smallest change alone may be many steps, where the signal is never slow. A signal with few
-    different values is one of set levels, not a coarse one.
+    The smallest change alone may be many steps if the signal is never slow. A signal with few
+    different values has discrete set levels and is not quantised.
     """
     if len(np.unique(signal)) < LEVELS:
         return 0.0
@@ -93,19 +94,21 @@ def quantum_of(signal: Array) -> float:
         return 0.0
     alternating = np.mean(bends[1:] * bends[:-1] < 0.0) > ALTERNATING
     bends = np.abs(bends)
-    # In a short record the smallest change of the change may itself be a few steps.
+    # In a short record the smallest second difference may itself be a few steps.
     for part in range(1, PARTS + 1):
         step = float(np.min(bends)) / part
         steps = np.diff(signal) / step
         if np.mean(np.abs(steps - np.rint(steps)) < WHOLE) > MOSTLY:
-            # Ramps and parabolas without noise have a few bends of one sign each.
+            # Ramps and parabolas without noise have a few second differences, all of the same sign.
             various = len(np.unique(np.rint(bends / step))) >= VARIOUS
             return step if alternating or various else 0.0
     return 0.0
 
 
 def encoder_step(path: Array) -> float:
-    """The step of the encoder that recorded a path in motion, in the path's unit; zero where its
-    samples are finer than any encoder's."""
+    """Step of the encoder that recorded a path in motion, in the unit of the path.
+
+    Zero if the samples are finer than those of any encoder.
+    """
     step = step_of(path)
     return 0.0 if noise_of(path) > UNEVEN * step / np.sqrt(12.0) else step

@@ -19,12 +19,11 @@ Array = npt.NDArray[np.float64]
 SAME = 10.0
 """Ratio of the largest variance to the smallest one up to which runs have the same errors."""
 SAME_DELAY = 0.1
-"""Difference of the velocity's delays up to which runs have the same one, samples."""
+"""Difference of the velocity delays up to which runs have the same one, samples."""
 
 
 def further_starts(motions: Sequence[Smoothed]) -> tuple[ReadingErrors, ...]:
-    """Starting values for the reading errors of each of these runs; none where all runs have the
-    same errors.
+    """Starting values for the reading errors of these runs; empty if all runs have the same errors.
 
     Returns
     -------
@@ -45,8 +44,11 @@ def further_starts(motions: Sequence[Smoothed]) -> tuple[ReadingErrors, ...]:
 
 
 def _relative_sizes(motion: Smoothed) -> Array:
-    """Logarithms of the variances of position and velocity, and the velocity's delay, in units of
-    the differences up to which runs have the same ones; nan of a channel that was not recorded."""
+    """Logarithms of the variances of position and velocity, and the delay of the velocity.
+
+    They are in units of the differences up to which runs are the same; nan for a channel that was
+    not recorded.
+    """
     readings, errors = motion.readings, motion.errors
     step_s = float(np.median(np.diff(readings.time_s)))
     velocity = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)

@@ -2,8 +2,8 @@
 
 The jerk or the snap of the motion is Student-t noise: large in the few steps with a corner, small
 elsewhere. With a random jerk the acceleration jumps at a corner; with a random snap it is smooth.
-The likelier model is taken. Expectation-maximisation (`Readings.estimated`) finds the errors of the
-readings from a start that is searched here.
+The likelier model is used. Expectation-maximisation (`Readings.estimated`) estimates the errors of
+the readings from a start that is searched here.
 
 References
 ----------
@@ -24,64 +24,71 @@ from jbf.records.motion.roughness import noise_of
 Array = npt.NDArray[np.float64]
 
 JERK, SNAP = 3, 4
-"""Orders of the derivative of the position that is noise."""
+"""Order of the derivative of the position that is noise."""
 SHORTEST = 4
-"""Samples below which nothing is estimated: the motion is a parabola through them."""
+"""Number of samples below which nothing is estimated: the motion is a parabola through them."""
 CHOSEN, LONGEST = 3_000, 8_000
-"""Samples of a longer record from which the start, the order and the clock are chosen, and from
-which the parameters are estimated: those in which the motion goes furthest."""
+"""Length of the segments with the most motion, samples.
+
+In a longer record, the start, the order and the clock are chosen from the first length, and the
+parameters are estimated from the second.
+"""
 PASSES = (6, 24)
 """Passes of expectation-maximisation with normal noise, for a start, and with a t distribution.
+
 More of the latter reduce the intensity between corners further, and the standard errors of the
-motion become too small."""
+motion become too small.
+"""
 TRIED = (3, 12)
-"""Passes after which the order is chosen. With fewer, that of a position loop that sticks is not
-certain."""
+"""Passes after which the order is chosen.
+
+With fewer passes, the order for a position loop with stick-slip is uncertain.
+"""
 SNAP_GAIN = 0.02
-"""Minimum gain in the lower bound, per sample, for the snap: it makes a curve of a corner."""
+"""Minimum gain in the lower bound, per sample, for the snap, which rounds corners."""
 LONG_PASSES = 12
 """Passes in which the corners are estimated with known errors of the readings."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
-"""Steps of the intensity's logarithm in a first search, and the most of them."""
+"""Step of the logarithm of the intensity in a first search, and the largest number of steps."""
 FLAT = 0.5
 """Log-likelihood gain in two of these steps below which the search ends."""
 NARROW = 2.0
 """Range around a known intensity, decades."""
 DELAY_GAIN = 10.0
-"""Log-likelihood gain that a delay of the velocity must have."""
+"""Least log-likelihood gain of a delay of the velocity."""
 START_FACTORS = (1.0, 10.0, 100.0)
-"""Factors applied to the velocity's standard deviation by third differences, for a start."""
+"""Starting factors applied to the standard deviation of the velocity by third differences."""
 DELAY_ROUNDS, DELAY_SETTLED = 4, 0.01
 """Largest number of searches of the delay, and the change that ends them, samples."""
 HIDDEN = 0.01
-"""Share of the velocity's variance with which a delay is evaluated, too."""
+"""Share of the variance of the velocity with which a delay is evaluated as well."""
 STAMP_ERRORS = (0.01, 0.05, 0.2)
 """Standard errors of the instants that are tried, in samples."""
 START_GAIN = 10.0
-"""Gain of the lower bound that an additional starting value must have."""
+"""Least gain in the lower bound for an additional starting value."""
 STAMP_GAIN = 10.0
-"""Log-likelihood gain that an error of the instants must have."""
+"""Least log-likelihood gain of an error of the instants."""
 TURN_GAIN = 3.0
-"""Log-likelihood gain that corners at all reversals must have."""
+"""Least log-likelihood gain of corners at all reversals."""
 LONGEST_DELAY = 1.5
 """Largest delay of the velocity that is searched, samples."""
 
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """The posterior of a motion; n instants.
+    """The posterior of a motion at n instants.
 
     Attributes
     ----------
     readings, errors
-        What it was estimated from, and the estimated errors.
+        The readings, and their estimated errors.
     corners
-        Factor of the noise's intensity in each step, shape (n - 1,).
+        Factor of the noise intensity in each step, shape (n - 1,).
     speed
-        Speed at each sample, for the effect of the stamps' errors, shape (n,).
+        Speed at each sample, for the effect of the errors of the stamps, shape (n,).
     mean, covariance
-        Position and its first N - 1 derivatives, shape (n, N), and their covariance, shape
-        (n, N, N), where the N-th derivative is noise.
+        Position and its first N - 1 derivatives, shape (n, N), and their covariance, shape (n, N,
+        N), where the N-th derivative is noise.
     gain
         Gains of the posterior as a Markov chain backward in time, shape (n - 1, N, N).
     """
@@ -98,17 +105,17 @@ class Smoothed:
     def of(
         cls, readings: Readings, errors: ReadingErrors, corners: Array, speed: Array
     ) -> Smoothed:
-        """The posterior for given errors."""
+        """Compute the posterior for given errors."""
         found = readings.smoothed(errors, corners, speed)
         return cls(readings, errors, corners, speed, found.mean, found.covariance, found.gain)
 
     def rougher(self, factor: float, *, same_corners: bool = False) -> Smoothed:
-        """Posterior of the same readings with the noise's intensity multiplied by a factor.
+        """Posterior of the same readings with the noise intensity multiplied by a factor.
 
         Parameters
         ----------
         same_corners
-            Whether the corners' factors are kept, and not estimated again.
+            True to keep the factors of the corners instead of estimating them again.
         """
         if self.errors.intensity <= 0.0:
             return self
@@ -153,7 +160,10 @@ def _composed(gain: Array, chosen: npt.NDArray[np.intp]) -> Array:
 
 
 def is_even(readings: Readings, even_s: Array) -> bool:
-    """Whether readings are likelier at the instants of an even clock, s, than at their stamps."""
+    """Return whether readings are likelier at the instants of an even clock than at their stamps.
+
+    The instants are in s.
+    """
     part = _busiest(readings, CHOSEN)
     few = readings.part(part)
     _, by_stamps = _likeliest_stamps(few)
@@ -167,8 +177,8 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
     Parameters
     ----------
     starts
-        Additional starting values. Of their solutions the one with the largest lower bound is
-        taken, if it gains `START_GAIN`.
+        Additional starting values. The solution with the largest lower bound is used, if it gains
+        at least `START_GAIN`.
     """
     n = len(readings.time_s)
     if n < SHORTEST:
@@ -188,8 +198,7 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
 
 
 def _smoothed(readings: Readings, errors: ReadingErrors, corners: Array) -> Smoothed:
-    """The posterior with corners located to a step, and a corner at each reversal if that is
-    likelier."""
+    """Posterior with corners located to a step, and with corners at all reversals if likelier."""
     mean = readings.smoothed(errors, corners, np.zeros(len(readings.time_s))).mean
     found = _located_to_a_step(corners)
     if errors.order == JERK:
@@ -204,8 +213,10 @@ def _smoothed(readings: Readings, errors: ReadingErrors, corners: Array) -> Smoo
 
 
 def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Array:
-    """Factors with which the acceleration may jump by its RMS in a step in which the motion
-    reverses, where friction does; zero in the other steps."""
+    """Factors with which the acceleration may jump by its RMS in a step with a reversal.
+
+    Friction reverses there, too. The factors are zero in the other steps.
+    """
     step_s = np.maximum(np.diff(readings.time_s), 1e-300)
     at_rest = readings.velocity_shape <= AT_REST
     reverses = (mean[1:, 1] * mean[:-1, 1] <= 0.0) & ~(at_rest[1:] & at_rest[:-1])
@@ -214,11 +225,10 @@ def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Arr
 
 
 def _likeliest_start(readings: Readings) -> tuple[ReadingErrors, float]:
-    """Variances by the roughness of the readings, or larger ones where these are likelier, and the
-    log likelihood.
+    """Starting variances from the roughness of the readings, or larger ones if likelier.
 
-    The roughness is that of most samples: where a machine mostly rests, its readings are noisier
-    than that in motion.
+    The roughness is that of most samples: if a machine mostly rests, the readings in motion are
+    noisier. Also returns the log-likelihood.
     """
     start = _start(readings)
     tried = [
@@ -231,7 +241,7 @@ def _likeliest_start(readings: Readings) -> tuple[ReadingErrors, float]:
 
 
 def _start(readings: Readings) -> ReadingErrors:
-    """Variances by the roughness of the readings."""
+    """Variances from the roughness of the readings."""
     noise = []
     for signal, shape, floor in (
         (readings.position, readings.position_shape, readings.position_floor),
@@ -243,9 +253,9 @@ def _start(readings: Readings) -> ReadingErrors:
 
 
 def _of_likeliest_order(readings: Readings) -> ReadingErrors:
-    """Errors from which the estimation starts, with the likelier of the two orders."""
+    """Starting errors of the estimation, with the likelier of the two orders."""
     start, _ = _likeliest_stamps(readings)
-    # The zero velocities assigned at rest are no readings.
+    # The zero velocities assigned at rest are not readings.
     read = np.where(readings.velocity_shape > AT_REST, readings.velocity, np.nan)
     readings = replace(readings, velocity=read)
     jerk, snap = (
@@ -261,13 +271,12 @@ def _of_likeliest_order(readings: Readings) -> ReadingErrors:
 def _likeliest_intensity(
     readings: Readings, errors: ReadingErrors, decades: float | None = None
 ) -> tuple[ReadingErrors, float]:
-    """The same errors with the intensity that is likeliest for normal noise, the same everywhere,
-    and the log likelihood.
+    """Find the likeliest intensity of normal noise, constant in time, and its log-likelihood.
 
     Parameters
     ----------
     decades
-        How far around the errors' own intensity it is searched; everywhere if not given.
+        Search range around the current intensity, decades; unlimited if None.
     """
     ones, speed = np.ones(len(readings.time_s) - 1), readings.first_speed()
 
@@ -283,7 +292,8 @@ def _likeliest_intensity(
         most = top**2 / step ** (2 * errors.order - 3)
         if most <= 0.0 or not np.isfinite(most):
             return errors, -cost(float(np.log(errors.intensity)))
-        # From a motion that follows every reading on to smoother ones, until these gain nothing.
+        # From a motion that follows every reading to smoother ones, until the likelihood stops
+        # rising.
         grid = np.log(most) - GRID * np.arange(SMOOTHEST)
         costs = [cost(grid[0])]
         while len(costs) < SMOOTHEST and (len(costs) < 3 or costs[-1] < costs[-3] - FLAT):
@@ -297,7 +307,7 @@ def _likeliest_intensity(
 
 
 def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
-    """Likeliest errors, with or without jitter of the stamps, and the penalised log likelihood."""
+    """Likeliest errors, with or without jitter of the stamps, and the penalised log-likelihood."""
     step = float(np.median(np.diff(readings.time_s)))
     found = _likeliest_start(readings)
     start, _ = found
@@ -324,7 +334,7 @@ def _busiest(readings: Readings, longest: int) -> slice:
 
 
 def _delayed(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, Array]:
-    """Errors and corners with the delay of the velocity that is likeliest, from starting values."""
+    """Errors and corners with the likeliest delay of the velocity, from starting values."""
     errors, corners = readings.estimated(start, np.ones(len(readings.time_s) - 1), PASSES)
     if not (np.isfinite(readings.position).any() and np.isfinite(readings.velocity).any()):
         return errors, corners
@@ -344,7 +354,7 @@ def _delayed(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, A
 def _likeliest_delay(
     readings: Readings, errors: ReadingErrors, corners: Array, longest_s: float
 ) -> tuple[float, float]:
-    """The likeliest delay of the velocity, s, and its gain in the log likelihood."""
+    """Likeliest delay of the velocity, s, and its log-likelihood gain."""
     from scipy.optimize import minimize_scalar
 
     speed = readings.smoothed(errors, corners, readings.first_speed()).mean[:, 1]
@@ -362,10 +372,11 @@ def _likeliest_delay(
 
 
 def _located_to_a_step(corners: Array) -> Array:
-    """Factors that allow each corner in the steps before and after its own, too.
+    """Factors that also allow each corner in the steps before and after its own.
 
-    The expectation of one step does not know that the neighbour would explain the readings nearly
-    as well: without this, the acceleration at the sample between has too small an error.
+    The expectation of one step does not take into account that its neighbour explains the readings
+    nearly as well. Without this, the error of the acceleration at the sample between them is too
+    small.
     """
     padded = np.pad(corners, 1, mode="edge")
     found: Array = np.maximum(np.maximum(padded[:-2], padded[2:]), corners)

@@ -1,7 +1,7 @@
-"""A speed that is not zero while the position stands still: its zero is off.
+"""Offset of the speed: a speed that is not zero while the position is constant.
 
-Counts of a speed whose steps lie round zero, and not on it, never read zero; a tachometer has an
-offset. A rest then looks like a creep, and the friction of a rest like that of sliding.
+A quantised speed whose levels do not include zero never reads zero, and a tachometer has an offset.
+A rest then looks like creep, and the friction of a rest like that of sliding.
 """
 
 from __future__ import annotations
@@ -17,33 +17,41 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST = 3 * STILL_SAMPLES
-"""Samples at a standstill that tell a zero."""
+"""Least number of samples at standstill for an estimate of the offset."""
 GONE = 4.0
-"""Steps of the encoder that the speed says the drive to have gone in a standstill,"""
+"""Least displacement that the speed implies during a standstill, in encoder steps."""
 ERRORS = 5.0
-"""and standard errors of the zero, before it is off."""
+"""Least offset in standard errors."""
 
 
 def speed_zero(
     name: str, time: Array, path: Array, speed: Array, step: float, unit: str
 ) -> tuple[Array, float, Finding | None]:
-    """The speed from its own zero, what one of its counts is, m/s, and a finding where the zero
-    was off.
+    """Correct the offset of the speed, if it is significant.
 
     Parameters
     ----------
     path
         Recorded path, m.
     step
-        The encoder's step, m.
+        The encoder step, m.
     unit
-        Of the speed, for the finding.
+        Unit of the speed, for the finding.
+
+    Returns
+    -------
+    speed : ndarray
+        The corrected speed, m/s.
+    count : float
+        One count of the speed, m/s; zero without a correction.
+    finding : Finding or None
+        The finding, if the speed was corrected.
     """
     still = _still(path, step)
     if step <= 0.0 or still.sum() < LEAST:
         return speed, 0.0, None
     at_rest = speed[still]
-    # Counts make a median that is a count; the mean of the middle is between them.
+    # The median of counts is itself a count; the mean of the central values lies between counts.
     low, high = np.quantile(at_rest, [0.1, 0.9])
     inner = at_rest[(at_rest >= low) & (at_rest <= high)]
     zero = float(np.mean(inner))
@@ -56,7 +64,7 @@ def speed_zero(
 
 
 def _still(path: Array, step: float) -> Mask:
-    """True in stretches of at least `STILL_SAMPLES` within which the path stays in its step."""
+    """Mask of the stretches of at least `STILL_SAMPLES` samples with the path within its step."""
     n = len(path)
     still = np.zeros(n, dtype=bool)
     if n < STILL_SAMPLES:

@@ -1,4 +1,4 @@
-"""Path and speed that contradict one another by a factor: another unit, or a sign turned."""
+"""Path and speed that differ by a factor: a wrong unit, or a reversed sign."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jbf.records.quantities import OF_BEARING, Quantities
 Array = npt.NDArray[np.float64]
 
 NEAR = 0.06
-"""A ratio is a unit's where it is so near to its factor."""
+"""Relative tolerance within which a ratio matches the factor of a unit."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class Mismatch:
     Attributes
     ----------
     finding
-        What to say; its channel is the column that is taken to be in the wrong.
+        The finding; its channel is the column that is assumed to be wrong.
     factor
-        What the path's changes are to be divided by, or the speed multiplied with.
+        Divisor of the changes of the path, or multiplier of the speed.
     """
 
     finding: Finding
@@ -36,7 +36,7 @@ class Mismatch:
 
     @property
     def of_speed(self) -> bool:
-        """Whether it is the speed's unit that is wrong."""
+        """True if the unit of the speed is wrong."""
         return self.finding.channel == "velocity_m_s"
 
 
@@ -47,8 +47,11 @@ def wrong_unit(
     speed: Array,
     quantities: Quantities = OF_BEARING,
 ) -> Mismatch | None:
-    """Whether path and speed differ by a factor: the speed is in the wrong where the factor is one
-    of its units, else the path. The shape of a motion is in both, whatever its scale."""
+    """Detect a path and a speed that differ by a factor.
+
+    The speed is assumed to be wrong if the factor corresponds to one of its units, otherwise the
+    path. Both have the shape of the motion, whatever their scale.
+    """
     called = quantities.speed_column
     ratio = factor_between(time, position.path_m, speed)
     if ratio is None:
@@ -75,7 +78,7 @@ def wrong_unit(
 
 
 def _units(position: Position, *, turns: bool) -> Iterator[tuple[str, str, float]]:
-    """Column, unit it might be in, and the factor that this makes."""
+    """Yield a column, a unit that it may be in, and the factor that results."""
     turn = 2.0 * np.pi
     arm = position.arm_m
     if position.column == "angle_rad":

@@ -1,5 +1,7 @@
-"""Friction that moves: models of dynamic friction, compared with measurements, completed by the
-effect they lack, and cancelled in the loop.
+"""Identification, diagnosis and compensation of dynamic friction.
+
+Models of friction are compared with measurements, completed by missing effects, and used for
+compensation in control loops.
 
 >>> import jbf
 >>> rig, runs = jbf.read_rig("rig.toml"), jbf.read_runs("runs/")   # doctest: +SKIP
@@ -43,8 +45,8 @@ if TYPE_CHECKING:
 
 cap_threads()
 
-# Everything comes at first use: numpy takes a tenth of a second to import, scipy most of one, and
-# `jbf --help` waits for neither, a prediction not for scipy.
+# All names are imported at first use. numpy takes a tenth of a second to import and scipy most of a
+# second: `jbf --help` needs neither, and a prediction does not need scipy.
 _LATER = {
     "batch": "jbf.models.batch",
     "Parameter": "jbf.models.catalogue",

@@ -1,4 +1,4 @@
-"""`python -m jbf`."""
+"""Entry point of `python -m jbf`."""
 
 import sys
 

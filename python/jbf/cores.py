@@ -1,7 +1,7 @@
-"""No more threads than cores, no more processes than work.
+"""Limits on the number of threads and processes.
 
-The core's threads read how many they shall be when they are first needed; of thousands most wait,
-and a machine may not have them.
+The threads of the core read their number at first use. With thousands of threads most would wait,
+and a machine may not be able to start them.
 """
 
 from __future__ import annotations
@@ -14,30 +14,33 @@ _VARIABLES = ("RAYON_NUM_THREADS", "RAYON_RS_NUM_CPUS")
 
 
 def cap_threads() -> None:
-    """Hold what the environment asks for to the cores that there are."""
+    """Limit the thread counts in the environment to the number of cores."""
     cores = os.cpu_count() or 1
     for name in _VARIABLES:
         try:
             asked = int(os.environ.get(name, "0"))
         except ValueError:
-            continue  # no number: the core takes all cores
+            continue  # not a number: the core uses all cores
         if asked > cores:
             os.environ[name] = str(cores)
 
 
 def check_jobs(asked: int | None) -> None:
-    """Refuse to work on nothing at a time.
+    """Check that the number of parallel jobs is at least one.
 
     Raises
     ------
     InputError
-        Fewer than one were asked for.
+        The number is less than one.
     """
     if asked is not None and asked < 1:
         raise InputError(file="--jobs", problem=f"{asked} campaigns at a time", mend="1 or more")
 
 
 def processes(asked: int | None, tasks: int) -> int:
-    """How many work side by side: as many as were asked for (None: as there are cores), and never
-    more than there are tasks. All of them start at once, however little there is to do."""
+    """Return the number of parallel processes.
+
+    It is the requested number (None: the number of cores), limited to the number of tasks. All of
+    them start at once, however little there is to do.
+    """
     return max(min(asked or os.cpu_count() or 1, tasks), 1)

@@ -1,8 +1,8 @@
-"""The whole story on shipped data: a measurement, a model that misses it, the name of what is
-missing, and the error falling once it is added.
+"""Demonstration on shipped data: a measurement, a model that misses an effect, and its diagnosis.
 
-The data come from a simulator that shares no code with the models (`simulator/` in the source
-tree). What it hid lies in `truth.json`, which is opened only after the diagnosis has spoken.
+It shows the missing effect and the lower error of the completed model. The data come from a
+simulator that shares no code with the models (`simulator/` in the source tree). The true effects
+are in `truth.json`, which is opened only after the diagnosis.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ def run(
     progress: Progress | None = None,
     jbf: str = "jbf",
 ) -> Diagnosis:
-    """Copy the shipped data into `directory`, diagnose them, and tell the story.
+    """Copy the shipped data into `directory`, diagnose them, and report the results.
 
-    Writes `report.html` and `model.toml` there, beside the data, and gives the diagnosis of the
-    campaign with hidden effects. `jbf` is what the command is called where it was started.
+    Writes `report.html` and `model.toml` there, next to the data. Returns the diagnosis of the
+    campaign with hidden effects. `jbf` is the name under which the command was started.
     """
     out = Path(directory)
     with as_file(files("jbf") / "data" / "demo") as shipped:
@@ -73,7 +73,7 @@ def _diagnosed(folder: Path, progress: Progress | None) -> Diagnosis:
 
 
 def _unseen(diagnosis: Diagnosis, folder: Path) -> str:
-    """The bare law and the completed one on a motion of another kind."""
+    """Compare the bare law and the completed one on a motion of another kind."""
     runs = read_runs(folder / "unseen")
     bare = compare(diagnosis.before.model, runs)
     full = compare(diagnosis.model, runs)
@@ -86,7 +86,7 @@ def _unseen(diagnosis: Diagnosis, folder: Path) -> str:
 
 
 def _truth(diagnosis: Diagnosis, folder: Path) -> str:
-    """What the simulator hid, beside what was found."""
+    """List the true effects of the simulator next to the estimates."""
     truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
     lines = []
     for effect, values in truth["effects"].items():

@@ -1,5 +1,7 @@
-"""Errors a user can act on: every bad input ends as one line that names the file, the place in it,
-and the mend."""
+"""Errors that a user can act on.
+
+Every invalid input is reported in one line that names the file, the place in it, and the remedy.
+"""
 
 from __future__ import annotations
 
@@ -15,15 +17,15 @@ _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 class JbfError(Exception):
-    """Base of every error that jbf raises on purpose."""
+    """Base of all errors that jbf raises deliberately."""
 
 
 class FilmWarning(UserWarning):
-    """A film too fast for a prediction to follow: see :meth:`jbf.Model.predict`."""
+    """A film is too fast for a prediction to follow: see :meth:`jbf.Model.predict`."""
 
 
 class Stopped(KeyboardInterrupt):
-    """A fit or a diagnosis that was interrupted (Ctrl-C) when it had come some way.
+    """A fit or a diagnosis was interrupted (Ctrl-C) before it was finished.
 
     Attributes
     ----------
@@ -37,16 +39,16 @@ class Stopped(KeyboardInterrupt):
 
 
 class InputError(JbfError, ValueError):
-    """Bad input; ``str(error)`` is one line.
+    """Invalid input; ``str(error)`` is one line.
 
     Parameters
     ----------
     problem : str
-        What is wrong, as a clause that follows the place: ``"abc" is not a number``.
+        The problem, as a clause that follows the place: ``"abc" is not a number``.
     mend : str, optional
-        What to do about it, in the imperative.
+        The remedy, in the imperative.
     file : path, optional
-        The file, or the name of the object when there is no file.
+        The file, or the name of the object if there is no file.
     row : int, optional
         Line in the file as an editor counts, the header being line 1.
     column, key : str, optional
@@ -88,20 +90,20 @@ class InputError(JbfError, ValueError):
         line = f"{head}: {self.problem}" if head else self.problem
         if self.mend:
             line = f"{line}; {self.mend}"
-        # A file name or a quoted cell may hold a line break; the promise is one line.
+        # A file name or a quoted cell may contain a line break, but the message must be one line.
         return printable(" ".join(line.split()))
 
     def within(
         self, *, file: str | os.PathLike[str] | None = None, key_prefix: str = ""
     ) -> InputError:
-        """The same error with the place told by a caller who knows more of it.
+        """Return a copy of the error with a more precise place.
 
         Parameters
         ----------
         file : path, optional
-            Used when this error names no file yet.
+            Used if this error names no file yet.
         key_prefix : str
-            Put before the key, for example ``"bearing."``.
+            Prefix of the key, for example ``"bearing."``.
         """
         fields = self._fields()
         fields["file"] = self.file if self.file is not None else file
@@ -113,20 +115,20 @@ class InputError(JbfError, ValueError):
         return {name: getattr(self, name) for name in names}
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # The default would call the class with a positional argument, so an error raised in a
-        # worker process could not travel back.
+        # By default, pickle would call the class with a positional argument, so an error raised in
+        # a worker process could not be returned.
         return partial(type(self), **self._fields()), ()
 
 
 class Unfinished(InputError):
-    """A fit or a diagnosis that was ended because it would have taken too long.
+    """A fit or a diagnosis was aborted because it would have taken too long.
 
     Parameters
     ----------
     steps
-        Inner steps of the model that it took.
+        Number of inner steps of the model.
     fit
-        The best :class:`jbf.Fit` so far, None where there is none.
+        The best :class:`jbf.Fit` so far, or None.
     """
 
     def __init__(self, *, steps: float, fit: Any = None, file: str | None = None) -> None:
@@ -148,12 +150,12 @@ class Unfinished(InputError):
 
 
 def printable(text: str) -> str:
-    """A text whose control characters are escaped: they move no terminal."""
+    """Escape control characters, so that the text does not control a terminal."""
     return _CONTROLS.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def quoted(text: object) -> str:
-    """Foreign text in double quotes: unprintable characters escaped, long text cut."""
+    """Return external text in double quotes; unprintable characters are escaped, long text is cut."""
     shown = str(text)
     if not shown.isprintable():
         shown = shown.encode("unicode_escape").decode("ascii")
@@ -163,14 +165,14 @@ def quoted(text: object) -> str:
 
 
 def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """The known word most like `word` whatever its case, or None when none is like it."""
+    """Return the known word that is most similar to `word`, ignoring case, or None."""
     by_lower = {name.lower(): name for name in known}
     found = get_close_matches(word.lower(), list(by_lower), n=1, cutoff=cutoff)
     return by_lower[found[0]] if found else None
 
 
 def did_you_mean(word: object, known: Iterable[str]) -> str:
-    """A mend for an unknown word: the nearest known one, else the list of them all."""
+    """Return a remedy for an unknown word: the nearest known one, else the list of known ones."""
     names = list(known)
     guess = closest(word, names) if isinstance(word, str) else None
     if guess is not None:

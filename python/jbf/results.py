@@ -1,7 +1,8 @@
-"""What every result can do, and the one door from results to their words, tables and pictures.
+"""Common methods of results, and their only entry point to texts, tables and plots.
 
-A result knows its numbers and nothing of pages: each verb here asks `jbf.reporting.door`, which is
-imported at the first call. Nothing else below reporting may ask it for anything.
+A result holds numbers and does not depend on their presentation. Each method here calls
+`jbf.reporting.door`, which is imported at the first call. No other module below reporting may use
+it.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ if TYPE_CHECKING:
 
 
 def _asked(verb: str, result: object, *arguments: Any) -> Any:
-    """What the door answers."""
+    """Call a function of the reporting entry point."""
     return getattr(import_module("jbf.reporting.door"), verb)(result, *arguments)
 
 
 class Shown:
-    """What shows itself in a notebook."""
+    """Base of objects with a notebook representation."""
 
     def _repr_html_(self) -> str:
         table: str = _asked("small_table", self)
@@ -33,15 +34,15 @@ class Shown:
 
 
 class Result(Shown):
-    """The verbs that results share."""
+    """Methods that all results share."""
 
     def summary(self) -> str:
-        """The result in words, as text for a terminal."""
+        """Return the result in words, as text for a terminal."""
         text: str = _asked("summary", self)
         return text
 
     def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-        """A picture on matplotlib axes: those given, or a new figure's.
+        """Plot the result on the given matplotlib axes, or on a new figure.
 
         No window opens; ``axes[0].figure.savefig("a.png")`` writes it.
         """
@@ -49,16 +50,16 @@ class Result(Shown):
         return drawn
 
     def to_dict(self) -> dict[str, Any]:
-        """Numbers and words, for JSON; every result says its own."""
+        """Return numbers and words for JSON; every result implements its own."""
         raise TypeError(f"{type(self).__name__} has no words for JSON")
 
     def to_frame(self) -> Any:
-        """A `pandas.DataFrame`; pandas comes with no jbf and must be installed.
+        """Return a `pandas.DataFrame`; pandas is not a dependency of jbf and must be installed.
 
         Raises
         ------
         InputError
-            There is no pandas.
+            pandas is not installed.
         """
         try:
             pandas = import_module("pandas")
@@ -69,7 +70,7 @@ class Result(Shown):
         return pandas.DataFrame(_asked("columns", self))
 
     def save_html(self, path: str | os.PathLike[str]) -> None:
-        """Write a self-contained HTML page with pictures, whole or not at all.
+        """Write a self-contained HTML page with plots, atomically.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Text files, read and written whole; each way that fails is one line for the user."""
+"""Reading and writing of complete text files; every failure is a one-line error for the user."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ from pathlib import Path
 from jbf.errors import InputError, closest, printable, quoted
 
 PIPE_S = 10.0
-"""How long a pipe is waited for."""
+"""Timeout for data from a pipe, s."""
 PIPE_BYTES = 1 << 30
-"""More than this out of a pipe is taken to have no end."""
+"""Largest number of bytes from a pipe; beyond it the pipe is assumed to be endless."""
 LARGEST_BYTES = 1 << 29
-"""A text larger than this is not read whole: as a table it would take fourteen times as much
-memory."""
+"""Largest size of a text that is read at once.
+
+As a table it would take fourteen times as much memory.
+"""
 _PACKED = {
     b"\x1f\x8b": ("is compressed (gzip), not text", "unpack it"),
     b"PK\x03\x04": (
@@ -25,7 +27,7 @@ _PACKED = {
         "unpack it, or save the sheet as CSV; jbf import reads spreadsheets",
     ),
 }
-"""First bytes of files that people take for text."""
+"""First bytes of files that are often mistaken for text."""
 
 
 def os_error(path: Path, error: OSError, doing: str) -> InputError:
@@ -49,14 +51,16 @@ def os_error(path: Path, error: OSError, doing: str) -> InputError:
 
 
 def name_of(path: Path, depth: int = 1) -> str:
-    """What a file is called, without its ending and with so many parent folders: characters that
-    move a terminal, and bytes that are no UTF-8, are escaped."""
+    """Return the name of a file without its suffix, with `depth - 1` parent folders.
+
+    Terminal control characters, and bytes that are not UTF-8, are escaped.
+    """
     text = "/".join(path.with_suffix("").parts[-depth:])
     return printable(os.fsencode(text).decode("utf-8", errors="backslashreplace"))
 
 
 def path_of(value: object) -> Path:
-    """A path; an InputError where something else stands for one."""
+    """Convert to a path; raise an InputError if the value is not one."""
     if not isinstance(value, str | os.PathLike):
         shown = "None" if value is None else type(value).__name__
         raise InputError(problem=f"{shown} is not a path", mend="name a file or a folder")
@@ -64,7 +68,7 @@ def path_of(value: object) -> Path:
 
 
 def real_path(path: str | os.PathLike[str]) -> Path:
-    """The file behind links, which a loop of them does not keep from an answer."""
+    """Resolve symbolic links; a loop of links does not raise an error."""
     try:
         return Path(os.path.realpath(path))
     except ValueError:  # a null character in the name itself
@@ -74,7 +78,13 @@ def real_path(path: str | os.PathLike[str]) -> Path:
 
 
 def check_readable(path: Path, *, pipes: bool = True) -> None:
-    """An InputError where this is no file that has an end: a device, or what cannot be opened."""
+    """Raise an InputError for a device, or for a file that cannot be opened.
+
+    Parameters
+    ----------
+    pipes
+        True if pipes are accepted.
+    """
     try:
         kind = path.stat().st_mode
     except OSError as error:
@@ -97,13 +107,13 @@ def check_readable(path: Path, *, pipes: bool = True) -> None:
 
 
 def read_bytes(path: Path) -> bytes:
-    """What a file holds, or what comes out of a pipe.
+    """Return the content of a file, or of a pipe.
 
     Raises
     ------
     InputError
-        The file is missing, a folder, a device, too large or unreadable; a pipe has no end, or no
-        beginning.
+        The file is missing, a folder, a device, too large or unreadable; a pipe is endless or
+        provides no data.
     """
     check_readable(path)
     try:
@@ -121,7 +131,7 @@ def read_bytes(path: Path) -> bytes:
 
 
 def _from_pipe(path: Path) -> bytes:
-    # Opened so that it does not wait for a writer, who may never come.
+    # Non-blocking, because a writer may never open the pipe.
     pipe = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
     try:
         if not select.select([pipe], [], [], PIPE_S)[0]:
@@ -145,7 +155,7 @@ def _from_pipe(path: Path) -> bytes:
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
-    """The text of a UTF-8 file, without a byte order mark.
+    """Return the text of a UTF-8 file, without a byte order mark.
 
     Raises
     ------
@@ -173,21 +183,21 @@ def read_text(path: str | os.PathLike[str]) -> str:
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Write a UTF-8 file whole or not at all; as `write_texts`."""
+    """Write a UTF-8 file atomically, as `write_texts` does."""
     write_texts({path: text})
 
 
 def write_texts(texts: Mapping[str | os.PathLike[str], str]) -> None:
-    """Write UTF-8 files, each whole, and all of them or none.
+    """Write UTF-8 files, each of them atomically.
 
-    A reader sees the old file or the new one, never a part: each text goes to a temporary file
-    in the same folder, and once all are there they take their names. A pipe or device is written
-    to directly.
+    A reader sees the old file or the new one, never a part. Each text is first written to a
+    temporary file in the same folder. Once all are complete, they are renamed. If one text cannot
+    be staged, no file is replaced. A pipe or device is written to directly.
 
     Raises
     ------
     InputError
-        A file cannot be written; nothing is left behind, nor is it after Ctrl-C.
+        A file cannot be written; no temporary file remains, even after Ctrl-C.
     """
     staged: list[tuple[Path, Path]] = []
     try:
@@ -204,12 +214,12 @@ def write_texts(texts: Mapping[str | os.PathLike[str], str]) -> None:
 
 
 def _stage(path: Path, data: bytes, staged: list[tuple[Path, Path]]) -> None:
-    """Write to a temporary file, which `staged` holds before it is there."""
+    """Write to a temporary file, which is added to `staged` before it is created."""
     try:
         if path.exists() and not path.is_file():
             path.write_bytes(data)
             return
-        target = real_path(path)  # a link keeps pointing to its file
+        target = real_path(path)  # a symbolic link keeps pointing to its file
         temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.tmp")
         staged.append((temporary, target))
         temporary.write_bytes(data)

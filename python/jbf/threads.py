@@ -1,8 +1,8 @@
-"""Linear algebra on one thread while fits run.
+"""Restriction of BLAS to one thread while fits run.
 
-The core works on all cores. The matrices of a fit are long and narrow, a second thread gains
-nothing on them; but OpenBLAS keeps its own waiting busily for some 20 ms after each call, on the
-cores that the core needs: fits took twice as long with them, on a busy machine four times.
+The core uses all cores. The matrices of a fit are long and narrow, so a second BLAS thread gains
+nothing. However, OpenBLAS threads keep spinning for about 20 ms after each call, on the cores that
+the core needs. Fits took twice as long with them, and four times as long on a busy machine.
 """
 
 from __future__ import annotations
@@ -23,7 +23,10 @@ _limit: Any = None
 
 
 def one_blas_thread(work: Callable[P, R]) -> Callable[P, R]:
-    """`work` with BLAS held to one thread as long as any such function runs, then as before."""
+    """Decorate `work` to limit BLAS to one thread while any decorated function runs.
+
+    The previous limits are restored afterwards.
+    """
 
     @functools.wraps(work)
     def wrapped(*args: P.args, **kwargs: P.kwargs) -> R:

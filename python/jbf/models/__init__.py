@@ -1,8 +1,8 @@
-"""Models: a law, effects and parameters; a run's motion in, a predicted friction out.
+"""Models: a law, effects and parameters; predict the friction from the motion of a run.
 
-Comes in: a `Rig`, names out of the catalogue, parameter values, and runs to predict. Goes out:
-predictions and their derivatives, model files, trajectories and batches of the bare law. Every
-number of physics is the core's (`jbf._core`); nothing here fits or judges.
+Input: a `Rig`, names from the catalogue, parameter values, and runs to predict. Output: predictions
+and their derivatives, model files, trajectories and batches of the bare law. All physics is
+computed by the core (`jbf._core`). This package neither fits nor compares.
 
 May import: `jbf.records`, `jbf._core`.
 """

@@ -1,4 +1,4 @@
-"""Many parameter sets of the journal law side by side: sweeps, clouds of samples, many starts."""
+"""Parallel evaluation of the journal law for many parameter sets (sweeps, samples, starts)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _column(value: npt.ArrayLike, key: str) -> npt.NDArray[np.float64]:
 
 
 def _sets(columns: dict[str, npt.ArrayLike]) -> npt.NDArray[np.float64]:
-    """One row a set, what is given once repeated."""
+    """Return one row per set; scalars are repeated."""
     arrays = {key: _column(value, key) for key, value in columns.items()}
     count = max((a.size for a in arrays.values() if a.ndim), default=1)
     for key, a in arrays.items():
@@ -73,38 +73,38 @@ def batch(
     dtype: npt.DTypeLike = np.float64,
     out: Array | None = None,
 ) -> Array:
-    """Friction coefficients of many parameter sets, or how far each is from a record.
+    """Compute the friction coefficients of many parameter sets, or their sums of squared errors.
 
-    Sets run side by side in the lanes of the best instruction set that the machine has, on all
-    cores, and give the same bits on any of them. Films start at the transition eccentricity.
+    Sets run in parallel in the lanes of the best instruction set of the machine, on all cores. The
+    result is bitwise equal on all of them. Films start at the transition eccentricity.
 
     Parameters
     ----------
     velocity_m_s : array, shape (n,) or (n, sets)
-        Surface speed at samples `dt_s` apart: one motion for all sets, or one a set.
+        Surface speed, m/s, at samples `dt_s` apart: one motion for all sets, or one per set.
     dt_s : float
-        Step, s; nothing is stepped in between.
+        Step, s; there are no substeps.
     f_m, U_tr_m_s, K0, gamma, load_n : float or array of shape (sets,)
-        Parameters of the law, and load on one bearing, N (the rig's where not given).
+        Parameters of the law, and load on one bearing, N (by default that of the rig).
     clock : str
         ``"journal"`` or ``"thesis"``.
     method : str
         ``"euler"`` or ``"rk4"``.
     data : array, shape (n,), optional
-        Measured friction coefficients: the answer is then each set's sum of squares.
+        Measured friction coefficients: the result is then the sum of squares of each set.
     dtype : dtype
-        ``np.float64`` or ``np.float32``: the precision of steps and answer.
+        ``np.float64`` or ``np.float32``: the precision of steps and result.
     out : array, optional
-        Where to put the coefficients: filling an array again is faster than a fresh one.
+        Array for the coefficients: reusing one is faster than allocating a new one.
 
     Returns
     -------
-    array, shape (n, sets), or (sets,) where `data` is given
+    array, shape (n, sets), or (sets,) if `data` is given
 
     Raises
     ------
     InputError
-        An array of the wrong shape or a parameter out of its range.
+        An array has the wrong shape, or a parameter is out of its range.
     """
     the_rig(rig)
     find_clock(clock)

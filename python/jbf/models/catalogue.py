@@ -1,4 +1,4 @@
-"""Laws and effects as the core lists them: names, forms, bounds, starting values."""
+"""Laws and effects of the core, and registered ones: names, forms, bounds, starting values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from jbf.records.arguments import names as checked_names
 from jbf.records.arguments import one_of
 
 Stage = Literal["drive", "lubricant", "film", "contact", "other friction", "instrument"]
-"""Where in the signal chain an effect acts."""
+"""Position of an effect in the signal chain."""
 
 
 class _Summed(Protocol):
@@ -26,10 +26,13 @@ class _Summed(Protocol):
 
 
 BESIDE = ("other friction", "instrument")
-"""Stages whose effects go with a law of one's own: they add to its force, or act on the sum. The
-others change a law's own parts, which nobody knows of such a one."""
+"""Stages whose effects can be combined with a user-defined law.
+
+They add to its force, or act on the sum. Effects of the other stages change parts of a law that are
+unknown for a user-defined one.
+"""
 CARRIER = "coulomb"
-"""The core's law that carries the effects of a law of one's own, with next to no force itself."""
+"""Law of the core that carries the effects of a user-defined law; its own force is nearly zero."""
 
 Page = TypeVar("Page", bound=_Summed)
 
@@ -40,24 +43,26 @@ class Parameter:
 
     Attributes
     ----------
+    name, unit, meaning
+        Name, unit and description.
     lower, upper
         Bounds, in the unit.
     null
-        The value at which the effect vanishes, where this parameter has one.
+        The value at which the effect vanishes, if there is one.
     starts
-        Where a fit may start, likeliest first.
+        Starting values of a fit, likeliest first.
     log
-        True where a fit should walk in the logarithm.
+        True if a fit should use the logarithm.
     period
         The period of an angle, for parameters that wrap.
     start
-        Of what in the data it is about the size, where the law is one in newtons: a fit then
-        starts there. "catalogue" where `starts` always hold.
+        Quantity in the data that gives a starting value, for a law in newtons. "catalogue" if
+        `starts` always apply.
     bound
-        What in the data bounds it from above: "transition_speed" the fastest speed on record,
-        "catalogue" nothing.
+        Quantity in the data that bounds it from above: "transition_speed" is the highest recorded
+        speed, "catalogue" means no such bound.
     stated
-        True of a number that no fit finds: it is held where it starts, or is fixed elsewhere.
+        True for a number that no fit estimates: it is held at its start, or is fixed elsewhere.
     """
 
     name: str
@@ -75,7 +80,7 @@ class Parameter:
 
 
 class Pages(dict[str, Page]):
-    """Pages by name, shown as a short table."""
+    """Catalogue pages by name, displayed as a short table."""
 
     def __repr__(self) -> str:
         widest = max(map(len, self), default=0)
@@ -87,16 +92,29 @@ class Pages(dict[str, Page]):
 
 @dataclass(frozen=True, repr=False)
 class Effect:
-    """The page of one effect.
+    """The catalogue page of one effect.
 
-    `needs` names what it needs of the law and of the record; `refused` tells for each law that
-    it does not go with why: "the law ...". `moves_jumps` is true where a parameter moves the
-    instants at which friction jumps, `spreads_jumps` where what is read of a jump lasts; `peaks` is
-    the parameter along which a likelihood has many peaks, None for most; `further_of` the effect of
-    which this is a further one, None for most; `unknown_start` is true where a run's first sample
-    does not tell the state in which it begins, and time does not let that be forgotten.
-    `rust_place` and `rust_type` are the names of its types in the core, empty
-    of an effect of one's own; `columns` are those that such an effect asks for.
+    Attributes
+    ----------
+    needs
+        Requirements on the law and the record.
+    refused
+        For each law that the effect cannot be combined with, the reason: "the law ...".
+    moves_jumps
+        True if a parameter shifts the instants at which friction jumps.
+    spreads_jumps
+        True if the reading of a jump takes time.
+    peaks
+        The parameter along which a likelihood has many peaks; None for most effects.
+    further_of
+        The effect of which this is a further instance; None for most effects.
+    unknown_start
+        True if the first sample of a run does not determine the initial state, and its influence
+        does not decay.
+    rust_place, rust_type
+        Names of its types in the core; empty for a user-defined effect.
+    columns
+        Columns that a user-defined effect requires.
     """
 
     name: str
@@ -124,10 +142,10 @@ class Effect:
 
 @dataclass(frozen=True, repr=False)
 class Law:
-    """The page of one base law.
+    """The catalogue page of one base law.
 
-    A law that does not need a bearing gives newtons and needs no load either. `rust_type` is the
-    name of its type in the core.
+    A law that does not need a bearing returns newtons and needs no load. `rust_type` is the name of
+    its type in the core.
     """
 
     name: str
@@ -153,7 +171,7 @@ def _parameter(page: _core.ParameterPage) -> Parameter:
 
 @cache
 def built_in() -> dict[str, Effect]:
-    """The core's effects by name, in the order of the signal chain."""
+    """The effects of the core by name, in the order of the signal chain."""
     pages = {}
     for page in _core.effects():
         fields = dict(page)
@@ -167,30 +185,30 @@ _own: dict[str, Effect] = {}
 
 
 def own() -> dict[str, Effect]:
-    """Effects of one's own that are registered now."""
+    """The currently registered user-defined effects."""
     return _own
 
 
 def put(page: Effect) -> None:
-    """Take an effect of one's own in."""
+    """Register a user-defined effect."""
     _own[page.name] = page
     vocabulary.cache_clear()
 
 
 def drop(name: str) -> bool:
-    """Take an effect of one's own out; False where there is none of that name."""
+    """Unregister a user-defined effect; return False if there is no effect of that name."""
     vocabulary.cache_clear()
     return _own.pop(name, None) is not None
 
 
 def effects() -> Pages[Effect]:
-    """Every effect by name, in the order of the signal chain; one's own come last."""
+    """All effects by name, in the order of the signal chain; user-defined ones come last."""
     return Pages({**built_in(), **_own})
 
 
 @cache
 def built_in_laws() -> Pages[Law]:
-    """The core's laws by name."""
+    """The laws of the core by name."""
     pages = Pages[Law]()
     for page in _core.laws():
         fields = dict(page)
@@ -203,34 +221,34 @@ _own_laws: dict[str, Law] = {}
 
 
 def own_laws() -> dict[str, Law]:
-    """Laws of one's own that are registered now."""
+    """The currently registered user-defined laws."""
     return _own_laws
 
 
 def put_law(page: Law) -> None:
-    """Take a law of one's own in."""
+    """Register a user-defined law."""
     _own_laws[page.name] = page
     vocabulary.cache_clear()
 
 
 def drop_law(name: str) -> bool:
-    """Take a law of one's own out; False where there is none of that name."""
+    """Unregister a user-defined law; return False if there is no law of that name."""
     vocabulary.cache_clear()
     return _own_laws.pop(name, None) is not None
 
 
 def laws() -> Pages[Law]:
-    """Every base law by name; one's own come last."""
+    """All base laws by name; user-defined ones come last."""
     return Pages({**built_in_laws(), **_own_laws})
 
 
 def find_effect(name: str) -> Effect:
-    """The effect of that name.
+    """Return the effect of the given name.
 
     Raises
     ------
     InputError
-        Names the unknown effect and the nearest known one.
+        The effect is unknown; the message suggests the nearest known one.
     """
     known = effects()
     if not isinstance(name, str) or name not in known:
@@ -242,18 +260,18 @@ def find_effect(name: str) -> Effect:
 
 
 def find_law(name: str) -> Law:
-    """The law of that name; an InputError names an unknown one."""
+    """Return the law of the given name; an InputError names an unknown one."""
     known = laws()
     return known[one_of(name, known, "law")]
 
 
 def find_clock(name: str) -> Clock:
-    """The clock of that name; an InputError names an unknown one."""
+    """Return the clock of the given name; an InputError names an unknown one."""
     return one_of(name, CLOCKS, "clock")
 
 
 def why_not(effect: Effect, law: str) -> str | None:
-    """Why an effect does not go with a law: "the law ..."; None where it does."""
+    """Return why an effect cannot be combined with a law ("the law ..."), or None if it can."""
     if law not in _own_laws:
         return effect.refused.get(law)
     if effect.stage not in BESIDE:
@@ -262,7 +280,7 @@ def why_not(effect: Effect, law: str) -> str | None:
 
 
 def check_applies(law: str, names: Iterable[str]) -> None:
-    """An InputError where one of the effects does not go with a law."""
+    """Raise an InputError if one of the effects cannot be combined with a law."""
     page = find_law(law)
     for name in names:
         reason = why_not(find_effect(name), page.name)
@@ -274,32 +292,34 @@ def check_applies(law: str, names: Iterable[str]) -> None:
 
 
 def transition_speed(law: str, values: Sequence[float]) -> float | None:
-    """Speed (m/s) at which a law's film carries the load alone; None of a law without one."""
+    """Speed (m/s) above which the film carries the full load; None for a law without a film."""
     pages = zip(find_law(law).parameters, values, strict=False)
     return next((float(v) for p, v in pages if p.bound == "transition_speed"), None)
 
 
 def may_come(name: str, present: Collection[str]) -> bool:
-    """True where an effect says something of its own beside those present: a further one of another
-    does beside that one only."""
+    """Return True if an effect may be added to those present.
+
+    A further instance of an effect requires that effect.
+    """
     page = effects().get(name)
     return page is None or page.further_of is None or page.further_of in present
 
 
 def may_go(name: str, present: Collection[str]) -> bool:
-    """True where none of those present is a further one of an effect."""
+    """Return True if none of the effects present is a further instance of the given one."""
     pages = effects()
     return not any(e in pages and pages[e].further_of == name for e in present)
 
 
 def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:
-    """The effects in the order of the signal chain, each once."""
+    """Return the effects in the order of the signal chain, without repeats."""
     chosen = {find_effect(name).name for name in checked_names(names, "effects")}
     return tuple(name for name in effects() if name in chosen)
 
 
 def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
-    """Dotted name to parameter: the law's first, then each effect's."""
+    """Map dotted names to parameters: those of the law first, then those of each effect."""
     found = {p.name: p for p in find_law(law).parameters}
     for name in chosen:
         found |= {f"{name}.{p.name}": p for p in find_effect(name).parameters}
@@ -307,7 +327,7 @@ def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
 
 
 def find_parameter(name: str, known: Collection[str]) -> str:
-    """The full dotted name of a parameter given with or without its unit.
+    """Return the full dotted name of a parameter given with or without its unit.
 
     `presliding.sigma` finds `presliding.sigma_1_m`; an InputError names an unknown one.
     """
@@ -321,7 +341,7 @@ def find_parameter(name: str, known: Collection[str]) -> str:
 
 @cache
 def vocabulary() -> Vocabulary:
-    """What a model file may say."""
+    """Names and bounds that are valid in a model file."""
 
     def bounds(parameters: tuple[Parameter, ...]) -> dict[str, tuple[float, float]]:
         return {p.name: (min(p.lower, _null(p)), max(p.upper, _null(p))) for p in parameters}

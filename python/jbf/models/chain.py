@@ -1,4 +1,4 @@
-"""The core's chain for a rig, and a run's motion as the core takes it."""
+"""Construction of the core's signal chain for a rig, and of the motion that drives it."""
 
 from __future__ import annotations
 
@@ -37,18 +37,21 @@ from jbf.records.run import Run, run_on
 
 Array = npt.NDArray[np.float64]
 MAX_STEP_S = 0.02
-"""Longest inner step of a prediction. The core lands on every reversal and takes shorter steps
-where the law or an effect asks for them; at 0.02 s the bare law errs by some 1e-5 of its peak."""
+"""Longest inner step of a prediction, s.
+
+The core ends a step at every reversal and takes shorter steps if the law or an effect requires
+them. At 0.02 s the error of the bare law is about 1e-5 of its peak.
+"""
 
 
 @contextmanager
 def core_refusals(mend: str | Callable[[str], str] = "correct the value") -> Iterator[None]:
-    """What the core refuses in here, as an InputError: the one kind of error that users meet.
+    """Convert errors of the core to an InputError, the only error type that users receive.
 
     Parameters
     ----------
     mend
-        What to do about it, or what gives that for the core's words.
+        The remedy, or a function that returns it for the message of the core.
     """
     try:
         yield
@@ -60,7 +63,7 @@ def core_refusals(mend: str | Callable[[str], str] = "correct the value") -> Ite
 
 
 def check_rig(rig: Rig, law: str) -> None:
-    """An InputError where this is no rig, or lacks what a law needs."""
+    """Raise an InputError if the value is not a rig, or lacks a section that the law needs."""
     the_rig(rig)
     if not find_law(law).needs_bearing:
         return
@@ -82,7 +85,7 @@ def check_rig(rig: Rig, law: str) -> None:
 
 
 def core_bearing(rig: Rig) -> _core.BearingSizes | None:
-    """The rig's bearing as the core takes it; None where the rig has none."""
+    """Sizes of the bearing in the form of the core; None without a bearing."""
     b = rig.bearing
     if b is None:
         return None
@@ -92,23 +95,23 @@ def core_bearing(rig: Rig) -> _core.BearingSizes | None:
         "clearance_m": b.clearance_m,
         "mass_kg": b.mass_kg,
         "count": b.count,
-        # A law with a film has been refused by now; any other takes the radius alone.
+        # Laws with a film have been rejected before; any other law uses the radius only.
         "viscosity_pa_s": 1.0 if rig.lubricant is None else rig.lubricant.viscosity_pa_s,
     }
 
 
 def core_load_n(rig: Rig) -> float | None:
-    """The load on one bearing, N; None where the rig has none."""
+    """Load on one bearing, N; None without a load."""
     return None if rig.load is None else rig.load.normal_n
 
 
 def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain:
-    """The core's chain for a rig.
+    """Build the signal chain of the core for a rig.
 
     Raises
     ------
     InputError
-        The rig lacks what the law needs, or an effect does not go with the law.
+        The rig lacks a section that the law needs, or an effect cannot be combined with the law.
     """
     check_rig(rig, law)
     check_applies(law, effects)
@@ -148,7 +151,7 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
 
 
 def imposed(rig: Rig, run: Run) -> ImposedMotion:
-    """The motion that a run imposed on the rig's journal or slider."""
+    """Estimate the motion that a run imposed on the journal or slider of the rig."""
     instants, motion = imposed_as_read(rig, run)
     return motion if len(instants) == len(run) else motion.at(instants, run.time_s)
 
@@ -156,8 +159,11 @@ def imposed(rig: Rig, run: Run) -> ImposedMotion:
 def imposed_as_read(
     rig: Rig, run: Run, starts: Sequence[ReadingErrors] = ()
 ) -> tuple[Array, ImposedMotion]:
-    """The motion, and the instants at which it was read, s: those of a clock of its own, where it
-    has one; `starts` as of :func:`jbf.records.motion.imposed.impose`."""
+    """Estimate the motion, and return the instants at which it was sampled, s.
+
+    These are the instants of the motion's own clock, if it has one. `starts` is as in
+    :func:`jbf.records.motion.imposed.impose`.
+    """
     run = as_read(run_on(rig, one_run(run)))
     there = of_motion(run.read)
     if there is not None:
@@ -169,13 +175,15 @@ def imposed_as_read(
 def core_motion(
     rig: Rig, run: Run, motion: ImposedMotion, before: tuple[float, float] | None = None
 ) -> Driven:
-    """A run's motion and load, handed to the core; a law in newtons does not ask for the load.
+    """Convert the motion and load of a run to the form of the core.
+
+    A law in newtons does not use the load.
 
     Parameters
     ----------
     before
-        An imagined motion before the run: its constant speed, as a share of the run's largest, in
-        the direction in which the run first moves, and how long it lasts, s.
+        A hypothetical motion before the run: its constant speed, as a share of the largest speed of
+        the run, in the direction of the first motion, and its duration, s.
     """
     recorded = recorded_load(rig, run)
     if recorded is not None:
@@ -204,13 +212,13 @@ def core_motion(
             np.ascontiguousarray(columns["load_n"]),
             None if celsius is None else np.ascontiguousarray(columns["temperature_c"]),
         )
-    # What effects of one's own see: the record, its motion as the models are driven with it.
+    # User-defined effects see the record with the motion that drives the models.
     made.columns = columns
     return Driven(made, kept)
 
 
 def _from_rest(run: Run, velocity_m_s: Array) -> Array:
-    """The speed, m/s, at rest at first where it only hums there."""
+    """Speed, m/s, with the first sample at rest if the run begins with noise at standstill."""
     if not begins_in_a_hum(run.time_s, velocity_m_s):
         return velocity_m_s
     return np.concatenate(([0.0], velocity_m_s[1:]))
@@ -219,7 +227,7 @@ def _from_rest(run: Run, velocity_m_s: Array) -> Array:
 def _with_motion_before(
     columns: dict[str, Array], rig: Rig, share: float, duration_s: float
 ) -> tuple[int, dict[str, Array]]:
-    """How many samples of an imagined motion, and the columns with it before them."""
+    """Number of samples of a hypothetical motion, and the columns with it prepended."""
     speed, time = columns["velocity_m_s"], columns["time_s"]
     step_s = float(np.median(np.diff(time)))
     count = int(duration_s / step_s)
@@ -237,7 +245,7 @@ def _with_motion_before(
 
 
 def warn_of_fast_film(core: DrivenChain, values: Array, motions: Sequence[Driven]) -> None:
-    """Say it where a prediction does not follow the film."""
+    """Warn if a prediction does not follow the film."""
     rate = core.film_rate_1_s(values, motions)
     if rate > _core.FASTEST_FILM_1_S:
         warnings.warn(

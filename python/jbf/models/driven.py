@@ -1,5 +1,8 @@
-"""A chain driven along runs: the core may be given more instants than a run has samples (those of
-an imagined motion before it); readings are given at the samples alone."""
+"""A signal chain driven along runs.
+
+The core may receive more instants than a run has samples, such as those of a hypothetical motion
+before it. Readings are returned at the samples only.
+"""
 
 from __future__ import annotations
 
@@ -17,18 +20,18 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Driven:
-    """A motion as the core takes it; `kept` are the places of the run's samples in it."""
+    """A motion in the form of the core; `kept` are the indices of the samples of the run in it."""
 
     motion: _core.Motion
     kept: npt.NDArray[np.intp] | None = None
 
     def at_samples(self, values: Array) -> Array:
-        """Values at the instants of the core, at the samples."""
+        """Select the values at the samples from those at the instants of the core."""
         return values if self.kept is None else np.ascontiguousarray(values[self.kept])
 
 
 class DrivenChain:
-    """A chain of the core, or one with effects of one's own, along driven motions."""
+    """A chain of the core, or one with user-defined effects, along driven motions."""
 
     def __init__(self, core: _core.Chain | OwnChain) -> None:
         self.core = core
@@ -39,7 +42,7 @@ class DrivenChain:
         return self.core.parameter_names
 
     def predict(self, parameters: Array, driven: Sequence[Driven]) -> list[Array]:
-        """Friction readings, N, one array a run."""
+        """Friction readings, N, one array per run."""
         found = self.core.predict(parameters, [d.motion for d in driven])
         return [d.at_samples(f) for d, f in zip(driven, found, strict=True)]
 
@@ -51,9 +54,9 @@ class DrivenChain:
         return [(d.at_samples(f), d.at_samples(j)) for d, (f, j) in zip(driven, rows, strict=True)]
 
     def inner_steps(self, parameters: Array, driven: Sequence[Driven]) -> float:
-        """How many inner steps a prediction takes."""
+        """Number of inner steps of a prediction."""
         return self.core.inner_steps(parameters, [d.motion for d in driven])
 
     def film_rate_1_s(self, parameters: Array, driven: Sequence[Driven]) -> float:
-        """Fastest rate of the law's film, 1/s."""
+        """Fastest rate of the film of the law, 1/s."""
         return self.core.film_rate_1_s(parameters, [d.motion for d in driven])

@@ -1,7 +1,7 @@
-"""A run's motion as the core takes it: between the samples, too, where friction jumps.
+"""The motion of a run for the core, with additional instants where friction jumps.
 
-A motion sets in, and ends, between two samples: when, its acceleration tells, and a step of the
-core ends there.
+A motion starts and ends between two samples. The instant follows from its acceleration, and a step
+of the core ends there.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 
 INSIDE = 1e-3
-"""Share of a step that an instant must be off both its ends."""
+"""Least distance of an additional instant from both samples, as a share of the step."""
 LONGEST_S = 1.0
-"""No instant of a reversal is less sure than that, s."""
+"""Largest standard error of the instant of a reversal, s."""
 
 
 @dataclass(frozen=True)
 class Reversals:
-    """Where a motion changes its sign, sets in or ends.
+    """Instants at which a motion reverses, starts or stops.
 
     Attributes
     ----------
@@ -37,9 +37,9 @@ class Reversals:
     sd_s
         Their standard errors, s.
     between
-        True for those at which the motion sets in or ends between two samples.
+        True where the motion starts or stops between two samples.
     interval
-        The samples before them.
+        Indices of the samples before them.
     """
 
     at_s: Array
@@ -49,17 +49,19 @@ class Reversals:
 
 
 def driven_motion(rig: Rig, run: Run, motion: ImposedMotion) -> Driven:
-    """A run's motion for the core."""
+    """Convert the motion of a run to the form of the core."""
     return with_instants(rig, run, motion, np.zeros(0))[1]
 
 
 def with_instants(rig: Rig, run: Run, motion: ImposedMotion, more_s: Array) -> tuple[Array, Driven]:
-    """A run's motion for the core, at more instants; and all instants of the core, s.
+    """Convert the motion of a run to the form of the core, with additional instants.
+
+    Also returns all instants of the core, s.
 
     Parameters
     ----------
     more_s
-        Instants beside the run's, s: the speed there lies on straight lines.
+        Instants in addition to those of the run, s; the speed is interpolated linearly there.
     """
     time, v = run.time_s, motion.velocity_m_s
     turns = reversals(time, motion)
@@ -76,7 +78,7 @@ def with_instants(rig: Rig, run: Run, motion: ImposedMotion, more_s: Array) -> t
     whole, first = np.unique(np.concatenate([time, new[inside]]), return_index=True)
     velocity = np.concatenate([v, speed[inside]])[first]
     if run.load_n is not None:
-        # Lines drawn through its noise would not be white any more.
+        # After interpolation the noise of the load would no longer be white.
         run = replace(run, load_n=steady_load(run.load_n))
     before = np.searchsorted(time, whole, side="right") - 1
     there = replace(
@@ -94,8 +96,10 @@ def with_instants(rig: Rig, run: Run, motion: ImposedMotion, more_s: Array) -> t
 
 
 def reversals(time_s: Array, motion: ImposedMotion) -> Reversals:
-    """Where a motion changes its sign, sets in or ends: an error of the speed is one of the instant
-    by the acceleration."""
+    """Find where a motion reverses, starts or stops.
+
+    The error of an instant is the error of the speed divided by the acceleration.
+    """
     v, a = motion.velocity_m_s, motion.acceleration_m_s2
     k = np.flatnonzero(np.sign(v[:-1]) != np.sign(v[1:]))
     t0, t1, v0, v1 = time_s[k], time_s[k + 1], v[k], v[k + 1]

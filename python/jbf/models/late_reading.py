@@ -1,9 +1,9 @@
-"""A chain read at an earlier instant than it is recorded: the reading of a force that is late.
+"""Readings of a force with a time delay: a chain that is read earlier than it is recorded.
 
-The motion is smooth and the force is not: a delay is exact where the time is shifted at which the
-chain is read, and lines drawn through the force are not. A sample close to a reversal is read on
-one side of it or on the other: on which one, the errors of the reversal's instant and of the delay
-leave open. What is expected of it is the mean of both, and likely is either.
+The motion is smooth, but the force has jumps. The delay is therefore exact if it shifts the
+instants at which the chain is read; interpolation of the force is not exact. A sample close to a
+reversal is read on one side of it or on the other. The errors of the instant of the reversal and of
+the delay leave open on which side. The expected value is a weighted mean of both sides.
 """
 
 from __future__ import annotations
@@ -28,20 +28,19 @@ DELAY = "time_delay"
 TAU = "time_delay.tau_s"
 DRIFT = "sensor_drift.d_n_s"
 BESIDE = 1e-3
-"""Share of a step on either side of a jump at which the force is read."""
+"""Distance from a jump, as a share of a step, at which the force on either side is read."""
 
 
 @dataclass(frozen=True)
 class LateReading:
-    """Readings of a late force; all arrays of shape (n,).
+    """Readings of a delayed force; all arrays of shape (n,).
 
     Attributes
     ----------
     before_n, after_n
-        Readings if the nearest jump was still to come, and if it was over, N; the same where none
-        is near.
+        Readings before and after the nearest jump, N; equal if no jump is near.
     over
-        Probability that it was over.
+        Probability that the jump has occurred.
     """
 
     before_n: Array
@@ -50,19 +49,21 @@ class LateReading:
 
     @property
     def mean_n(self) -> Array:
-        """What is expected, N."""
+        """Expected value, N."""
         return self.over * self.after_n + (1.0 - self.over) * self.before_n
 
 
 class LateChain:
-    """A law with effects whose friction is recorded late, without its delay.
+    """A law with effects whose friction is recorded with a time delay.
+
+    The chain itself excludes the delay.
 
     Parameters
     ----------
     effects
-        `time_delay` among them.
+        Names of the effects, including `time_delay`.
     names
-        Of the parameters, in the order in which their values will be given.
+        Names of the parameters, in the order in which their values are passed.
     """
 
     def __init__(
@@ -77,22 +78,22 @@ class LateChain:
     def read(
         self, values: Array, run: Run, instants_s: Array, motion: ImposedMotion, sd_s: float
     ) -> LateReading:
-        """The readings of a run.
+        """Compute the readings of a run.
 
         Parameters
         ----------
         values
-            Parameter values, the delay's among them.
+            Parameter values, including that of the delay.
         instants_s, motion
-            The motion, and the instants at which it was read.
+            The motion, and the instants at which it was sampled, s.
         sd_s
             Standard error of the delay, s.
         """
-        # Here, so that a model alone waits for no heavy import.
+        # Imported here, so that a model without a delay does not load scipy.
         from scipy.special import ndtr
 
         tau_s = float(values[self.tau])
-        # Before the run the force is taken to have been what it is at its start.
+        # Before the run, the force is assumed to equal that at its start.
         read_s = np.maximum(run.time_s - tau_s, instants_s[0])
         there = np.unique(np.append(read_s, instants_s[0]))
         late = run.at(there, np.zeros(len(there)))
@@ -104,7 +105,7 @@ class LateChain:
         force = self.chain.predict(values[self.kept], [Driven(driven.motion)])[0]
         found = force[np.searchsorted(whole, read_s)]
         if self.drift is not None:
-            # The cell drifts by its own clock, after the delay.
+            # The sensor drifts with the time of the record, after the delay.
             found = found + values[self.drift] * tau_s
         before, after, over = found, found, np.ones(len(found))
         if len(turns.at_s):
@@ -119,6 +120,6 @@ class LateChain:
 
 
 def _nearest(places: Array, instants: Array) -> npt.NDArray[np.intp]:
-    """The nearest of some places, in order, to each instant."""
+    """Index of the nearest of some sorted instants to each instant."""
     middles = 0.5 * (places[1:] + places[:-1])
     return np.searchsorted(middles, instants)

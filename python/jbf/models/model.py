@@ -1,4 +1,4 @@
-"""A model: a rig, a law, effects and their parameters. It predicts; it does not fit."""
+"""A model for prediction: a rig, a law, effects and their parameters."""
 
 from __future__ import annotations
 
@@ -51,28 +51,29 @@ NONE: Mapping[str, Any] = MappingProxyType({})
 
 @dataclass(frozen=True, init=False, repr=False)
 class Model(Shown):
-    """A law with effects, ready to predict.
+    """A law with effects, for prediction.
 
     Parameters
     ----------
     rig
-        Bearing, lubricant and load; `Rig()` will do for a law in newtons.
+        Bearing, lubricant and load; `Rig()` is sufficient for a law in newtons.
     law
         Name of the base law (`jbf.laws()`).
     effects
         Names of effects, in any order; they act in the order of the signal chain.
     parameters
-        Dotted name (`f_m`, `presliding.sigma_1_m`; the unit may be left off) to a value, or to a
-        value with its error. The law's missing ones take the catalogue's starting value; those
-        of effects their null, or the starting value where they have none.
+        Dotted name (`f_m`, `presliding.sigma_1_m`; the unit may be omitted) to a value, or to a
+        value with its error. Missing parameters of the law take the starting value of the
+        catalogue. Those of effects take their null value, or the starting value if they have no
+        null.
     clock
         `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s).
 
     Raises
     ------
     InputError
-        An unknown name, a value out of bounds, a rig without what the law needs, or an effect
-        that does not go with the law.
+        A name is unknown, a value is out of bounds, the rig lacks a section that the law needs, or
+        an effect cannot be combined with the law.
     """
 
     rig: Rig
@@ -82,7 +83,7 @@ class Model(Shown):
     clock: Clock
     fit: Mapping[str, float | int | str]
 
-    # Written out, because it takes what the attributes do not hold: effects in any order, bare
+    # Explicit, because the arguments differ from the attributes: effects in any order, plain
     # numbers, parameters without their unit.
     def __init__(
         self,
@@ -126,22 +127,23 @@ class Model(Shown):
 
     @property
     def values(self) -> Array:
-        """Parameter values in the core's order, shape (k,)."""
+        """Parameter values in the order of the core, shape (k,)."""
         return np.array([p.value for p in self.parameters.values()])
 
     def predict(self, run: Run) -> Array:
-        """Friction reading of one bearing under the run's motion, N, shape (n,).
+        """Predict the friction reading of one bearing for the motion of a run, N, shape (n,).
 
-        Of a model with `time_delay` a sample close to a reversal reads the mean of what comes
-        before it and after it, weighed by the errors of the reversal's instant and of the delay.
+        With `time_delay`, a sample close to a reversal is the weighted mean of the values before
+        and after it. The weights follow from the errors of the instant of the reversal and of the
+        delay.
 
-        Warns (:class:`jbf.FilmWarning`) where the film is faster than 28,000 1/s: that is held
-        inside the bearing, and the friction is not to be relied on.
+        Warns (:class:`jbf.FilmWarning`) if the film is faster than 28,000 1/s. It is then held
+        inside the bearing, and the friction is not reliable.
         """
         return self.predict_many([one_run(run)])[0]
 
     def predict_many(self, runs: Iterable[Run]) -> list[Array]:
-        """`predict` for several runs, on all cores."""
+        """Predict several runs as `predict` does, on all cores."""
         runs = list_of_runs(runs)
         for run in runs:
             self.require_columns(run)
@@ -155,26 +157,32 @@ class Model(Shown):
 
     @property
     def delay(self) -> ParameterValue | None:
-        """How late the record of the force is, s; None where it is not."""
+        """Time delay of the recorded force, s; None without a delay."""
         tau = self.parameters.get(TAU)
         return None if tau is None or tau.value <= 0.0 else tau
 
     def predict_late(self, read: Iterable[tuple[Run, Array, ImposedMotion]]) -> list[Array]:
-        """Readings of a force that is recorded late, N, one array a run: runs, the instants at
-        which their motion was read, s, and that motion."""
+        """Predict the readings of a delayed force, N, one array per run.
+
+        Parameters
+        ----------
+        read
+            For each run: the run, the instants at which its motion was sampled, s, and the motion.
+        """
         assert self.delay is not None
         sd_s = self.delay.stderr or 0.0
         late = LateChain(self.rig, self.law, self.clock, self.effects, list(self.parameters))
         return [late.read(self.values, *one, sd_s).mean_n for one in read]
 
     def require_columns(self, run: Run) -> None:
-        """An InputError where a run lacks a column that an effect of this model needs."""
+        """Raise an InputError if a run lacks a column that an effect of this model needs."""
         require_record(self.rig, run, self.effects)
 
     def steady_friction(self, velocity_m_s: npt.ArrayLike) -> Array:
         """Steady friction force of the bare law (the Stribeck curve), N.
 
-        Speeds (m/s) of shape (n,), none of them zero; under the rig's load where the law needs one.
+        The speeds (m/s) have shape (n,), none of them zero. The load is that of the rig if the law
+        needs one.
         """
         page = find_law(self.law)
         count = len(page.parameters)
@@ -191,15 +199,17 @@ class Model(Shown):
             )
 
     def told_units(self) -> dict[str, dict[str, str]]:
-        """For JSON: `units` of a rig with a drive, whose keys name newtons and metres whatever it
-        is; empty of any other."""
+        """Units for JSON if the rig has a drive, because the keys always name newtons and metres.
+
+        The dict is empty for any other rig.
+        """
         said = self.rig.quantities
         return {} if self.rig.drive is None else {"units": said.to_dict()}
 
     def told_parameters(
         self, parameters: Mapping[str, ParameterValue]
     ) -> dict[str, dict[str, float | str | bool | None]]:
-        """For JSON: each parameter, of a rig with a drive with its `unit`."""
+        """Parameters for JSON, with their `unit` if the rig has a drive."""
         units = shown(self.law, self.effects, self.rig.quantities)
         return {
             name: p.to_dict() | ({} if self.rig.drive is None else {"unit": units[name][1]})
@@ -217,7 +227,7 @@ class Model(Shown):
         )
 
     def to_toml(self) -> str:
-        """The text that `save` writes."""
+        """Return the text that `save` writes."""
         return model_file_text(self._file())
 
     def save(self, path: PathLike) -> None:
@@ -231,7 +241,7 @@ class Model(Shown):
         Raises
         ------
         InputError
-            Names the file, the key and the mend.
+            The message names the file, the key and the remedy.
         """
         file = read_model_file(path, vocabulary())
         try:
@@ -242,7 +252,7 @@ class Model(Shown):
 
 
 def the_model(given: object) -> Model:
-    """A model; an InputError says how to come by one."""
+    """Return the value if it is a model; otherwise raise an InputError with a remedy."""
     mend = "give a jbf.Model"
     if isinstance(given, str | os.PathLike):
         mend = f"read it: jbf.Model.load({quoted(os.fspath(given))})"
@@ -252,7 +262,7 @@ def the_model(given: object) -> Model:
 
 
 def _with_error(name: str, value: float | ParameterValue) -> ParameterValue:
-    """A parameter as it is kept, also where a bare number was given."""
+    """Convert a plain number to a ParameterValue; return a ParameterValue unchanged."""
     if isinstance(value, ParameterValue):
         return value
     try:

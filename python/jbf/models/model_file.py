@@ -36,7 +36,7 @@ over the unit of the motion (F_v_n_s_m is in {viscous}, m_e_kg in {inertia})."""
 
 
 def _units_note(quantities: Quantities) -> str:
-    """What the units in the names of parameters mean; empty where they are true."""
+    """Note on the units in the names of parameters; empty if they are true."""
     if quantities.force == "V":
         return _BY_VOLTAGE.format(viscous=quantities.unit("N s/m"), inertia=quantities.unit("kg"))
     return _TURNING if quantities.motion == "rotary" else ""
@@ -64,7 +64,7 @@ def _parameter(entry: object, key: str) -> ParameterValue:
 def _parameters(content: Mapping[str, Any], effects: Collection[str]) -> dict[str, ParameterValue]:
     found = {}
     for name, entry in content.items():
-        # A table of tables is an effect's, also where the list of effects forgot it.
+        # A table of tables belongs to an effect, even if the list of effects omits it.
         inner = isinstance(entry, Mapping) and entry and not _FIELDS & set(entry)
         if name in effects or inner:
             for short, value in table(entry, f"parameters.{name}").items():
@@ -94,12 +94,12 @@ def _from_mapping(content: Mapping[str, Any]) -> ModelFile:
 
 
 def read_model_file(path: PathLike, vocabulary: Vocabulary | None = None) -> ModelFile:
-    """Read a model file; names and bounds are checked when a vocabulary is given.
+    """Read a model file; names and bounds are checked if a vocabulary is given.
 
     Raises
     ------
     InputError
-        The file is not TOML or not a model; the message names file, key and the mend.
+        The file is not TOML or not a model; the message names file, key and remedy.
     """
     try:
         model = _from_mapping(read_toml(path))
@@ -132,7 +132,7 @@ def _parameters_table(model: ModelFile) -> Table:
 
 
 def model_file_text(model: ModelFile) -> str:
-    """A model as the text of its file; reading it gives an equal model."""
+    """Return a model as the text of its file; reading the text gives an equal model."""
     document = tomlkit.document()
     for line in _HEADER.splitlines():
         document.add(tomlkit.comment(line))
@@ -152,7 +152,7 @@ def model_file_text(model: ModelFile) -> str:
 
 
 def write_model_file(path: PathLike, model: ModelFile) -> None:
-    """Write a model file, whole or not at all.
+    """Write a model file atomically.
 
     Raises
     ------

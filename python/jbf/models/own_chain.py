@@ -1,9 +1,10 @@
-"""The core's chain with effects, or a law, of one's own beside it.
+"""The chain of the core with user-defined effects, or a user-defined law.
 
-A force beside the bearing's passes through the instrument. Where its effects are linear in the
-force, what they make of the bearing's force and of this one adds up; where one bends (`BENDING`),
-this one comes on top of the bearing's. So does a law of one's own: the core's chain then carries
-the effects, round a law that is held at next to nothing.
+A user-defined force in addition to that of the bearing passes through the instrument. If its
+effects are linear in the force, their responses to both forces add. If one is nonlinear
+(`BENDING`), the additional force is superposed on that of the bearing before the instrument. A
+user-defined law is treated likewise: the chain of the core then carries the effects, with a law
+that is held at nearly zero.
 """
 
 from __future__ import annotations
@@ -20,34 +21,34 @@ from jbf.models.own_effects import OwnEffect
 Array = npt.NDArray[np.float64]
 
 BENDING = ("sensor_hysteresis", "sensor_nonlinearity")
-"""Effects of the instrument whose reading of two forces is not the sum of their readings."""
+"""Effects of the instrument that are nonlinear: their response to a sum is not the sum."""
 SMALL = 1e-6
-"""The step of a difference along a slope, as a share of the largest force."""
+"""Step of a directional difference quotient, as a share of the largest force."""
 
 
 Read = tuple[Array, Array]
-"""A reading, and its derivatives by the instrument's parameters, shape (n, parameters)."""
+"""A reading, and its derivatives by the parameters of the instrument, shape (n, parameters)."""
 
 
 class OwnChain:
-    """As `_core.Chain`, with effects of one's own after the catalogue's.
+    """Chain with the interface of `_core.Chain`, and user-defined effects after the others.
 
     Parameters
     ----------
     core
         The chain without them.
     instrument
-        Names of the instrument's effects in it, each with the places of its parameters.
+        Names of the effects of the instrument in it, each with the indices of its parameters.
     own
-        The effects of one's own; their parameters follow those of the core.
+        The user-defined effects; their parameters follow those of the core.
     law
-        A law of one's own; its parameters come first, and the core's law has none.
+        A user-defined law; its parameters come first, and those of the law of the core are omitted.
     held
-        What the parameters of the core's law are held at, where there is a law of one's own.
+        Values of the parameters of the law of the core, if there is a user-defined law.
     carrier
-        The core's law alone, then.
+        The law of the core without effects, in that case.
     bare
-        The core's chain without the instrument, where that has an effect of `BENDING`.
+        The chain of the core without the instrument, if that has an effect of `BENDING`.
     """
 
     def __init__(
@@ -82,16 +83,16 @@ class OwnChain:
         return [*first, *self.core.parameter_names[len(self.held) :], *theirs]
 
     def predict(self, parameters: Array, motions: Sequence[_core.Motion]) -> list[Array]:
-        """Friction readings, N, one array a run."""
+        """Friction readings, N, one array per run."""
         inner = self.core.predict(self._inner(parameters), motions)
         return [f + self._added(parameters, m)[0] for f, m in zip(inner, motions, strict=True)]
 
     def film_rate_1_s(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
-        """Fastest rate of the law's film, 1/s."""
+        """Fastest rate of the film of the law, 1/s."""
         return self.core.film_rate_1_s(self._inner(parameters), motions)
 
     def inner_steps(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
-        """How many inner steps a prediction takes."""
+        """Number of inner steps of a prediction."""
         return self.core.inner_steps(self._inner(parameters), motions)
 
     def jacobian(
@@ -125,7 +126,10 @@ class OwnChain:
         return found
 
     def _added(self, parameters: Array, motion: _core.Motion) -> tuple[Array, dict[int, Array]]:
-        """What one's own effects add to the reading, and how that hangs on the instrument."""
+        """Contribution of user-defined effects to the reading.
+
+        Also returns its derivatives by the parameters of the instrument, by their index.
+        """
         beside, beyond = self._own_forces(parameters, motion)
         if not self.instrument:
             return beside + beyond, {}
@@ -136,7 +140,7 @@ class OwnChain:
         return loaded[0] - empty[0] + beyond, by_place
 
     def _own_forces(self, parameters: Array, motion: _core.Motion) -> tuple[Array, Array]:
-        """What one's own effects add before the instrument and after it, N."""
+        """Forces of the user-defined effects before the instrument and after it, N."""
         n = len(motion.columns["time_s"])
         beside, beyond = np.zeros(n), np.zeros(n)
         for i, effect in enumerate(self.own):
@@ -146,7 +150,7 @@ class OwnChain:
             else:
                 beside += force
         if self.law is not None:
-            # What the core's law has at its bounds is not the law's.
+            # Subtract the small force of the law of the core at its bounds.
             assert self.carrier is not None
             beside -= self.carrier.predict(self.held, [motion])[0]
         return beside, beyond
@@ -164,8 +168,10 @@ class OwnChain:
         return self._along(parameters, motion, self._borne(parameters, motion) + beside, slope)
 
     def _read(self, parameters: Array, motion: _core.Motion, force: Array) -> tuple[Read, Read]:
-        """What the instrument makes of a force on top of the bearing's, and of that alone; of none
-        where the instrument is linear."""
+        """Instrument readings of a force added to that of the bearing, and of the latter alone.
+
+        The force of the bearing is taken as zero if the instrument is linear.
+        """
         borne = self._borne(parameters, motion)
         return (
             self._through(parameters, motion, borne + force),
@@ -173,26 +179,26 @@ class OwnChain:
         )
 
     def _through(self, parameters: Array, motion: _core.Motion, force: Array) -> Read:
-        """What the instrument makes of a force, and the derivatives by its parameters."""
+        """Instrument reading of a force, and its derivatives by the instrument parameters."""
         effects = [(name, parameters[list(places)].tolist()) for name, places in self.instrument]
         time = np.ascontiguousarray(motion.columns["time_s"])
         return _core.read_force(effects, time, np.ascontiguousarray(force))
 
     def _borne(self, parameters: Array, motion: _core.Motion) -> Array:
-        """The bearing's force, N, where the instrument bends; else none."""
+        """Force of the bearing, N, if the instrument is nonlinear; otherwise zeros."""
         if self.bare is None:
             return np.zeros(len(motion.columns["time_s"]))
         found: Array = self.bare.predict(self._before_the_cell(parameters), [motion])[0]
         return found
 
     def _before_the_cell(self, parameters: Array) -> Array:
-        """The parameters of the core's chain but for the instrument's."""
+        """Parameters of the chain of the core without those of the instrument."""
         instrument = {place for _, places in self.instrument for place in places}
         kept = [place for place in self.of_core if place not in instrument]
         return np.ascontiguousarray(np.concatenate((self.held, parameters[kept])))
 
     def _along(self, parameters: Array, motion: _core.Motion, force: Array, slope: Array) -> Array:
-        """The reading's derivative where the force goes along a slope."""
+        """Directional derivative of the reading for a change of the force along `slope`."""
         largest = float(np.max(np.abs(slope)))
         if largest == 0.0:
             return slope
@@ -206,8 +212,11 @@ class OwnChain:
     def _bent(
         self, parameters: Array, motion: _core.Motion, which: Sequence[int]
     ) -> dict[int, Array]:
-        """How the bearing's part of the reading changes its derivatives by the core's parameters
-        under one's own force: none where the instrument is linear."""
+        """Change of the derivatives by the parameters of the core due to the user-defined force.
+
+        It is the nonlinear interaction of both forces in the instrument, and empty if that is
+        linear.
+        """
         if self.bare is None:
             return {}
         instrument = {place for _, places in self.instrument for place in places}

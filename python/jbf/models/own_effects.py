@@ -1,4 +1,4 @@
-"""Effects of one's own: a function of recorded columns, beside those of the catalogue.
+"""User-defined effects: a function of recorded columns, in addition to those of the catalogue.
 
 >>> import numpy as np
 >>> import jbf
@@ -32,35 +32,38 @@ from jbf.records.run import PathLike
 Array = npt.NDArray[np.float64]
 
 ALWAYS = ("time_s", "velocity_m_s", "acceleration_m_s2", "load_n")
-"""Columns that every run has: recorded, estimated, or the rig's."""
+"""Columns that every run has: recorded, estimated, or from the rig."""
 STAGES: dict[str, Stage] = {"other": "other friction", "instrument": "instrument"}
 AGREEMENT = 1e-5
-"""A complex step that differs from a difference quotient by more than this share is not one."""
+"""Largest relative difference between a complex step and a difference quotient.
+
+With a larger one, the complex step is not used.
+"""
 
 
 @dataclass(frozen=True, repr=False)
 class OwnEffect(Effect):
-    """An effect of one's own: its page, and the function behind it."""
+    """A user-defined effect: its catalogue page and its function."""
 
     function: Callable[..., Any] = field(default=lambda: 0.0, compare=False)
     analytic: dict[str, bool] = field(default_factory=dict, compare=False)
     called: str = "effect"
 
     def force(self, columns: Mapping[str, Array], values: Sequence[float]) -> Array:
-        """The force at every sample, N, shape (n,).
+        """Force at every sample, N, shape (n,).
 
         Raises
         ------
         InputError
-            The function fails, or gives something else than n finite numbers.
+            The function fails, or does not return n finite numbers.
         """
         return self._checked(self._call(columns, values), len(columns["time_s"]), values)
 
     def slope(self, columns: Mapping[str, Array], values: Sequence[float], which: int) -> Array:
         """Derivative of the force with respect to parameter number `which`, shape (n,).
 
-        By a complex step where the function is one of complex numbers, else by differences of
-        the fourth order that stay within the bounds.
+        By a complex step if the function accepts complex numbers, otherwise by differences of the
+        fourth order that stay within the bounds.
         """
         page = self.parameters[which]
         if self.analytic.get(page.name) is None:
@@ -68,7 +71,7 @@ class OwnEffect(Effect):
             step = self._complex_step(columns, values, which)
             top = float(np.max(np.abs(quotient), initial=0.0))
             good = step is not None and float(np.max(np.abs(step - quotient))) <= AGREEMENT * top
-            if top > 0.0:  # where it does nothing, nothing is learnt of it
+            if top > 0.0:  # a zero derivative gives no information
                 self.analytic[page.name] = good
             return quotient if step is None or not good else step
         if self.analytic[page.name]:
@@ -86,7 +89,7 @@ class OwnEffect(Effect):
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(self.function(**self._arguments(columns, moved)))
-        except Exception:  # whatever a function of real numbers says to a complex one
+        except Exception:  # any error of a function of real numbers with a complex argument
             return None
         if found.dtype.kind != "c":
             return None
@@ -165,36 +168,35 @@ def register_effect(
     source: str = "",
     limits: str = "",
 ) -> Effect:
-    """Put an effect of your own beside those of the catalogue.
+    """Register a user-defined effect.
 
     It then takes part in fits, comparisons, predictions, diagnoses and `jbf.effects()` under its
-    name, until the process ends; a second effect of that name takes the first one's place.
+    name, until the process ends. A second effect of the same name replaces the first one.
 
     Parameters
     ----------
     function
-        Gives the force of one bearing, N, at every sample: shape (n,), or a number. Its arguments
-        are found by name: `time_s` (s), `velocity_m_s` (signed), `acceleration_m_s2`, `angle_rad`,
-        `load_n`, `position_m`, `temperature_c`, any other column of the records, arrays of shape
-        (n,), and the parameters, numbers. Speed, acceleration and angle are the smooth estimates
-        that the models are driven with. It is not told where one run ends and the next begins:
-        it is called for each run alone.
+        Returns the force of one bearing, N, at every sample: shape (n,), or a number. Its arguments
+        are identified by name. Columns are arrays of shape (n,): `time_s` (s), `velocity_m_s`
+        (signed), `acceleration_m_s2`, `angle_rad`, `load_n`, `position_m`, `temperature_c`, or any
+        other column of the records. Parameters are numbers. Speed, acceleration and angle are the
+        smooth estimates that drive the models. The function is called for each run separately.
     parameters
-        Named, bounded parameters with starting values; one of them at least with a finite null
-        at which the force vanishes.
+        Named, bounded parameters with starting values; at least one of them with a finite null at
+        which the force vanishes.
     name
-        Its name; that of the function by default.
+        Name of the effect; by default that of the function.
     stage
-        `other`: friction beside the bearing's, which the instrument sees with its lag and delay.
-        `instrument`: added to the record as it is.
+        `other`: friction in addition to that of the bearing, to which the lag and delay of the
+        instrument apply. `instrument`: added to the record directly.
     summary, equation, source, limits
-        For `jbf effects NAME`.
+        Texts for `jbf effects NAME`.
 
     Raises
     ------
     InputError
-        A name that is taken or no identifier, an unknown stage, a parameter without bounds, start
-        or null, or an argument of the function that is neither parameter nor column name.
+        A name is taken or not an identifier, the stage is unknown, a parameter lacks bounds, start
+        or null, or an argument of the function is neither a parameter nor a column name.
     """
     own = name if name is not None else function.__name__
     pages = tuple(parameters)
@@ -236,13 +238,13 @@ def register_effect(
 
 
 def forget_effect(name: str) -> None:
-    """Take an effect of your own out again; an InputError names one that is not there."""
+    """Unregister a user-defined effect; an InputError names one that is not registered."""
     if not catalogue.drop(name):
         raise InputError(problem=f"{quoted(name)} is no effect of your own", mend="check the name")
 
 
 def check_pages(pages: Sequence[Parameter], wrong: Callable[[str, str], InputError]) -> None:
-    """An error by `wrong` where a parameter has no proper name, bounds or start."""
+    """Raise the error of `wrong` if a parameter lacks a valid name, bounds or start."""
     names = [p.name for p in pages]
     if len(set(names)) < len(names):
         raise wrong("has two parameters of one name", "rename one")
@@ -269,7 +271,7 @@ def columns_of(
     pages: Sequence[Parameter],
     wrong: Callable[[str, str], InputError],
 ) -> tuple[str, ...]:
-    """The arguments that are columns."""
+    """Return the arguments of the function that are columns."""
     kinds = inspect.Parameter
     names = {p.name for p in pages}
     found = []
@@ -287,7 +289,7 @@ def columns_of(
 
 
 def load_effects(path: PathLike) -> None:
-    """Run a Python file that registers effects or laws; the file can do anything that you can.
+    """Run a Python file that registers effects or laws, with all permissions of the user.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Laws of one's own: a function of recorded columns in the place of a law of the catalogue.
+"""User-defined laws: a function of recorded columns that replaces a law of the catalogue.
 
 >>> import numpy as np
 >>> import jbf
@@ -37,12 +37,12 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, repr=False)
 class OwnLaw(Law):
-    """A law of one's own: its page, and the force behind it."""
+    """A user-defined law: its catalogue page and its force."""
 
     force: OwnEffect | None = None
 
     def steady_n(self, velocity_m_s: Array, values: Sequence[float], load_n: float | None) -> Array:
-        """The force at steady speeds, N, where it asks for nothing but speed, load and time."""
+        """Force at steady speeds, N, for a law that depends on speed, load and time only."""
         assert self.force is not None
         zero = np.zeros_like(velocity_m_s)
         columns = {"time_s": zero, "velocity_m_s": velocity_m_s, "acceleration_m_s2": zero}
@@ -61,31 +61,32 @@ def register_law(
     source: str = "",
     limits: str = "",
 ) -> Law:
-    """Put a law of your own beside those of the catalogue, for machines without a journal bearing.
+    """Register a user-defined law, for machines without a journal bearing.
 
-    It then has its name everywhere (`law=`, `--law`, `--law auto`, model files) until the process
-    ends; a second law of that name takes the first one's place. The effects that add to a law's
-    force or act on the sum (the stages `other friction` and `instrument`) go with it.
+    It is then available under its name (`law=`, `--law`, `--law auto`, model files) until the
+    process ends. A second law of the same name replaces the first one. Effects that add to the
+    force of a law or act on the sum (the stages `other friction` and `instrument`) can be combined
+    with it.
 
     Parameters
     ----------
     function
-        Gives the friction force, N, at every sample, shape (n,), signed as the motion is. Its
-        arguments are found by name, as those of `register_effect`: columns, arrays of shape (n,),
-        and the parameters, numbers. It is called for each run alone; a law with a state can be
-        computed from the whole arrays.
+        Returns the friction force, N, at every sample, shape (n,), with the sign of the motion. Its
+        arguments are identified by name, as those of `register_effect`: columns, arrays of shape
+        (n,), and the parameters, numbers. It is called for each run separately; a law with a state
+        can be computed from the complete arrays.
     parameters
-        Named, bounded parameters with starting values; none needs a null.
+        Named, bounded parameters with starting values; a null is not required.
     name
-        Its name; that of the function by default.
+        Name of the law; by default that of the function.
     summary, equation, source, limits
-        For `jbf effects` and reports.
+        Texts for `jbf effects` and reports.
 
     Raises
     ------
     InputError
-        A name that is taken or no identifier, a parameter without bounds or start, or an argument
-        of the function that is neither parameter nor column name.
+        A name is taken or not an identifier, a parameter lacks bounds or start, or an argument of
+        the function is neither a parameter nor a column name.
     """
     own = name if name is not None else function.__name__
     pages = tuple(parameters)
@@ -137,6 +138,6 @@ def register_law(
 
 
 def forget_law(name: str) -> None:
-    """Take a law of your own out again; an InputError names one that is not there."""
+    """Unregister a user-defined law; an InputError names one that is not registered."""
     if not catalogue.drop_law(name):
         raise InputError(problem=f"{quoted(name)} is no law of your own", mend="check the name")

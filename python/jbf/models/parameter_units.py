@@ -1,8 +1,8 @@
-"""Names and units of parameters as a rig's own quantities have them.
+"""Names and units of parameters in the quantities of a rig.
 
-A parameter's name in files and in Python carries the catalogue's unit, in newtons and metres. Where
-the rig's unit is another, people are shown the name without it (as `jbf.Fit` and `--fix` take it)
-and the unit beside it.
+The name of a parameter in files and in Python carries the unit of the catalogue, in newtons and
+metres. If the unit of the rig differs, the displayed name omits the unit (as `jbf.Fit` and `--fix`
+accept it) and the unit is displayed separately.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from jbf.models.catalogue import Parameter, find_law, parameters_of
 from jbf.records.quantities import Quantities
 
 FORCES = {"presliding.sigma_1_m": "N/m", "stribeck_excess.a": "N", "dwell_stiction.a": "N"}
-"""Parameters over the load that a law in newtons, which presses with one newton, has as forces."""
+"""Parameters over the load that are forces in a law in newtons, whose load is one newton."""
 ALONG = ("backlash.gap_rad",)
-"""Angles of the drive that are ways on a linear axis."""
+"""Angles of the drive that are displacements on a linear axis."""
 OVER_LOAD = ("dry_load_dependence.mu", "zero_load_dependence.k", "viscous_load_dependence.c_s_m")
-"""Parameters over a load, which stays one in N (or bar) whatever moves."""
+"""Parameters over a load whose unit stays N (or bar), whatever the motion is."""
 
 
 def unit_of(name: str, page: Parameter, law: str, quantities: Quantities) -> str:
-    """The unit of a parameter (dotted name) beside a law; `-` of a number without one."""
+    """Unit of a parameter (dotted name) in combination with a law; `-` if dimensionless."""
     if find_law(law).needs_bearing:
         return page.unit
     if quantities.motion == "linear" and name in ALONG:
@@ -32,12 +32,12 @@ def unit_of(name: str, page: Parameter, law: str, quantities: Quantities) -> str
 
 
 def shown_name(name: str, page: Parameter, unit: str) -> str:
-    """The name as it is shown: without its unit where that is not the one it has."""
+    """Displayed name: without the unit if that differs from the unit of the rig."""
     return name if unit == page.unit else bare_name(name, page)
 
 
 def bare_name(name: str, page: Parameter) -> str:
-    """The name without the unit at its end: `F_v` of `F_v_n_s_m`."""
+    """Name without the unit at its end: `F_v` for `F_v_n_s_m`."""
     end = page.unit.lower().replace("^", "").replace(" ", "_").replace("/", "_")
     return name.removesuffix(f"_{end}")
 
@@ -45,7 +45,10 @@ def bare_name(name: str, page: Parameter) -> str:
 def shown(
     law: str, effects: tuple[str, ...], quantities: Quantities
 ) -> Mapping[str, tuple[str, str]]:
-    """For each parameter's full name the one that is shown, and its unit (empty of a number)."""
+    """Map the full name of each parameter to its displayed name and unit.
+
+    The unit is empty if the parameter is dimensionless.
+    """
     found = {}
     for name, page in parameters_of(law, effects).items():
         unit = unit_of(name, page, law, quantities)

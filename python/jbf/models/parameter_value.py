@@ -1,4 +1,4 @@
-"""A parameter's value with its error."""
+"""The value of a parameter with its standard error."""
 
 from __future__ import annotations
 
@@ -14,10 +14,17 @@ from jbf.records.toml_file import number
 class ParameterValue:
     """One parameter.
 
-    `value` is in the unit that the parameter's name tells, and may be infinite but not nan;
-    `stderr` is one standard error in that unit, None when not known (nan becomes None); `note` is
-    a remark, such as "at its lower bound". `held` is true where no fit determined it: the value is
-    what a model predicts with, no answer, so it has no error; the note says why.
+    Attributes
+    ----------
+    value : float
+        Value in the unit of the parameter's name; may be infinite but not nan.
+    stderr : float or None
+        Standard error in that unit; None if unknown (nan becomes None).
+    note : str or None
+        A remark, such as "at its lower bound".
+    held : bool
+        True if no fit determined the parameter. The value is used for predictions but is not an
+        estimate, so it has no standard error. The note states the reason.
     """
 
     value: float
@@ -44,7 +51,7 @@ class ParameterValue:
             raise InputError(key="stderr", problem=problem, mend="drop one of the two")
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON: of a held parameter there is no error to ask for."""
+        """Return the parameter for JSON; a held parameter has no `stderr` entry."""
         if self.held:
             return {"value": self.value, "held": True, "note": self.note}
         return {"value": self.value, "stderr": self.stderr, "note": self.note}

@@ -1,4 +1,4 @@
-"""What a record must hold for an effect: columns, the shaft's angle, the path of the drive."""
+"""Requirements of effects on a record: columns, the shaft angle, the path of the drive."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from jbf.records.run import Run, require
 
 
 def has_angle(rig: Rig, run: Run) -> bool:
-    """True where the run tells the shaft's angle; on a linear axis there is none."""
+    """Return True if the run has a shaft angle, which does not exist on a linear axis."""
     return run.angle_rad is not None and (rig.bearing is not None or run.position_m is None)
 
 
 def has_path(rig: Rig, run: Run) -> bool:
-    """True where the run tells how far the drive has gone, in the units of its speed."""
+    """Return True if the run has the displacement of the drive, in the units of its speed."""
     return run.position_m is not None or (run.angle_rad is not None and rig.radius_m is not None)
 
 
 def has_position(run: Run) -> bool:
-    """True where the run tells where the drive stands, as an angle or on a line."""
+    """Return True if the run has the position of the drive, as an angle or on a line."""
     return run.position_m is not None or run.angle_rad is not None
 
 
 def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
-    """An InputError where a run lacks a column that one of the effects needs."""
+    """Raise an InputError if a run lacks a column that one of the effects needs."""
     for name in effects:
         needs = find_effect(name).needs
         for column in find_effect(name).columns:

@@ -1,7 +1,7 @@
 """Trajectories to a tolerance: the bare law, reduced or with inertia, along a motion.
 
-A prediction of a whole rig with its effects is :class:`jbf.Model`'s; this is for analysis of the
-law itself, with an error that is asked for.
+For the prediction of a complete rig with its effects use :class:`jbf.Model`. This module is for the
+analysis of the law itself, with a specified error.
 """
 
 from __future__ import annotations
@@ -29,20 +29,22 @@ _NAMES = {"f_m": "f_m", "U_tr_m_s": "u_tr_m_s", "K0": "k0", "gamma": "gamma"}
 
 @dataclass(frozen=True)
 class Trajectory:
-    """The film at each sample.
+    """State of the film at each sample.
 
     Attributes
     ----------
     time_s : array, shape (n,)
+        Sample times, s.
     friction_coefficient : array, shape (n,)
-        With the sign of the speed; at rest without the asperities' part, set-valued there.
+        With the sign of the speed; at rest without the part of the asperities, which is set-valued
+        there.
     x, y : arrays, shape (n,)
         ``eps cos(phi)`` and ``eps sin(phi)``.
     steps : int
-        Steps that the driver took.
+        Number of steps of the integrator.
     derivatives : array, shape (n, 4), or None
-        Of the friction coefficient by ``f_m``, ``U_tr_m_s`` (through eps_tr, too), ``K0`` and
-        ``gamma``, where they were asked for.
+        Derivatives of the friction coefficient by ``f_m``, ``U_tr_m_s`` (also through eps_tr),
+        ``K0`` and ``gamma``, if they were requested.
     """
 
     time_s: Array
@@ -77,7 +79,7 @@ def trajectory(
     phi_rad: float | None = None,
     derivatives: bool = False,
 ) -> Trajectory:
-    """Follow the law along one motion.
+    """Integrate the law along one motion.
 
     Parameters
     ----------
@@ -86,29 +88,29 @@ def trajectory(
     parameters
         ``f_m``, ``U_tr_m_s``, ``K0`` and ``gamma``.
     time_s : array, shape (n,)
-        Sample times, rising, s.
+        Sample times, increasing, s.
     velocity_m_s : array, shape (n,)
-        Surface speed at those times, m/s; straight lines between them. The run starts at the
-        first.
+        Surface speed at those times, m/s, interpolated linearly between them. The run starts at the
+        first one.
     sine : (amplitude in m/s, omega in rad/s[, bias in m/s])
-        Instead of `velocity_m_s`: ``U = bias + amplitude sin(omega t)``. The run starts at time
-        zero.
+        Replaces `velocity_m_s`: ``U = bias + amplitude sin(omega t)``. The run starts at time zero.
     model
         ``journal`` (reduced) or ``journal_full`` (with the mass of the journal).
     clock
         ``journal`` (tbar = t U_tr/R) or ``thesis`` (tbar = t/1 s).
     tolerance
-        Error of the friction coefficient. Any positive one works.
+        Error of the friction coefficient; any positive value is valid.
     eps, phi_rad
-        Where the film starts: by default at eps_tr, 0.15 rad.
+        Initial state of the film: by default eps_tr and 0.15 rad.
     derivatives
-        True to have those of the friction coefficient by the parameters: exact ones of the steps
-        taken (dual numbers, not differences), so a fit that uses them converges.
+        True to compute the derivatives of the friction coefficient by the parameters. They are
+        exact for the steps taken (dual numbers, not differences), so a fit that uses them
+        converges.
 
     Raises
     ------
     InputError
-        A rig without bearing, lubricant or load, an unknown name, or a value out of bounds.
+        The rig lacks bearing, lubricant or load, a name is unknown, or a value is out of bounds.
     """
     if (velocity_m_s is None) == (sine is None):
         raise InputError(
@@ -145,15 +147,15 @@ def trajectories(
     phi_rad: float | None = None,
     derivatives: bool = False,
 ) -> list[Trajectory]:
-    """Follow the law along many motions, on all cores.
+    """Integrate the law along many motions, on all cores.
 
-    Arguments that are not told here are those of `trajectory`.
+    The other arguments are those of `trajectory`.
 
     Parameters
     ----------
     runs
-        Pairs of sample times and either speeds at them (an array), or the tuple
-        ``(amplitude, omega, bias)`` of a sine. A tuple of three numbers is a sine.
+        Pairs of sample times and either speeds at them (an array), or the tuple ``(amplitude,
+        omega, bias)`` of a sine. A tuple of three numbers is a sine.
     """
     the_rig(rig)
     for section in ("bearing", "lubricant", "load"):
@@ -204,14 +206,14 @@ def trajectories(
 
 
 def is_record(motion: npt.ArrayLike | tuple[float, float, float]) -> bool:
-    """True of an array of speeds, False of the three numbers of a sine."""
+    """Return True for an array of speeds, False for the three numbers of a sine."""
     return not (isinstance(motion, tuple) and len(motion) == 3)
 
 
 def motions_of(
     runs: object,
 ) -> list[tuple[Array, npt.ArrayLike | tuple[float, float, float]]]:
-    """Pairs of times and motion as arrays and numbers; an InputError names the run that is none."""
+    """Return pairs of times and motion as arrays and numbers; errors name the invalid run."""
     if isinstance(runs, str) or not isinstance(runs, Iterable):
         raise InputError(
             problem=f"runs is {described(runs)}", mend="give a list of pairs (times, motion)"
@@ -220,7 +222,7 @@ def motions_of(
 
 
 def _pair(place: int, run: object) -> tuple[Array, npt.ArrayLike | tuple[float, float, float]]:
-    """Times and motion of one run, the times as an array."""
+    """Return times and motion of one run, the times as an array."""
     if not (isinstance(run, tuple | list) and len(run) == 2):
         raise InputError(
             problem=f"run {place} is {described(run)}", mend="give a pair (times, motion)"
@@ -233,7 +235,7 @@ def _pair(place: int, run: object) -> tuple[Array, npt.ArrayLike | tuple[float, 
 
 
 def _sine(given: object) -> tuple[float, float, float]:
-    """Amplitude, angular frequency and bias."""
+    """Return amplitude, angular frequency and bias."""
     if not (isinstance(given, tuple | list) and len(given) in (2, 3)):
         raise InputError(
             problem=f"sine is {described(given)}",

@@ -1,4 +1,4 @@
-"""What a model file holds, and the names that it may use: data only, no physics."""
+"""Content of a model file, and the names that it may use; contains no physics."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from jbf.records.rig import Rig
 from jbf.records.toml_file import number, refuse_unknown
 
 Clock = Literal["journal", "thesis"]
-"""How a film's time runs: `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s)."""
+"""Time scale of a film: `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s)."""
 
 AUTO = "auto"
-"""What stands for a law's name where the data are to choose it."""
+"""Placeholder for the name of a law that is selected from the data."""
 
 CLOCKS: tuple[Clock, ...] = get_args(Clock)
 
 
 def _plain(value: object, key: str) -> float | int | str:
-    """A value that TOML can hold; numpy's scalars become Python's."""
+    """Convert to a value that TOML can hold; numpy scalars become Python scalars."""
     if isinstance(value, str):
         return str(value)
     if isinstance(value, numbers.Integral) and not isinstance(value, bool):
@@ -32,7 +32,7 @@ def _plain(value: object, key: str) -> float | int | str:
 
 @dataclass(frozen=True)
 class ModelFile:
-    """What a model file holds.
+    """Content of a model file.
 
     Attributes
     ----------
@@ -41,11 +41,11 @@ class ModelFile:
     effects : tuple of str
         Names of the effects, in the order in which they were added.
     parameters : dict of str to ParameterValue
-        The law's parameters by name, an effect's as ``"coulomb_drag.F_d_n"``.
+        Parameters of the law by name, those of an effect as ``"coulomb_drag.F_d_n"``.
     rig : Rig
-        What the model was fitted on.
+        The rig that the model was fitted for.
     fit : dict of str to float, int or str
-        How it was fitted, for people to read.
+        Information on the fit, for readers of the file.
     """
 
     law: str
@@ -77,7 +77,10 @@ Bounds = tuple[float, float]
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The names that a model file may use, and the bounds (lower, upper; both legal) of each."""
+    """Names that a model file may use, with the bounds of each parameter.
+
+    The bounds are (lower, upper), both inclusive.
+    """
 
     laws: Collection[str]
     effects: Mapping[str, Mapping[str, Bounds]]

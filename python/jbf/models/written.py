@@ -1,5 +1,7 @@
-"""Numbers as people read them: a few significant digits, a value and its error to one decimal; and
-what each model of a row brought."""
+"""Formatting of numbers and of model steps for readers.
+
+Numbers have a few significant digits; a value and its error end at the same decimal.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,7 @@ BARE = "bare law"
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number to so many significant digits, plain where plain is short."""
+    """Format a number with the given significant digits, in plain notation if that is short."""
     if value == 0.0 or not math.isfinite(value):
         return f"{value:g}"
     size = math.floor(math.log10(abs(value)))
@@ -24,9 +26,9 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def measured(value: float, stderr: float | None) -> tuple[str, str]:
-    """A value and its error to the same decimal: the error's second digit.
+    """Format a value and its error to the same decimal, the second digit of the error.
 
-    The error is empty where there is none.
+    The error is empty if it is unknown.
     """
     if stderr is None or not math.isfinite(stderr) or stderr <= 0.0 or not math.isfinite(value):
         return number(value, 5), ""
@@ -38,21 +40,21 @@ def measured(value: float, stderr: float | None) -> tuple[str, str]:
 
 
 def value_and_error(p: ParameterValue) -> tuple[str, str]:
-    """A parameter's value and error as text; a held one's says so, and has no error."""
+    """Format the value and error of a parameter; a held one is marked, and its error is empty."""
     if p.held:
         return f"held at {number(p.value, 5)}", ""
     return measured(p.value, p.stderr)
 
 
 def percent(value: ParameterValue) -> str:
-    """The error as a share of the value, `0.46 %`; empty where it means nothing."""
+    """Format the error as a share of the value, `0.46 %`; empty if undefined."""
     if value.stderr is None or value.value == 0.0 or not math.isfinite(value.value):
         return ""
     return f"{number(100.0 * abs(value.stderr / value.value), 2)} %"
 
 
 def step_words(models: Sequence[Sequence[str]], index: int) -> str:
-    """What model `index` brought, each told by its effects: the bare law, or `+ effect`."""
+    """Describe model `index` by the effects that it adds or removes, or as the bare law."""
     effects = models[index]
     if index == 0:
         return f"{BARE} + {', '.join(effects)}" if effects else BARE

@@ -13,8 +13,7 @@ from jbf.records.motion.roughness import step_of
 Array = npt.NDArray[np.float64]
 
 LEAST = 3
-"""Least number of repeated readings in a row; jitter may cause two readings at about one instant.
-"""
+"""Least number of repeated readings in a row; with jitter, two may be at about one instant."""
 COUNTS = 5.0
 """Least displacement of the shaft during the held readings, in encoder counts."""
 CATCHES_UP = 0.3

@@ -23,8 +23,7 @@ STILL_SHARE = 5e-3
 HUM_ERRORS = 5.0
 """Largest speed of a rest in standard deviations of the speed noise."""
 STANDS_OUT = 9.0
-"""Ratio to the median speed of a rest above which a sample is in motion (six standard deviations).
-"""
+"""Speed of a moving sample relative to the median of a rest: six standard deviations."""
 LONGER = 2.0
 """Least ratio of the duration of a rest to the time for which a reversal appears at rest."""
 

@@ -155,7 +155,7 @@ def printable(text: str) -> str:
 
 
 def quoted(text: object) -> str:
-    """Return external text in double quotes; unprintable characters are escaped, long text is cut."""
+    """Return external text in double quotes, with unprintable characters escaped, cut if long."""
     shown = str(text)
     if not shown.isprintable():
         shown = shown.encode("unicode_escape").decode("ascii")

@@ -195,8 +195,8 @@ def register_effect(
     Raises
     ------
     InputError
-        A name is taken or not an identifier, the stage is unknown, a parameter lacks bounds, start
-        or null, or an argument of the function is neither a parameter nor a column name.
+        A name is taken or not an identifier, the stage is unknown, or a parameter lacks bounds,
+        start or null. Also if an argument of the function is neither a parameter nor a column name.
     """
     own = name if name is not None else function.__name__
     pages = tuple(parameters)

@@ -40,7 +40,7 @@ def glitches(values: Array) -> Mask:
     found = np.zeros(n, dtype=bool)
     if n < LEAST_SAMPLES:
         return found
-    from scipy import ndimage  # most of a second to import
+    from scipy import ndimage  # importing takes most of a second
 
     change = np.diff(values)
     before, after = change[:-1], -change[1:]

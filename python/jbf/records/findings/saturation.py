@@ -34,7 +34,7 @@ the force.
 
 def saturated(values: Array) -> tuple[Mask, list[float]]:
     """Return a mask of the samples near readings at an end of the range; and these ends."""
-    from scipy import ndimage  # most of a second to import
+    from scipy import ndimage  # importing takes most of a second
 
     mask = np.zeros(len(values), dtype=bool)
     ends: list[float] = []

@@ -161,7 +161,7 @@ def _least(before: Array, after: Array) -> Array:
 
 
 def _median(values: Array, window: int) -> Array:
-    from scipy import ndimage  # most of a second to import
+    from scipy import ndimage  # importing takes most of a second
 
     found: Array = ndimage.median_filter(values, window, mode="reflect")
     return found

@@ -300,7 +300,7 @@ def _likeliest_intensity(
             costs.append(cost(grid[len(costs)]))
         best = int(np.argmax(np.array(costs) < min(costs) + FLAT))
         low, high = grid[best] - GRID, grid[max(best - 1, 0)]
-    from scipy.optimize import minimize_scalar  # half a second to import
+    from scipy.optimize import minimize_scalar  # importing takes half a second
 
     found = minimize_scalar(cost, bounds=(low, high), method="bounded", options={"xatol": 0.5})
     return replace(errors, intensity=float(np.exp(found.x))), -float(found.fun)

@@ -1,9 +1,9 @@
-"""Importing: a stranger's file in; runs and a rig out, without a hand laid on the file.
+"""Import recordings from files of other programs as runs and a rig, without changes to the files.
 
-Comes in: files of any format in `formats`, and a map (which columns, which units, how to cut).
-Goes out: a campaign's folder (runs as CSV, `rig.toml`) with its ledger, or, without a map, a guess
-with what must be asked. Each channel keeps its clock; nothing is resampled. Knows nothing of
-models.
+Input: files in any format of `formats`, and a map that states the columns, the units and where to
+cut. Output: a campaign folder (runs as CSV, `rig.toml`) with its ledger. Without a map, the output
+is a proposed map with the questions that remain open. Each channel keeps its own clock; nothing is
+resampled. The package does not depend on friction models.
 
 May import: `jbf.records`, `jbf.results` and what is below.
 """

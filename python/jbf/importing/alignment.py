@@ -3,8 +3,8 @@
     force = "drive/trigger ~ force/trigger"    two records of one signal, each an expression
     force = 3.217                              seconds that are added to the times of force.csv
 
-The key is the stem of the file. Gain, sign and zero of the two records are free. Where the times of
-both files are dates, these align them; an entry corrects them.
+The key is the stem of the file name. The two records may differ in gain, sign and zero. If the
+times of both files are dates, the dates align the files; an entry then corrects that alignment.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from jbf.importing.spool import Stream
 from jbf.units.unit import ONE
 
 ReadSignal = Callable[[Channel], Stream]
-"""Spools a channel with its times."""
+"""Function that spools a channel with its times."""
 QUESTION = (
     "these files have clocks of their own: write a common signal (`drive/pos ~ force/pos`) or the "
     "offset in seconds; 0 where they were started together"
@@ -42,22 +42,22 @@ _ZONE = re.compile(r"(Z|[+-]\d\d:?\d\d)$")
 
 @dataclass(frozen=True)
 class Alignment:
-    """How the clock of a file was aligned to that of the main one.
+    """Alignment of the clock of one file with the clock of the main file.
 
     Attributes
     ----------
     file, main
         The two files.
     by
-        `signal`, `stated` or `dates`.
+        Method: `signal`, `stated` or `dates`.
     offset_s
-        What was added to the times of the file, s; with a drift, at its time `pivot_s`.
+        Time added to the times of the file, s. With a drift, it applies at the time `pivot_s`.
     drift_ppm
-        By how much the clock of the file is slow, ppm; 0 where no drift is significant.
+        Rate by which the clock of the file is slow, ppm; 0 if no drift is significant.
     dates_s
-        The part of `offset_s` that follows from the dates, s.
+        Part of `offset_s` that follows from the dates, s.
     signal, offset_std_s, correlation
-        Of an alignment by a signal.
+        Common signal, standard error of the offset (s) and correlation; for the method `signal`.
     """
 
     file: Path
@@ -72,7 +72,7 @@ class Alignment:
     correlation: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain values, for the ledger."""
+        """Return plain values for the ledger."""
         found: dict[str, Any] = {"by": self.by, "offset_s": self.offset_s}
         if self.signal:
             found["signal"] = self.signal
@@ -86,7 +86,7 @@ class Alignment:
 
     @property
     def brief(self) -> str:
-        """The offset and the drift in words."""
+        """Text that states the offset and the drift."""
         beyond = self.offset_s - (self.dates_s or 0.0)
         way = "behind" if beyond >= 0.0 else "ahead of"
         digits = int(np.clip(2 - np.floor(np.log10(self.offset_std_s or 1e-2)), 1, 6))
@@ -114,21 +114,21 @@ def align(
     clocks: Mapping[Path, FileClock],
     read_signal: ReadSignal,
 ) -> list[Alignment]:
-    """Correct the clocks of all files of which columns are taken.
+    """Correct the clocks of all files from which columns are used.
 
     Parameters
     ----------
     channels
-        The channels of the map.
+        Channels of the map.
     clocks
-        For each file its clock, which is corrected in place.
+        Clock of each file; corrected in place.
     read_signal
-        Reads a signal, with its times corrected as far as they are.
+        Function that reads a signal with its times, which include the corrections made so far.
 
     Raises
     ------
     InputError
-        Nothing aligns a file, or its signal does not determine the offset.
+        If there is no information to align a file, or its signal does not determine the offset.
     """
     _check_keys(source, mapping)
     found = []
@@ -190,7 +190,7 @@ def _aligned(
     finally:
         for stream in streams:
             stream.file.unlink(missing_ok=True)
-    # The streams have the times that the dates align.
+    # The times of the streams already contain the alignment by dates.
     clock.pivot_s = fit.pivot_s - clock.offset_s
     clock.offset_s += fit.offset_s
     clock.drift = fit.drift
@@ -211,7 +211,7 @@ def _aligned(
 def _signals(
     source: SideBySide, mapping: Map, channels: Sequence[Channel], file: Path, text: str
 ) -> tuple[Channel, Channel]:
-    """The two records of a common signal: of the main file and of the other one."""
+    """Return the records of a common signal in the main file and in the other file."""
     key = f"align.{stem_of(file)}"
     sides = _SIDES.fullmatch(text)
     mend = f'write such as "{stem_of(source.path)}/trigger ~ {stem_of(file)}/trigger"'
@@ -258,7 +258,7 @@ def _date_ns(
     clock: FileClock,
     file: Path,
 ) -> int | None:
-    """The instant, ns since 1970, that a file's times count from; None where they are no dates."""
+    """Return the origin of a file's times, ns since 1970; None if the times are not dates."""
     channel = next((c for c in channels if source.file_of(c.table) == file), None)
     if channel is None:
         return None
@@ -281,11 +281,11 @@ def _date_ns(
 
 
 def _counts_from_start(table: Table, node: Node, places: Mapping[str, tuple[Table, str]]) -> bool:
-    """Whether times count from the date of the table's first instant."""
+    """Return whether the times count from the date of the table's first instant."""
     columns = [table.column(places[r.column][1]) for r in references(node)]
     if len(columns) != 1:
         return False
-    # With a second column of dates or times of day, either may be that of the table.
+    # With a second column of dates or times of day, the table's date may belong to either column.
     instants = [column for column in table.columns if column.kind == "instant"]
     return columns[0].name == table.clock or instants == columns
 

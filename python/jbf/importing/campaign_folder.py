@@ -1,4 +1,4 @@
-"""A campaign's folder, written whole or not at all: runs, rig, map, trims and ledger."""
+"""Write a campaign folder (runs, rig, map, trims and ledger) completely or not at all."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ Report = Callable[[str, int, int], None]
 
 
 def check_folder(path: Path, *, replace: bool, holding: Sequence[str] = ()) -> None:
-    """Refuse a folder that cannot be written, or that holds what is no import.
+    """Raise an error if a folder cannot be written or contains anything other than an import.
 
     Parameters
     ----------
     holding
-        Names of folders that may be there already, of imports.
+        Names of subfolders with imports that the folder may already contain.
 
     Raises
     ------
     InputError
-        Names the folder.
+        With the name of the folder.
     """
 
     def wrong(problem: str, mend: str) -> InputError:
@@ -71,12 +71,12 @@ def write_campaign(
     ledger: dict[str, Any],
     report: Report | None = None,
 ) -> None:
-    """Write the folder; until all is there it has another name.
+    """Write the folder under a temporary name and rename it when it is complete.
 
     Raises
     ------
     InputError
-        It cannot be written; nothing is left behind.
+        If the folder cannot be written; no partial folder remains.
     """
     target = real_path(path)
     temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}.tmp")
@@ -106,7 +106,7 @@ def write_campaign(
 
 
 def _put(temporary: Path, target: Path) -> None:
-    """Give the folder its name; an earlier import goes only once the new one is there."""
+    """Rename the temporary folder; delete an earlier import only after the new one is in place."""
     if not target.exists():
         os.replace(temporary, target)
         return

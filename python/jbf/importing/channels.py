@@ -1,4 +1,4 @@
-"""The channels of a map: which table of a file each is in, and which expression is its time."""
+"""Channels of a map: the table of the file that contains each channel, and its time expression."""
 
 from __future__ import annotations
 
@@ -15,18 +15,19 @@ from jbf.importing.targets import wanted_unit
 from jbf.units.unit import ONE, Unit
 
 CUT_COLUMN, KEPT_COLUMN = "cut", "kept"
-"""Where a set point or the number of a run, and whether a row is kept, stand until the recording is
-cut."""
+"""Columns that hold the set point or run number, and whether a row is kept, until the recording is
+cut.
+"""
 SIGNAL_COLUMN = "signal"
-"""A signal that files with separate clocks have in common."""
+"""Column of a signal that files with separate clocks have in common."""
 RATE = "rate"
-"""In the place of a clock, where the rate alone is known."""
+"""Value used instead of a clock expression if only the sampling rate is known."""
 OF_CUTTING = (CUT_COLUMN, KEPT_COLUMN)
 
 
 @dataclass(frozen=True)
 class Channel:
-    """One column of a run: its expression, the table it comes from, its time."""
+    """One column of a run: its expression, its source table and its time."""
 
     key: str
     text: str
@@ -37,12 +38,12 @@ class Channel:
 
 
 def channels_of(source: Source, mapping: Map) -> list[Channel]:
-    """The channels of a map.
+    """Return the channels of a map.
 
     Raises
     ------
     InputError
-        A column is not there, or the columns of one expression have different clocks.
+        If a column does not exist, or the columns of one expression have different clocks.
     """
     tables = tables_of(source, mapping.options)
     names = column_names(tables)
@@ -74,7 +75,7 @@ def channels_of(source: Source, mapping: Map) -> list[Channel]:
 
 
 def tables_of(source: Source, options: Options) -> tuple[Table, ...]:
-    """The tables that the options leave."""
+    """Return the tables that the options select."""
     if options.table is None or isinstance(source, SideBySide):
         return source.tables
     for table in source.tables:
@@ -93,7 +94,7 @@ def clock_of(
     names: Mapping[str, str],
     places: Mapping[str, tuple[Table, str]],
 ) -> str:
-    """The expression of a column's time; `rate` where its rate alone is known."""
+    """Return the time expression of a column, or `rate` if only its sampling rate is known."""
     if mapping.options.steady:
         return RATE
     text = mapping.clocks.get(key, mapping.columns.get("time_s"))

@@ -2,11 +2,11 @@
 
 Notes
 -----
-The time of the main record is t + offset + drift (t - pivot), where t is that of the other one. The
-signal with fewer samples is a linear function of the other one, interpolated there. Offset, drift,
-gain and zero are estimated together by least squares (Gauss-Newton). Their covariance is that of
-clustered residuals (the sandwich estimator, with windows as clusters), since residuals are
-correlated. A drift is kept where it is significant.
+The time of the main record is t + offset + drift (t - pivot), where t is the time of the other
+record. The signal with fewer samples is modelled as a linear function of the other signal,
+interpolated at those samples. Offset, drift, gain and zero are estimated together by least squares
+(Gauss-Newton). Since the residuals are correlated, their covariance is the sandwich estimator for
+clustered residuals, with windows as clusters. The drift is kept only if it is significant.
 """
 
 from __future__ import annotations
@@ -24,36 +24,38 @@ from jbf.importing.spool import Stream
 Array = npt.NDArray[np.float64]
 
 MOST_DRIFT = 3e-4
-"""Largest drift that is searched: several times that of two quartz clocks."""
+"""Largest drift in the search; several times the drift between two quartz clocks."""
 SIGNIFICANT = 5.0
-"""Standard errors by which a drift must differ from zero."""
+"""Least ratio of a drift to its standard error for the drift to be significant."""
 LEAST_WINDOWS = 5.0
-"""Effective number of windows that a drift needs."""
+"""Least effective number of windows for the estimate of a drift."""
 SMALLEST = 0.02
 """Least effect of a drift over the record, in steps of the slower record."""
 WITHIN = 0.5
-"""Least absolute correlation within windows: unrelated slow records correlate as wholes."""
+"""Least absolute correlation within windows. Whole records that change slowly may correlate by
+chance.
+"""
 WINDOWS, MOST_SLOW, MOST_FAST = 24, 2_000, 200_000
-"""Windows, and the largest number of samples of either record in each."""
+"""Number of windows, and the largest number of samples of the slow and the fast record in each."""
 TRIED = 10_000_000
-"""Samples that are evaluated on the lattice of trial offsets and drifts."""
+"""Largest number of samples evaluated on the grid of trial offsets and drifts."""
 LATTICE = 8
-"""Trial offsets in a step of the slower record."""
+"""Number of trial offsets per step of the slower record."""
 ITERATIONS = 20
 
 
 @dataclass(frozen=True)
 class ClockFit:
-    """A clock relative to that of the main record.
+    """Clock of a record relative to that of the main record.
 
     Attributes
     ----------
     offset_s, drift, pivot_s
-        As in the Notes of this module; the pivot is the middle of the time that both cover.
+        As in the Notes of this module. The pivot is the middle of the time that both records cover.
     offset_std_s
         Standard error of the offset, s.
     correlation
-        Coefficient of correlation of the two records of the signal after the correction.
+        Correlation coefficient of the two records of the signal after the correction.
     """
 
     offset_s: float
@@ -65,7 +67,7 @@ class ClockFit:
 
 @dataclass(frozen=True)
 class _Window:
-    """Samples of the slower record, and the faster record around them with its slope."""
+    """Samples of the slower record, and of the faster record around them with its slope."""
 
     slow_s: Array
     slow: Array
@@ -74,7 +76,7 @@ class _Window:
     slope: Array
 
     def interpolated(self, at: Array) -> tuple[Array, Array]:
-        """The faster record and its slope at some instants, by cubics (Hermite)."""
+        """Interpolate the faster record and its slope at given instants (cubic Hermite)."""
         left = np.clip(np.searchsorted(self.fast_s, at, side="right") - 1, 0, len(self.fast_s) - 2)
         width = self.fast_s[left + 1] - self.fast_s[left]
         u = np.clip((at - self.fast_s[left]) / width, 0.0, 1.0)
@@ -85,7 +87,7 @@ class _Window:
         return value, (low + u * (2.0 * bend + 3.0 * u * twist)) / width
 
     def thinned(self, by: int) -> _Window:
-        """Every `by`-th sample of the slower record."""
+        """Return the window with only every `by`-th sample of the slower record."""
         return replace(self, slow_s=self.slow_s[::by], slow=self.slow[::by])
 
 
@@ -100,13 +102,13 @@ def refine(main: Stream, other: Stream, coarse: Offset) -> ClockFit:
     Raises
     ------
     InputError
-        The records are alike in their slow changes only, as unrelated ones are by chance.
+        If the records agree only in their slow changes, as unrelated records may by chance.
     """
     return _Problem(main, other, coarse).solved()
 
 
 class _Problem:
-    """The least-squares problem of one pair of records."""
+    """Least-squares problem for one pair of records."""
 
     def __init__(self, main: Stream, other: Stream, coarse: Offset) -> None:
         self.coarse = coarse
@@ -146,7 +148,7 @@ class _Problem:
         return found
 
     def solved(self) -> ClockFit:
-        """The estimate."""
+        """Return the estimate of the clock."""
         start = self._start()
         solution = self._descended(start, with_drift=True)
         drift, error, clusters = solution[1], *self._drift_error(solution)
@@ -177,7 +179,7 @@ class _Problem:
         )
 
     def _start(self) -> tuple[float, float]:
-        """The best of a lattice of offsets and drifts."""
+        """Return the best offset and drift on a grid of trial values."""
         lobe = self.coarse.lobe_s
         spacing = max(self.step / LATTICE, lobe / 50.0)
         reach = np.arange(0.0, lobe + spacing, spacing)
@@ -193,7 +195,10 @@ class _Problem:
         return best
 
     def _model(self, offset: float, drift: float) -> tuple[Array, Array, Array, Array]:
-        """Slower record, faster record there, and its slopes by offset and drift."""
+        """Return the slower record, the faster record at its samples, and its derivatives.
+
+        The derivatives are those of the faster record by offset and by drift.
+        """
         slow, fast, by_offset, by_drift = [], [], [], []
         for window in self.windows:
             if self.main_is_slow:
@@ -223,7 +228,7 @@ class _Problem:
         return float(slow @ fast) / power**0.5 if power > 0.0 else 0.0
 
     def _correlation_within_windows(self, offset: float, drift: float) -> float:
-        """As `_correlation`, without the differences between the means of windows."""
+        """Return the correlation without the differences between the means of windows."""
         slow, fast, *_ = self._model(offset, drift)
         ends = np.cumsum([len(window.slow) for window in self.windows])[:-1]
         slow, fast = (
@@ -234,7 +239,7 @@ class _Problem:
         return float(slow @ fast) / power**0.5 if power > 0.0 else 0.0
 
     def _linearised(self, at: tuple[float, float], *, with_drift: bool) -> tuple[Array, Array]:
-        """Residuals and their design matrix (zero, gain, offset, drift), shape (n, 3 or 4)."""
+        """Return residuals and design matrix (zero, gain, offset, drift), shape (n, 3 or 4)."""
         slow, fast, by_offset, by_drift = self._model(*at)
         mean = fast.mean()
         centred = fast - mean
@@ -246,7 +251,7 @@ class _Problem:
         return slow - slow.mean() - gain * centred, np.column_stack(columns)
 
     def _descended(self, start: tuple[float, float], *, with_drift: bool) -> tuple[float, float]:
-        """Gauss-Newton from a start; the best point on its way."""
+        """Minimise by Gauss-Newton iterations and return the best point visited."""
         best = point = start
         least = 1.0 - self._correlation(*start) ** 2
         lever = max(self.last_s - self.first_s, self.step)
@@ -273,8 +278,10 @@ class _Problem:
         return self.coarse.offset_s - reach, self.coarse.offset_s + reach
 
     def _centred(self, offset: float, drift: float) -> float:
-        """The middle of the offsets that fit equally well, as those between two edges of a
-        square wave."""
+        """Return the middle of the offsets that fit equally well.
+
+        Such a range of offsets exists between two edges of a square wave.
+        """
         if self.coarse.lobe_s >= 2.0 * self.step:
             return offset  # a smooth signal: Gauss-Newton finds its minimum
         around = offset + np.linspace(-1.0, 1.0, 8 * LATTICE + 1) * self.step
@@ -287,7 +294,7 @@ class _Problem:
         return middle if abs(middle - offset) > 0.1 * self.step else offset
 
     def _covariance(self, at: tuple[float, float], *, with_drift: bool) -> Array:
-        """Covariance of the offset, and the drift, shape (1, 1) or (2, 2)."""
+        """Return the covariance of the offset, or of offset and drift, shape (1, 1) or (2, 2)."""
         residual, design = self._linearised(at, with_drift=with_drift)
         scores = design[:, 2:] * residual[:, None]
         ends = np.cumsum([len(window.slow) for window in self.windows])[:-1]
@@ -301,9 +308,9 @@ class _Problem:
         return found
 
     def _curvature(self, at: tuple[float, float], *, with_drift: bool) -> Array:
-        """Second derivatives of half the sum of squares, by differences.
+        """Return the second derivatives of half the sum of squares, by finite differences.
 
-        The squares of the slopes would count their noise, which does not determine the offset.
+        The squares of the slopes would include their noise, which does not determine the offset.
         """
         by = max(0.25 * self.step, 0.25 * self.coarse.lobe_s)
         steps = np.diag([by, 4.0 * by / max(self.last_s - self.first_s, self.step)])
@@ -324,38 +331,38 @@ class _Problem:
         return found
 
     def _drift_error(self, at: tuple[float, float]) -> tuple[float, float]:
-        """Standard error of the drift, and the effective number of windows that determine it."""
+        """Return the standard error of the drift, and the effective number of windows for it."""
         covariance = self._covariance(at, with_drift=True)
         effective = self._effective_windows()
         error = float(np.sqrt(max(covariance[1, 1], 0.0)))
-        # Edges have an error of a sample in either record.
+        # An edge is uncertain by one sample in either record.
         sampling = 7.0 * self._sampling_error(effective) / (self.last_s - self.first_s)
         return float(np.hypot(error, sampling)), effective
 
     def _effective_windows(self) -> float:
-        # By the variance of the signal: its slope is mostly noise where it is constant.
+        # Weights are variances of the signal: where it is constant, its slope is mostly noise.
         weights = [float(np.var(window.slow)) for window in self.windows]
         total = sum(weight**2 for weight in weights)
         return float(sum(weights) ** 2 / total) if total > 0.0 else 0.0
 
     def _sampling_error(self, windows: float) -> float:
-        """Standard error by edges that are known to within a sample, s."""
+        """Return the standard error due to edges that are known only to within a sample, s."""
         if self.coarse.lobe_s >= 2.0 * self.step:
             return 0.0
         return float(self.step / np.sqrt(12.0 * max(windows, 1.0)))
 
 
 def _between(stream: Stream, first_s: float, last_s: float) -> Array:
-    """Rows within two instants that have a value."""
+    """Return the rows between two instants that have a value."""
     rows = stream.read(*stream.rows_between(0, first_s, last_s))
     return rows[np.isfinite(rows[:, 1])]
 
 
 def _smoothed(values: Array, width: int) -> Array:
-    """Three moving means over an odd number of samples.
+    """Apply a moving mean over an odd number of samples three times.
 
-    The noise of interpolated values is then alike between samples and at them, which keeps the
-    estimate from being drawn to either.
+    The noise of interpolated values is then equal between samples and at samples. This prevents a
+    bias of the estimate towards either.
     """
     from scipy.ndimage import uniform_filter1d
 

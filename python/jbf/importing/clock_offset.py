@@ -1,9 +1,9 @@
 """Estimate the offset between two clocks from one signal that both recorded.
 
-The correlation is computed at every lag on a common grid. At each lag it is the coefficient of
-Pearson over the samples that both records have there (D. Padfield, "Masked object registration in
-the Fourier domain", IEEE Trans. Image Process. 21, 2012). Sign, gain and offset of the signals are
-free. A slow record counts at its samples only, so that it may be aliased.
+The correlation is computed at every lag on a common grid. At each lag it is the Pearson coefficient
+over the samples that both records have in common (D. Padfield, "Masked object registration in the
+Fourier domain", IEEE Trans. Image Process. 21, 2012). The signals may differ in sign, gain and
+offset. Only the samples of a slow record are used, so that it may be aliased.
 """
 
 from __future__ import annotations
@@ -23,20 +23,21 @@ Mask = npt.NDArray[np.bool_]
 WEAKEST = 0.8
 """Least absolute correlation that is accepted."""
 RIVAL = 1.5
-"""Another offset is a rival if the share of the variance that it leaves unexplained is less than
-this factor times that of the best one."""
+"""Ratio of unexplained variances, to that of the best offset, below which another offset is a
+rival.
+"""
 FLOOR = 0.01
-"""Share of unexplained variance below which offsets are not distinguished by it."""
+"""Share of unexplained variance below which it does not distinguish offsets."""
 OVERLAP = 0.25
-"""Least overlap that is searched, as a share of the largest one."""
+"""Least overlap in the search, as a share of the largest overlap."""
 LEAST_SAMPLES = 20
-"""Least number of common samples of an overlap."""
+"""Least number of common samples in an overlap."""
 VARYING = 0.02
-"""Least variance in an overlap, as a share of that of the whole record."""
+"""Least variance within an overlap, as a share of the variance of the whole record."""
 POINTS = 1 << 20
 """Largest number of grid points of a record."""
 PIECE_S = 600.0
-"""Duration of the pieces that are tried where a drift blurs the correlation of a long record."""
+"""Duration of the pieces used if drift blurs the correlation of a long record, s."""
 PIECES = 8
 """Largest number of such pieces."""
 MEND = "name another common signal under [align], or the offset in seconds"
@@ -44,18 +45,18 @@ MEND = "name another common signal under [align], or the offset in seconds"
 
 @dataclass(frozen=True)
 class Offset:
-    """An offset to within one lobe of the correlation.
+    """Offset to within one lobe of the correlation.
 
     Attributes
     ----------
     offset_s
-        What is added to the times of the other record, s.
+        Time added to the times of the other record, s.
     lobe_s
-        How far from it the true offset may be, s.
+        Largest distance of the true offset from `offset_s`, s.
     pivot_s
-        The time of the other record for which it holds, s.
+        Time of the other record at which the offset holds, s.
     correlation
-        Coefficient of correlation at this offset.
+        Correlation coefficient at this offset.
     """
 
     offset_s: float
@@ -70,12 +71,12 @@ def find_offset(main: Stream, other: Stream) -> Offset:
     Parameters
     ----------
     main, other
-        Streams with the columns time, s, and signal; each one segment.
+        Streams with the columns time, s, and signal; one segment each.
 
     Raises
     ------
     InputError
-        The correlation is weak, or several offsets fit; names no file.
+        If the correlation is weak, or several offsets fit. The error names no file.
     """
     first_s, last_s = span(other)
     refused: InputError | None = None
@@ -89,12 +90,12 @@ def find_offset(main: Stream, other: Stream) -> Offset:
 
 
 def span(stream: Stream) -> tuple[float, float]:
-    """First and last time of a stream, s."""
+    """Return the first and last time of a stream, s."""
     return stream.at(0), stream.at(stream.rows - 1)
 
 
 def usual_step(stream: Stream) -> float:
-    """Median step of a stream's times, s."""
+    """Return the median step of a stream's times, s."""
     times = stream.read(0, 20_000)[:, 0]
     return float(np.median(np.diff(times))) if len(times) > 1 else 1.0
 
@@ -107,7 +108,7 @@ def _pieces(first_s: float, last_s: float) -> Iterator[tuple[float, float]]:
 
 
 def _offset_of(main: Stream, other: Stream, begin_s: float, end_s: float) -> Offset:
-    """The offset by a piece of the other record."""
+    """Return the offset estimated from a piece of the other record."""
     main_s, last_s = span(main)
     longest = max(last_s - main_s, end_s - begin_s)
     step = max(min(usual_step(main), usual_step(other)), longest / POINTS)
@@ -126,7 +127,7 @@ def _offset_of(main: Stream, other: Stream, begin_s: float, end_s: float) -> Off
 def _on_grid(
     stream: Stream, first_s: float, last_s: float, step: float, *, fill: bool
 ) -> tuple[Array, Mask]:
-    """Means of a signal in the cells of a grid, standardised, and which cells have samples.
+    """Return the standardised means of a signal in grid cells, and which cells have samples.
 
     Parameters
     ----------
@@ -165,8 +166,10 @@ def _on_grid(
 
 
 def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Mask]:
-    """Coefficients of correlation of `b` with `a` shifted, at lags from 1 - len(b) to len(a) - 1,
-    and the lags at which they are defined."""
+    """Correlate `b` with shifted `a` at lags from 1 - len(b) to len(a) - 1.
+
+    Return the correlation coefficients and a mask of the lags at which they are defined.
+    """
     from scipy.fft import irfft, next_fast_len, rfft
 
     size = next_fast_len(len(a) + len(b) - 1, real=True)
@@ -187,7 +190,7 @@ def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Ma
     mean_a, mean_b = sums(f_a, m_b) / n, sums(m_a, f_b) / n
     var_a = sums(f_aa, m_b) / n - mean_a**2
     var_b = sums(m_a, f_bb) / n - mean_b**2
-    # The signals are standardised: the variance of a whole record is 1.
+    # The signals are standardised, so that the variance of a whole record is 1.
     allowed &= (var_a > VARYING) & (var_b > VARYING)
     r = np.zeros(len(n))
     both = np.sqrt(var_a[allowed] * var_b[allowed])
@@ -196,12 +199,12 @@ def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Ma
 
 
 def _clear_peak(r: Array, allowed: Mask, offsets: Array) -> tuple[int, int, int]:
-    """The lag of the largest absolute correlation, and the first and the last of its lobe.
+    """Return the lag of the largest absolute correlation, and the first and last lag of its lobe.
 
     Raises
     ------
     InputError
-        It is weak, or a lag out of the lobe explains as much.
+        If the correlation is weak, or a lag outside the lobe explains as much variance.
     """
     best = int(np.argmax(np.abs(r)))
     if abs(r[best]) < WEAKEST:

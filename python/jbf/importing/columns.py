@@ -1,8 +1,8 @@
-"""What quantities are called in the world, and what a run's columns are in.
+"""Recognise the quantity and the unit of a column from its header.
 
-A name is taken apart into words; each word speaks for a quantity, some for what it is of (a motor,
-a set point). The unit that a header states decides between quantities of one name (speed in rpm or
-in m/s) and never the other way round.
+A name is split into words. Each known word indicates a quantity, and some indicate its origin (a
+motor, a set point). If words fit several quantities, the unit in the header decides (speed in rpm
+or in m/s). Words never decide against the unit.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ KINDS: dict[str, tuple[Dimensions, ...]] = {
     "pressure": (PRESSURE,),
     "voltage": (VOLTAGE,),
 }
-"""The dimensions that a quantity may have."""
+"""Dimensions that each quantity may have."""
 
 _WORDS = {
     "time": "t time zeit temps tiempo tempo timestamp zeitstempel uhrzeit datum date datetime "
@@ -79,7 +79,7 @@ _CLOCKS = {
     "seconds": "s", "millis": "ms", "milliseconds": "ms", "micros": "us", "microseconds": "us",
     "nanoseconds": "ns",
 }  # fmt: skip
-"""Names of times that are units, such as those of an Arduino."""
+"""Names of times that are units, as in logs of an Arduino, and their symbols."""
 
 
 def _words(text: str) -> frozenset[str]:
@@ -94,9 +94,9 @@ _SETPOINT = _words(
 _MODELLED = _words(
     "gravity model modelled feedforward estimated estimate predicted simulated compensation"
 )
-"""Of what a controller or a person computed, not what a sensor or a drive read."""
+"""Words for values that a controller or a person computed, not read from a sensor or a drive."""
 _ALSO = {"effort": "torque"}
-"""A force in French, a torque in robots' logs: the unit decides."""
+"""Second meaning of a word: a force in French, a torque in robot logs. The unit decides."""
 _ACTUAL = {"ist", "istwert", "actual", "act", "measured", "meas", "mess", "réel", "reel"}
 _ANGLES = _words(
     "angle winkel theta phi drehwinkel angolo angulo ángulo alpha encoder drehzahl omega "
@@ -111,7 +111,7 @@ _GENERIC = _words(
 )
 """Words that name neither a quantity nor a joint."""
 _SHORT = 2
-"""Words of so few letters are symbols: what they mean is likely, not sure."""
+"""Words with at most this number of letters are symbols, and their meaning is not certain."""
 
 _STATED = (
     re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$"),
@@ -123,27 +123,29 @@ _STATED = (
     re.compile(r"^(?P<name>[^/]+?)\s*/\s*(?P<unit>\S.*)$"),
     re.compile(r"^(?P<name>.+?)\s+(?P<unit>\S+)$"),
 )
-"""Ways of writing a unit into a header: in brackets, or behind, where the longest is taken."""
+"""Patterns of a unit in a header: in brackets or after the name; of the latter, the longest
+applies.
+"""
 _IN_BRACKETS = 4
 
 
 @dataclass(frozen=True)
 class Header:
-    """A header, taken apart.
+    """Parts of a column header.
 
     Attributes
     ----------
     name
-        Without the unit.
+        Header without the unit.
     unit
-        The unit's text; empty where none is written.
+        Text of the unit; empty if the header has none.
     kind
-        The quantity that its words speak for; None where they speak for none.
+        Quantity that the words indicate; None if they indicate none.
     sure
-        A whole word speaks, no mere letter.
+        Whether a whole word, and not only a symbol, indicates the quantity.
     motor, setpoint, modelled, turning
-        It is the motor's; it is what was asked for and not what was measured; it was computed; its
-        word is of something that turns.
+        Whether the value belongs to the motor; is a set point and not a measurement; was computed;
+        is named by a word for something that turns.
     """
 
     name: str
@@ -158,8 +160,8 @@ class Header:
 
 
 def split_unit(text: str) -> tuple[str, str]:
-    """A header's name and the unit that it states, empty where it states none."""
-    # What stands twice in a file is numbered.
+    """Split a header into its name and the stated unit, which is empty if there is none."""
+    # Names that occur twice in a file are numbered.
     shown = re.sub(r" #\d+$", "", " ".join(text.split()))
     loose: list[tuple[str, str]] = []
     for number, pattern in enumerate(_STATED):
@@ -170,8 +172,8 @@ def split_unit(text: str) -> tuple[str, str]:
         if not name or not unit or (number > 0 and parse_unit(unit) is None):
             continue
         if unit.isdigit():
-            continue  # the place of an element
-        # In square brackets stands a unit, known or not; the other ways are words as well.
+            continue  # index of an array element
+        # Square brackets contain a unit, known or not; the other forms may also be words.
         if number < _IN_BRACKETS:
             return name, unit
         loose.append((name, unit))
@@ -182,12 +184,12 @@ def split_unit(text: str) -> tuple[str, str]:
 
 
 def understood(text: str, unit: str = "") -> Header:
-    """What a header says.
+    """Analyse a header.
 
     Parameters
     ----------
     unit
-        What the file says of the unit elsewhere, where it does.
+        Unit that the file states outside the header, if any.
     """
     name, stated = split_unit(text)
     if stated == "1" and name == " ".join(text.split()):
@@ -197,7 +199,7 @@ def understood(text: str, unit: str = "") -> Header:
     if not stated or parse_unit(stated) is None:
         spoken = words
     else:
-        # The unit at the end of a name is no word of it.
+        # A unit at the end of a name is not one of its words.
         tail = None if name.endswith("_1") else unit_of_name(name)
         spoken = [w.lower() for w in _SPLIT.split(name if tail is None else tail[0]) if w]
     spoken, numbers = _unnumbered(spoken, parse_unit(unit))
@@ -220,7 +222,7 @@ def understood(text: str, unit: str = "") -> Header:
 
 
 def _unnumbered(words: list[str], unit: Unit | None) -> tuple[list[str], list[str]]:
-    """Words of quantities without the numbers at their ends, `q1`, and these numbers."""
+    """Split numbers off the ends of quantity words such as `q1`; return both."""
     found, numbers = [], []
     for word in words:
         match = _NUMBERED.fullmatch(word)
@@ -241,7 +243,7 @@ def _is_label(word: str) -> bool:
 
 
 def _within(word: str) -> str | None:
-    """The quantity of a compound whose last part is known: Spindeldrehzahl, Hydraulikdruck."""
+    """Return the quantity of a compound by its known last part: Spindeldrehzahl, Hydraulikdruck."""
     for length in range(len(word) - 1, 3, -1):
         kind = _BY_WORD.get(word[-length:])
         if kind is not None and length >= 5:
@@ -250,8 +252,11 @@ def _within(word: str) -> str | None:
 
 
 def _decided(kinds: list[tuple[str, str]], unit: Unit | None) -> str | None:
-    """The quantity of several words: the one that the unit goes with, long words first, and a load
-    before the force that it is of."""
+    """Choose the quantity among those of several words.
+
+    A quantity that the unit fits comes first, then long words before short ones. A load takes
+    precedence over the force that its name contains.
+    """
     if not kinds:
         return None
     ordered = [kind for _, kind in sorted(kinds, key=lambda k: -min(len(k[0]), 4))]

@@ -1,4 +1,4 @@
-"""An expression's unit, checked before a value is read; and its values, block by block."""
+"""Evaluate expressions block by block, with units that are checked before values are read."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ Value = Array | float
 
 _RAD = BASES.index("rad")
 _SAME = 1e-6
-"""Relative distance within which a number is a unit's own factor."""
+"""Relative difference below which a number equals a unit's own factor."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A value, or none yet, and its unit.
+    """A value, possibly not yet read, and its unit.
 
     Attributes
     ----------
     loose
-        A number without a unit is a factor of it: it may have brought dimensions that nobody wrote.
+        Whether the value contains a factor without a unit, which may have unstated dimensions.
     """
 
     value: Value
@@ -38,17 +38,17 @@ class Quantity:
 
 
 def column_unit(reference: Reference, units: Mapping[str, str]) -> Unit:
-    """What a column is read in.
+    """Return the unit in which a column is read.
 
     Parameters
     ----------
     units
-        The text that the file has for each column's unit.
+        Unit text of each column, from the file.
 
     Raises
     ------
     InputError
-        Nobody says it, or it is no unit.
+        If the unit is open, ambiguous or unknown.
     """
     text = units.get(reference.column, "") if reference.unit is None else reference.unit
     if text == OPEN:
@@ -74,19 +74,19 @@ def column_unit(reference: Reference, units: Mapping[str, str]) -> Unit:
 
 
 def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str]) -> Quantity:
-    """An expression's values.
+    """Evaluate an expression.
 
     Parameters
     ----------
     columns
-        Readings of each column that it names, as they stand in the file.
+        Values of each column in the expression, as in the file.
     units
-        The text that the file has for each column's unit.
+        Unit text of each column, from the file.
 
     Raises
     ------
     InputError
-        Units do not go together; names no file.
+        If units are incompatible. The error names no file.
     """
     if isinstance(node, Number):
         if node.unit is None:
@@ -116,19 +116,19 @@ def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str])
 
 
 def converted(found: Quantity, wanted: Unit, key: str) -> Array:
-    """Values in the unit that a column's name promises.
+    """Convert values to the unit that the name of a column implies.
 
     Raises
     ------
     InputError
-        They are of another kind; names no file.
+        If the values have other dimensions. The error names no file.
     """
     values = np.asarray(found.value, dtype=np.float64)
     if found.unit.fits(wanted):
         return found.unit.converted(values, wanted)
     angle = wanted.dimensions[_RAD] - found.unit.dimensions[_RAD]
     if found.loose and angle == 0:
-        # A bare factor is in SI: what it brought is what was missing.
+        # A bare factor is in SI units, and supplies the dimensions that are missing.
         return values * (found.unit.in_si / wanted.in_si)
     if angle and found.unit.dimensions[:_RAD] == wanted.dimensions[:_RAD]:
         problem, mend = (
@@ -155,7 +155,7 @@ def _sum(sign: str, left: Quantity, right: Quantity) -> Quantity:
     if right.unit.dimensions == unit.dimensions:
         value = right.unit.converted(np.asarray(value, dtype=np.float64), unit)
     elif right.loose and right.unit.dimensions == NONE:
-        # A bare number beside a column with a unit is in the column's.
+        # A bare number added to a column with a unit has the unit of the column.
         pass
     elif left.loose and left.unit.dimensions == NONE:
         unit = right.unit
@@ -196,7 +196,7 @@ def _root(inner: Quantity) -> Value:
 
 
 def _not_twice(node: Binary, left: Quantity, right: Quantity) -> None:
-    """A bare factor that is the unit's own: the readings would be converted twice."""
+    """Raise an error if a bare factor would repeat the conversion of a unit."""
     for this, other, power in ((left, right, 1), (right, left, 1 if node.sign == "*" else 0)):
         if not (other.loose and isinstance(other.value, float) and power):
             continue

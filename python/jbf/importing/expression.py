@@ -1,14 +1,15 @@
-"""What a column is made of: `Torque [Nm] / 0.0127`, `-Drehzahl [U/min]`, `p [bar] * 3.1 [cm^2]`.
+"""Parse column expressions: `Torque [Nm] / 0.0127`, `-Drehzahl [U/min]`, `p [bar] * 3.1 [cm^2]`.
 
     sum     = product { ("+" | "-") product }
     product = signed { ("*" | "/") signed }
     signed  = ("-" | "+") signed | item
     item    = number [unit] | column [unit] | function "(" sum ")" | "(" sum ")"
 
-A column stands as the file's header has it, whole (unit included) or without its unit; the longest
-name that fits is taken, so that blanks, slashes and brackets in names do no harm. In back quotes a
-name is what it is. A unit in square brackets after a column says what it is read in, whatever the
-header says; after a number, what the number is in. Nothing is evaluated but this grammar.
+A column is written as in the header of the file, complete (unit included) or without its unit. The
+longest name that fits is used, so that names may contain blanks, slashes and brackets. A name in
+back quotes is taken literally. A unit in square brackets after a column is the unit in which it is
+read, whatever the header states; after a number, it is the unit of the number. The parser evaluates
+nothing outside this grammar.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from jbf.errors import InputError, did_you_mean, quoted
 
 FUNCTIONS = ("abs", "sign", "sqrt", "sin", "cos")
 OPEN = "?"
-"""In the brackets where a unit belongs: nobody has said which."""
+"""Text in the unit brackets, or in place of a value, that is not yet known."""
 
 _NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?")
 _UNIT = re.compile(r"\s*\[([^\[\]]*)\]")
@@ -32,7 +33,7 @@ _DEEPEST = 50
 
 @dataclass(frozen=True)
 class Number:
-    """A number, and the unit that was written beside it."""
+    """A number, and the unit that follows it, if any."""
 
     value: float
     unit: str | None
@@ -40,7 +41,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Reference:
-    """A column, and the unit that it is to be read in where the expression says one."""
+    """A column, and the unit that the expression states for it, if any."""
 
     column: str
     unit: str | None
@@ -48,14 +49,14 @@ class Reference:
 
 @dataclass(frozen=True)
 class Signed:
-    """Minus something."""
+    """Negation of an operand."""
 
     of: Node
 
 
 @dataclass(frozen=True)
 class Binary:
-    """Two things and what is done with them."""
+    """Two operands and an operator."""
 
     sign: Literal["+", "-", "*", "/"]
     left: Node
@@ -64,7 +65,7 @@ class Binary:
 
 @dataclass(frozen=True)
 class Call:
-    """A function of one thing."""
+    """A function of one operand."""
 
     function: str
     of: Node
@@ -74,7 +75,7 @@ Node = Number | Reference | Signed | Binary | Call
 
 
 def references(node: Node) -> list[Reference]:
-    """Every column that it takes, from left to right."""
+    """Return every column reference of an expression, from left to right."""
     if isinstance(node, Reference):
         return [node]
     if isinstance(node, Binary):
@@ -83,30 +84,30 @@ def references(node: Node) -> list[Reference]:
 
 
 def written(name: str) -> str:
-    """A column's name as an expression holds it."""
+    """Return the name of a column as written in an expression."""
     return f"`{name}`"
 
 
 def parse_expression(text: str, names: Mapping[str, str], known: Sequence[str] = ()) -> Node:
-    """The expression as a tree.
+    """Parse an expression into a tree.
 
     Parameters
     ----------
     names
-        What a column may be called, and the column that is then meant.
+        Permitted names, and the column that each denotes.
     known
-        The columns, for a suggestion where a name is none; the keys of `names` by default.
+        Columns to suggest if a name is unknown; the keys of `names` by default.
 
     Raises
     ------
     InputError
-        It is no expression, or names a column that is not there; names no file.
+        If the text is not an expression, or names an unknown column. The error names no file.
     """
     return _Parser(text, names, known or list(names)).parse()
 
 
 class _Parser:
-    """Recursive descent; `at` is the next character."""
+    """Recursive-descent parser; `at` is the index of the next character."""
 
     def __init__(self, text: str, names: Mapping[str, str], known: Sequence[str]) -> None:
         self.text = text
@@ -142,7 +143,7 @@ class _Parser:
     def _signed(self) -> Node:
         minus = False
         while True:
-            # A name may begin with a sign; then it is the name.
+            # A name may begin with a sign and then takes precedence.
             if self._name_here() is None and (sign := self._one_of("+-")):
                 minus ^= sign == "-"
                 continue
@@ -189,7 +190,7 @@ class _Parser:
         return inside
 
     def _name_here(self) -> str | None:
-        """The longest name that stands here and does not end within a word."""
+        """Return the longest name at this position that does not end within a word."""
         self._skip()
         rest = self.text[self.at :]
         for name in self.longest_first:

@@ -1,4 +1,4 @@
-"""The clock of one file: what its times count from, and how it is corrected."""
+"""Clock of one file: the origin of its times, and their correction."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from jbf.importing.targets import wanted_unit
 Array = npt.NDArray[np.float64]
 
 EPOCH_S = (1e8, 1e10)
-"""Times within are seconds since 1970."""
+"""Range of times that are interpreted as seconds since 1970."""
 
 
 @dataclass
 class FileClock:
-    """The clock of one file.
+    """Clock of one file.
 
     Attributes
     ----------
     origin_s
-        Whole seconds since 1970 that are subtracted from all times; 0 where times do not count from
-        1970, None before the first time was read.
+        Whole seconds since 1970 that are subtracted from all times; 0 if times do not count from
+        1970, None before the first time is read.
     offset_s, drift, pivot_s
-        The corrected time is t + offset_s + drift (t - pivot_s).
+        Parameters of the corrected time, t + offset_s + drift (t - pivot_s).
     rounded
-        Whether times are rounded to nanoseconds: equal times of several files are then equal
+        Whether times are rounded to nanoseconds, so that equal times of several files are equal
         numbers.
     """
 
@@ -43,9 +43,9 @@ class FileClock:
     rounded: bool = False
 
     def seconds(self, node: Node, values: Mapping[str, Values], units: Mapping[str, str]) -> Array:
-        """Corrected times, s.
+        """Return corrected times, s.
 
-        Whole seconds before the first time are subtracted before anything is rounded.
+        The whole seconds of the first time are subtracted before any rounding.
         """
         wanted = wanted_unit("time_s")
         found = evaluate(node, values, units)
@@ -62,7 +62,7 @@ class FileClock:
         return self.corrected(time)
 
     def corrected(self, time: Array) -> Array:
-        """Times of the recording, s, of times of this clock."""
+        """Convert times of this clock to times of the recording, s."""
         if self.drift:
             time = time + self.drift * (time - self.pivot_s)
         if self.offset_s:

@@ -1,1 +1,1 @@
-"""Ways of making runs of one long recording, one a file; `cut` puts them together."""
+"""Methods that cut a long recording into runs, one module each; `cut` combines them."""

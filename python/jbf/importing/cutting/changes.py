@@ -1,4 +1,4 @@
-"""Cut where a column changes its value: a set point, the number of a run."""
+"""Cut where the value of a column changes: a set point, the number of a run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jbf.importing.spool import Stream
 
 
 def cut_at_changes(stream: Stream, column: str, why: str) -> list[Cut]:
-    """A cut at each change; where the column has no value the one before still holds."""
+    """Return a cut at each change of value; a missing value counts as the value before it."""
     at = stream.columns.index(column)
     found: list[Cut] = []
     for segment, (first, end) in enumerate(stream.segments):

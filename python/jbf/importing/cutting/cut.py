@@ -1,4 +1,4 @@
-"""From a recording to pieces: every way of cutting that was asked for, or the trims of a person."""
+"""Cut a recording into pieces by the selected methods."""
 
 from __future__ import annotations
 
@@ -23,14 +23,17 @@ from jbf.records.checks import MIN_SAMPLES
 
 TOO_FEW = f", and a run has at least {MIN_SAMPLES}"
 REST_S, KEEP_REST_S = 0.25, 0.1
-"""Rests at which a recording is cut where nobody says how, and what of them stays, s."""
+"""Default shortest rest at which a recording is cut, and the part of it that is kept, s."""
 LOST, SHORTEST_S = 0.05, 1.0
-"""Share of the motion that may be left out for that, and the usual length of a run: an axis that
-sticks and slips is not cut at every stop."""
+"""Limits of the default cutting: share of lost motion, and median duration of a run, s.
+
+The default cutting is rejected if it loses more, or makes shorter runs. An axis with stick-slip is
+thus not cut at every stop.
+"""
 
 
 def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
-    """The pieces of a recording in the order of time, those that are left out among them."""
+    """Return the pieces of a recording in order of time, including those that are left out."""
     timed = [way for way in settings.by or () if way in ("rests", "cycles", "motion")]
     if recording.steady and timed:
         problem = f'"{timed[0]}" needs a motion in time, and the file holds steady states'
@@ -42,7 +45,10 @@ def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
 
 
 def at_rests_by_default(recording: Recording, settings: CutSettings) -> list[Piece] | None:
-    """A recording cut at its rests; None where that makes no runs of a usual length."""
+    """Cut a recording at its rests.
+
+    Return None if this yields no additional runs, too short runs or too much loss.
+    """
     by_rests = replace(settings, by=("rests",), rest_s=REST_S, keep_rest_s=KEEP_REST_S)
     pieces = _cut(recording, by_rests)
     runs = [p.to_s - p.from_s for p in pieces if p.keep]
@@ -88,14 +94,14 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
 
 
 def ends(recording: Recording, segment: int) -> tuple[float, float]:
-    """First and last instant of a stretch, over all clocks."""
+    """Return the first and last instant of a segment over all clocks, s."""
     rows = [(stream, stream.segments[segment]) for stream in recording.streams]
     first = min(stream.at(a) for stream, (a, _) in rows)
     return first, max(stream.at(b - 1) for stream, (_, b) in rows)
 
 
 def _between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Piece]:
-    """What lies between cuts; what they leave out are pieces, too."""
+    """Return the pieces between cuts, and as pieces to leave out the spans that the cuts remove."""
     first_s, last_s = ends(recording, segment)
     found: list[Piece] = []
     begin = first_s
@@ -115,7 +121,7 @@ def _between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Pi
 
 
 def _within(recording: Recording, segment: int, c: Cut) -> bool:
-    """Whether there are rows between the two instants of a cut."""
+    """Return whether there are rows between the two instants of a cut."""
     for stream in recording.streams:
         first, end = stream.rows_between(segment, c.last_s, c.first_s)
         if end - first > 2:
@@ -124,7 +130,7 @@ def _within(recording: Recording, segment: int, c: Cut) -> bool:
 
 
 def _judged(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
-    """A piece that is no run is left out."""
+    """Mark a piece as left out if it cannot be a run, with the reason."""
     if not piece.keep:
         return piece
     read = [k for k in FRICTION if any(k in s.columns for s in recording.streams)]
@@ -148,7 +154,10 @@ def _judged(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
 
 
 def _kept(recording: Recording, piece: Piece) -> bool:
-    """Whether the condition holds in a piece; it is cut where that changes."""
+    """Return whether the `keep` condition holds in a piece, from its first known value.
+
+    A single value suffices because the recording is cut where the condition changes.
+    """
     found = recording.stream_of(KEPT_COLUMN)
     if found is None:
         return False
@@ -165,7 +174,7 @@ def _kept(recording: Recording, piece: Piece) -> bool:
 
 
 def _named(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:
-    """Runs are called after their file, and numbered where there are several."""
+    """Name the runs after their file, with a number if there are several."""
     runs = [piece for piece in pieces if piece.keep]
     digits = len(str(len(runs)))
     number = 0

@@ -1,4 +1,4 @@
-"""Cut a motion to and fro into its cycles, or a recording into parts of equal duration."""
+"""Cut a reciprocating motion into cycles, or a recording into parts of equal duration."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.spool import Recording
 
 WINDOW_S = 0.05
-"""Duration over which a speed is taken from a position, s."""
+"""Window over which the speed is computed from a position, s."""
 
 
 def cut_at_cycles(recording: Recording, settings: CutSettings) -> list[Cut]:
-    """A cut where each forward stroke begins: a cycle is a stroke forward and one back."""
+    """Return a cut at the start of each cycle of a forward stroke and a return stroke."""
     motion = MotionSpeed(recording, WINDOW_S)
     share = STILL if settings.still is None else settings.still
     least = max(share * motion.top(), NOISES * motion.noise())
@@ -36,7 +36,7 @@ def cut_at_cycles(recording: Recording, settings: CutSettings) -> list[Cut]:
 
 
 def cut_into_parts(recording: Recording, count: int) -> list[Cut]:
-    """Cuts that divide each stretch of increasing time into `count` parts of equal duration."""
+    """Return the cuts that divide each segment of increasing time into `count` equal durations."""
     stream, found = recording.streams[0], list[Cut]()
     for segment, (first, end) in enumerate(stream.segments):
         from_s, to_s = stream.at(first), stream.at(end - 1)

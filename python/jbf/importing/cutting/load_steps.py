@@ -1,4 +1,4 @@
-"""Cut where the load steps: a level that holds before and another that holds after."""
+"""Cut at steps of the load, between two constant levels."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ Array = npt.NDArray[np.float64]
 
 LOADS = ("load_n", "load_n_m", "pressure_pa")
 _PARTS = 20
-"""Rows whose median is one point of the load's course."""
+"""Number of rows whose median gives one point of the load curve."""
 _STEP = 0.05
-"""A step is at least such a share of the larger level,"""
+"""Least size of a step, as a share of the larger level."""
 _SIGMAS = 8.0
-"""and so many standard deviations of the points about their neighbours."""
+"""Least size of a step, in standard deviations of the differences between neighbouring points."""
 
 
 def cut_at_load_steps(recording: Recording) -> list[Cut]:
-    """A cut at each step of `load_n`, `load_n_m` or `pressure_pa`.
+    """Return a cut at each step of `load_n`, `load_n_m` or `pressure_pa`.
 
     Raises
     ------
     InputError
-        Neither was recorded.
+        If none of these columns was recorded.
     """
     found = recording.stream_of(*LOADS)
     if found is None:
@@ -60,7 +60,7 @@ def _steps(stream: Stream, segment: int, column: int) -> list[Cut]:
     for at in range(1, len(level) - 1):
         before = float(np.median(level[since:at]))
         least = max(_STEP * max(abs(before), abs(float(level[at]))), _SIGMAS * noise)
-        # It must hold: the point at a step itself lies between.
+        # The new level must persist: the point at the step itself lies between the levels.
         after = level[at : at + 2]
         if np.all(np.abs(after - before) > least) and abs(after[1] - after[0]) < least:
             row = _edge(stream, first, end, at, column, before, float(after[1]))
@@ -73,7 +73,7 @@ def _steps(stream: Stream, segment: int, column: int) -> list[Cut]:
 def _edge(
     stream: Stream, first: int, end: int, part: int, column: int, before: float, after: float
 ) -> int:
-    """The first row that is nearer to the level after."""
+    """Return the first row that is nearer to the level after the step than to the level before."""
     low = max(first + (part - 1) * _PARTS, first + 1)
     values = stream.read(low, min(first + (part + 1) * _PARTS, end))[:, column]
     nearer = np.abs(values - after) < np.abs(values - before)

@@ -1,4 +1,7 @@
-"""Cut where the kind of motion changes: at rest, steady, one way at changing speed, to and fro."""
+"""Cut where the kind of motion changes.
+
+Kinds are rest, steady speed, changing speed in one direction, and motion to and fro.
+"""
 
 from __future__ import annotations
 
@@ -13,15 +16,15 @@ from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.spool import Recording
 
 WINDOW_S = 1.0
-"""What is looked at, at a time, where rests are not said to be longer."""
+"""Shortest window that is classified, s; `rest_s` applies if it is longer."""
 STEADY = 0.02
-"""A speed that spreads by less than such a share of its mean is steady."""
+"""Largest range of a steady speed, as a share of its median."""
 HOLDS = 3
-"""A kind holds for so many windows, or it belongs to the kind before."""
+"""Least number of consecutive windows of a kind; fewer belong to the kind before."""
 
 
 def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut]:
-    """A cut at each change of kind that holds."""
+    """Return a cut at each lasting change of the kind of motion."""
     window_s = max(settings.rest_s, WINDOW_S)
     motion = MotionSpeed(recording, 0.1 * window_s)
     least = (STILL if settings.still is None else settings.still) * motion.top()
@@ -58,7 +61,7 @@ def _kind(speed: np.ndarray, least: float, noise: float) -> str:
 
 
 def _to_and_fro(kinds: list[str]) -> list[str]:
-    """Windows one way between reversals are parts of a motion to and fro."""
+    """Classify windows in one direction between two reversals as motion to and fro."""
     found = list(kinds)
     turns = [i for i, kind in enumerate(kinds) if kind == "to and fro"]
     for one, other in pairwise(turns):
@@ -69,7 +72,7 @@ def _to_and_fro(kinds: list[str]) -> list[str]:
 
 
 def _held(kinds: list[str]) -> list[tuple[int, str]]:
-    """Where a kind begins that holds, and is another than the last that held."""
+    """Return the start and name of each kind that lasts and differs from the last lasting kind."""
     found: list[tuple[int, str]] = []
     last = None
     at = 0

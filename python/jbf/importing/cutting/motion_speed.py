@@ -1,4 +1,4 @@
-"""A speed to cut by: the one that was recorded, or the change of the place over a window."""
+"""Speed for the cutting methods: recorded, or the change of position over a window."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _FEW = 1_000
 
 
 class MotionSpeed:
-    """The speed of a recording, block by block, smoothed over a window.
+    """Speed of a recording, read block by block over a smoothing window.
 
     Attributes
     ----------
     stream
-        Where it is.
+        Stream that contains the speed or position.
     """
 
     def __init__(self, recording: Recording, window_s: float) -> None:
@@ -45,7 +45,7 @@ class MotionSpeed:
         self.half = max(1, round(0.5 * window_s / step))
 
     def blocks(self, segment: int) -> Iterator[tuple[int, Array, Array]]:
-        """First row, times, and speeds of each block of a segment."""
+        """Yield the first row, times and speeds of each block of a segment."""
         first, end = self.stream.segments[segment]
         for begin, inside, rows in self.stream.overlapping(first, end, self.half):
             times, values = rows[:, 0], _filled(rows[:, self._column])
@@ -54,7 +54,7 @@ class MotionSpeed:
             yield begin, times[inside : inside + size], speed[inside : inside + size]
 
     def smoothed(self, segment: int) -> Iterator[tuple[int, Array, Array]]:
-        """The same with the mean size of the speed over the window in its place."""
+        """Yield the first row, times and mean absolute speed over the window of each block."""
         first, end = self.stream.segments[segment]
         for begin, inside, rows in self.stream.overlapping(first, end, 2 * self.half):
             times, values = rows[:, 0], _filled(rows[:, self._column])
@@ -64,7 +64,7 @@ class MotionSpeed:
             yield begin, times[inside : inside + size], mean[inside : inside + size]
 
     def top(self) -> float:
-        """The largest size of the speed."""
+        """Return the largest smoothed absolute speed."""
         sizes = [
             float(np.max(speed, initial=0.0))
             for segment in range(len(self.stream.segments))
@@ -73,7 +73,7 @@ class MotionSpeed:
         return max(sizes, default=0.0)
 
     def noise(self) -> float:
-        """The white noise of a recorded speed, by its second differences; the median of blocks."""
+        """Return the white noise of a recorded speed, by second differences; median of blocks."""
         if not self.recorded:
             return 0.0
         sizes = []
@@ -81,19 +81,19 @@ class MotionSpeed:
             for _, _, speed in self.blocks(segment):
                 second = np.diff(speed, 2)
                 if second.size:
-                    # 0.6745: a normal deviate's median size; 6: what second differences multiply.
+                    # 0.6745: median of |N(0, 1)|; sqrt(6): noise gain of second differences.
                     sizes.append(float(np.median(np.abs(second))) / (0.6745 * 6.0**0.5))
         return float(np.median(sizes)) if sizes else 0.0
 
 
 def _block(end: int, begin: int, rows: int, inside: int, margin: int) -> int:
-    """Rows of the block proper."""
+    """Return the number of rows of a block without its margin."""
     after = rows - inside
     return after if begin + after >= end else after - margin
 
 
 def _filled(values: Array) -> Array:
-    """Gaps take the value before them."""
+    """Fill each gap with the value before it."""
     bad = np.isnan(values)
     if not bad.any():
         return values
@@ -106,7 +106,7 @@ def _filled(values: Array) -> Array:
 
 
 def _change(times: Array, values: Array, half: int) -> Array:
-    """Change of the place from `half` rows before to `half` after, over its time."""
+    """Return the mean speed from `half` rows before each row to `half` rows after it."""
     rows = np.arange(len(times))
     low, high = np.maximum(rows - half, 0), np.minimum(rows + half, len(times) - 1)
     elapsed = times[high] - times[low]

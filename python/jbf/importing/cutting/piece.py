@@ -1,4 +1,4 @@
-"""What cutting gives: cuts, and the pieces between them."""
+"""Results of cutting: cuts, and the pieces between them."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Cut:
-    """One cut; what lies between its two instants is left out.
+    """One cut; the span between its two instants is left out.
 
     Attributes
     ----------
     segment
-        The stretch of growing time that it is in.
+        Index of the segment of increasing time that contains the cut.
     last_s, first_s
-        The last instant before it and the first one after.
+        Last instant before the cut and first instant after it, s.
     """
 
     segment: int
@@ -25,18 +25,18 @@ class Cut:
 
 @dataclass(frozen=True)
 class Piece:
-    """A stretch of a recording, a run or left out.
+    """Span of a recording that becomes a run or is left out.
 
     Attributes
     ----------
     name
-        What the run is called.
+        Name of the run.
     file
-        The recording's file, by its name.
+        File name of the recording.
     from_s, to_s
-        First and last instant, both of it.
+        First and last instant, both included, s.
     why
-        Where it is not kept: why.
+        Reason, if the piece is not kept.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Cut at rests: each motion, with a little of the rest before and after it, is a run."""
+"""Cut at rests: each motion becomes a run, with a short part of the rests before and after it."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.spool import Recording
 
 WINDOW = 0.05
-"""Share of the shortest rest over which the size of the speed is averaged."""
+"""Averaging window of the absolute speed, as a share of the shortest rest."""
 STILL = 5e-3
-"""Share of the top speed that is a rest,"""
+"""Largest speed of a rest, as a share of the top speed."""
 NOISES = 2.0
-"""or so many standard deviations of the speed's white noise, where that is more."""
+"""Largest speed of a rest, in standard deviations of the speed's white noise, if that is more."""
 
 
 def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
-    """A cut at each rest that is long enough; what is left of it is left out."""
+    """Return a cut at each rest that is long enough, without the parts to be kept."""
     motion = MotionSpeed(recording, WINDOW * settings.rest_s)
     top = motion.top()
     share = STILL if settings.still is None else settings.still
@@ -35,7 +35,7 @@ def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
                 continue
             keep = min(settings.keep_rest_s, 0.5 * (to_s - from_s))
             last, _ = motion.stream.rows_between(segment, from_s + keep, to_s)
-            # The rest's first instants stay with the motion before, its last with that after.
+            # The start of a rest belongs to the motion before it, its end to the motion after it.
             last = begin if begin == first else min(last, stop - 1)
             _, after = motion.stream.rows_between(segment, from_s, to_s - keep)
             after = end - 1 if stop == end else max(after, last + 1)
@@ -48,7 +48,7 @@ def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
 
 
 def _rests(motion: MotionSpeed, segment: int, least: float) -> Iterator[tuple[int, int]]:
-    """First row and end of each stretch at rest."""
+    """Yield the first row and the end of each rest."""
     began: int | None = None
     row = motion.stream.segments[segment][0]
     for first, _, speed in motion.smoothed(segment):

@@ -1,4 +1,4 @@
-"""How a recording is to be cut, as the section `[cut]` of a map."""
+"""Settings for cutting a recording: section `[cut]` of a map."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ RELATIONS: dict[str, Callable[[Array, float], Any]] = {
 }
 _COMPARISON = re.compile(r"((?:`[^`]*`|[^`<>=!])+)(==|!=|>=|<=|>|<)((?:`[^`]*`|[^`<>=!])+)")
 WAYS = ("rests", "cycles", "set_point", "load_step", "motion", "run", "parts")
-"""Ways of cutting, one file each in this folder or in `changes`."""
+"""Cutting methods; each is implemented in a module of this package."""
 
 
 @dataclass(frozen=True)
 class Condition:
-    """A comparison of two expressions over the file's columns.
+    """Comparison of two expressions over the columns of the file.
 
     Attributes
     ----------
     difference
-        The left side minus the right one, as an expression.
+        Left side minus right side, as an expression.
     relation
-        One of `RELATIONS`, between that and zero.
+        One of `RELATIONS`, between the difference and zero.
     text
-        As it was written.
+        Original text.
     """
 
     difference: str
@@ -50,12 +50,12 @@ class Condition:
 
     @classmethod
     def of(cls, text: object) -> Condition:
-        """A condition from its text.
+        """Parse a condition.
 
         Raises
         ------
         InputError
-            It is no comparison.
+            If the text is not a comparison.
         """
         match = _COMPARISON.fullmatch(text) if isinstance(text, str) else None
         if match is None:
@@ -66,36 +66,37 @@ class Condition:
         return cls(difference, relation, str(text))
 
     def holds(self, values: Array) -> Array:
-        """1 where the condition holds, 0 where it does not, NaN for a missing value."""
+        """Return 1 where the condition holds, 0 where it does not, and NaN for a missing value."""
         found = RELATIONS[self.relation](np.asarray(values, dtype=np.float64), 0.0)
         return np.where(np.isfinite(values), found, np.nan)
 
 
 @dataclass(frozen=True)
 class CutSettings:
-    """How a recording becomes runs.
+    """Settings that determine how a recording is cut into runs.
 
     Attributes
     ----------
     by
-        Ways of `WAYS`, all of which cut; none: one run a recording (and wherever time
-        starts again). None: at rests, where that makes runs (`cut.at_rests_by_default`).
+        Methods of `WAYS`, all of which are applied. Empty: one run per recording (and per
+        restart of time). None: at rests, if that yields runs (`cut.at_rests_by_default`).
     column
-        The file's column (an expression) of `set_point` or `run`.
+        Column of the file (an expression) for `set_point` or `run`.
     rest_s
-        A rest of at least so long cuts, s.
+        Duration from which a rest causes a cut, s.
     keep_rest_s
-        So much of a rest stays with the motion before and after it, s.
+        Part of a rest that remains with the motion before and after it, s.
     shortest_s
-        Shorter pieces are left out, s.
+        Duration below which pieces are left out, s.
     still
-        Share of the top speed below which a motion rests; by the record's own noise where None.
+        Share of the top speed below which a motion is at rest. If None, the noise of the record
+        is also considered.
     parts
-        How many parts of equal duration `parts` makes: 2 for halves.
+        Number of parts of equal duration for the method `parts`; 2 for halves.
     keep
-        Rows that are kept, such as ``powered == 1``; others are left out.
+        Condition for the rows that are kept, such as ``powered == 1``; others are left out.
     file
-        Trims that a person has edited, in the place of all ways.
+        File of edited trims, which replaces all methods.
     """
 
     by: tuple[str, ...] | None = None
@@ -110,18 +111,18 @@ class CutSettings:
 
     @classmethod
     def from_mapping(cls, section: Mapping[str, Any], folder: Path) -> CutSettings:
-        """Settings from their section; paths are from the map's folder.
+        """Create settings from their section; paths are relative to the folder of the map.
 
         Raises
         ------
         InputError
-            A key is unknown or does not fit; names no file.
+            If a key is unknown or its value is invalid. The error names no file.
         """
         refuse_unknown(section, [f.name for f in fields(cls)], "cut.")
         given = dict(section)
         by = given.pop("by", None)
         if by is None:
-            # Who says how long a rest is, wants to cut there.
+            # A setting for the duration or speed of rests implies cutting at rests.
             ways = ("rests",) if {"rest_s", "keep_rest_s", "still"} & given.keys() else None
             ways = ("parts",) if "parts" in given else ways
         elif not isinstance(by, str | list | tuple):

@@ -1,4 +1,4 @@
-"""Trims in a file that a person can edit: `cut.toml`, a line for each piece of each recording."""
+"""Trims in an editable file, `cut.toml`, with one line for each piece of each recording."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _HEAD = """\
 
 
 def trims_text(pieces: Sequence[Piece]) -> str:
-    """The text of `cut.toml`."""
+    """Return the text of `cut.toml`."""
     lines = [_HEAD + "pieces = ["]
     for piece in pieces:
         words = [
@@ -46,12 +46,12 @@ def _text(word: str) -> str:
 
 
 def trimmed(path: Path, recordings: Sequence[Recording]) -> list[Piece]:
-    """The pieces that a file of trims names.
+    """Read the pieces from a file of trims.
 
     Raises
     ------
     InputError
-        It is wrong, or names a file or an instant that is not there.
+        If the file is invalid, or names a file or an instant that does not exist.
     """
     content = read_toml(path)
     try:

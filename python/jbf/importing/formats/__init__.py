@@ -1,1 +1,1 @@
-"""Formats, one a file: each opens a file as tables of columns (`table`); `registry` lists them."""
+"""File formats, one module each, that open a file as tables of columns; see `table`, `registry`."""

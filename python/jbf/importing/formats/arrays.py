@@ -1,4 +1,4 @@
-"""Tables of arrays that can be sliced: what NumPy, MAT and HDF5 files hold."""
+"""Tables of arrays that can be sliced, for NumPy, MAT and HDF5 files."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ from jbf.importing.formats.table import (
 )
 
 Slice = Callable[[int, int], Any]
-"""Values from a first row to before an end."""
+"""Function that returns the values from a first row to before an end."""
 _WIDEST = 64
-"""A matrix of more columns is no table of channels."""
+"""Largest number of columns of a matrix of channels; wider matrices are ignored."""
 _NAMED = 3
-"""Columns that the name of a table lists."""
+"""Largest number of columns that the name of a table lists."""
 CLOCK = "time"
-"""Column of the instants of signals that have their own."""
+"""Name of the time column of signals that have their own times."""
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One channel with its own instants.
+    """One channel with its own times.
 
     Attributes
     ----------
     times
-        Instants, in `time_unit`.
+        Times of the samples, in `time_unit`.
     read
-        Samples, one for each instant.
+        Samples, one for each time.
     unit, time_unit
-        Units of the samples and of the times; empty where the file states none.
+        Units of the samples and of the times; empty if the file states none.
     """
 
     name: str
@@ -54,7 +54,7 @@ class Signal:
 
 
 class ArraySource(Source):
-    """Columns by table, each read by slices."""
+    """Source whose tables consist of columns that are read by slices."""
 
     def __init__(self, path: Path, close: Callable[[], None] | None = None) -> None:
         self.path = path
@@ -73,7 +73,7 @@ class ArraySource(Source):
         start: str | None = None,
         rate_hz: float | None = None,
     ) -> None:
-        """Add a table: column to slices and unit."""
+        """Add a table from a mapping of column names to slices and units."""
         if rows == 0 or not columns:
             return
         kept = []
@@ -89,7 +89,7 @@ class ArraySource(Source):
         self.tables = (*self.tables, Table(name, tuple(kept), clock, rows, rate_hz, start))
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Columns in slices."""
+        """Yield the columns in slices."""
         readers = {name: self._columns[table.name][table.column(name).name] for name in names}
         kinds = {name: table.column(name).kind for name in names}
         assert table.rows is not None
@@ -98,7 +98,7 @@ class ArraySource(Source):
             for name, read in readers.items():
                 values = np.asarray(read(first, min(first + BLOCK, table.rows)))
                 if kinds[name] == "instant":
-                    # One for all columns of instants: their clocks are to be compared.
+                    # All columns of dates share one origin, so that their clocks can be compared.
                     self._origin = self._origin or first_instant(values)
                     found[name] = seconds(values, self._origin)
                 else:
@@ -106,24 +106,24 @@ class ArraySource(Source):
             yield found
 
     def left_out(self) -> list[tuple[int, str, int | None]]:
-        """What the format passed over."""
+        """Return what the format skipped."""
         return self.passed_over
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
         if self._close is not None:
             self._close()
 
 
 def first_instant(instants: Any) -> np.datetime64 | None:
-    """The first that is one."""
+    """Return the first valid date, or None."""
     fine = np.asarray(instants).astype("datetime64[ns]")
     known = fine[~np.isnat(fine)]
     return known[0] if known.size else None
 
 
 def seconds(instants: Any, origin: np.datetime64 | None) -> Values:
-    """Dates as seconds from an origin on; nan where there is none."""
+    """Convert dates to seconds since an origin; NaN for a missing date."""
     fine = np.asarray(instants).astype("datetime64[ns]")
     if origin is None:
         return np.full(len(fine), np.nan)
@@ -133,14 +133,14 @@ def seconds(instants: Any, origin: np.datetime64 | None) -> Values:
 
 
 def slices(values: Any) -> Slice:
-    """Slices of a vector."""
+    """Return the slices of a vector."""
     return lambda first, end: values[first:end]
 
 
 def add_by_length(
     source: ArraySource, vectors: Mapping[str, tuple[Any, str]], options: Options
 ) -> None:
-    """Vectors of one length share their rows: a table for each length."""
+    """Add a table for each length of vectors; vectors of one length share their rows."""
     lengths = dict.fromkeys(len(values) for values, _ in vectors.values())
     for length in lengths:
         if length < 2:
@@ -154,14 +154,14 @@ def add_by_length(
 
 
 def add_by_clock(source: ArraySource, signals: Iterable[Signal], alone: bool = True) -> None:
-    """Add signals by their instants: those that were sampled at the same ones share a table.
+    """Add signals by their times: signals with equal times share a table.
 
-    Times in seconds are the format's own clock.
+    Times in seconds become the clock of the table.
 
     Parameters
     ----------
     alone
-        Whether the file holds no other tables, so that a single one needs no name.
+        Whether the file has no other tables, so that a single table needs no name.
     """
     sampled = [signal for signal in signals if len(signal.times)]
     _, *names = unique([CLOCK, *(signal.name for signal in sampled)])
@@ -180,7 +180,7 @@ def add_by_clock(source: ArraySource, signals: Iterable[Signal], alone: bool = T
 
 
 def table_name(columns: Sequence[str]) -> str:
-    """Name of a table that the file does not name: its columns, of many the first."""
+    """Return a name for an unnamed table: its columns, or the first of many."""
     if len(columns) <= _NAMED:
         return ", ".join(columns)
     return f"{columns[0]} and {len(columns) - 1} more"
@@ -191,8 +191,11 @@ def _several(lengths: Mapping[int, None]) -> bool:
 
 
 def vectors_of(name: str, values: Any) -> dict[str, Any]:
-    """An array's columns by name: itself, or those of a matrix or of records; none of what is no
-    channel."""
+    """Return the columns of an array by name.
+
+    A vector is one column; a matrix or an array of records has several. The result is empty for any
+    other array and for a matrix that is too wide.
+    """
     array = values
     if array.dtype.names:
         flat = array.reshape(-1)

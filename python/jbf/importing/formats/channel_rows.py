@@ -1,8 +1,8 @@
-"""Exports of TwinCAT Scope: rows that describe the channels, each with a key in front.
+"""Exports of TwinCAT Scope: rows that describe the channels, each with a key in the first cell.
 
-The key is repeated above each column of times: `Name;POS;VEL;Name;TRQ` are two tables next to each
-other, POS and VEL with the times of the first column, TRQ with those of the fourth. Without columns
-of times the sample time of each channel is its clock.
+The key is repeated above each time column. `Name;POS;VEL;Name;TRQ` thus has two tables next to each
+other: POS and VEL with the times of the first column, TRQ with those of the fourth. Without time
+columns, the sample time of each channel is its clock.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from jbf.importing.formats.table import unique
 
 NAME, UNIT, PERIOD = "name", "unit", "sampletime[ms]"
 KEYS = ("data-type", "symbolname", "netid", "port", "symbolbased", "symbolcomment", UNIT, PERIOD)
-"""Keys of rows that describe channels, in small letters."""
+"""Keys of the rows that describe channels, in lower case."""
 FEWEST = 2
-"""Rows of such keys from which on a file is an export of channels."""
+"""Number of rows with such keys from which a file is an export of channels."""
 TIME, TIME_UNIT = "time", "ms"
 _STARTS = ("starttime of export", "startrecord")
 
 
 def lay_out_channels(rows: Sequence[Row]) -> Layout | None:
-    """Layout of an export of channels; None of any other file.
+    """Return the layout of an export of channels, or None for any other file.
 
     Parameters
     ----------
     rows
-        First rows of the file, without empty ones.
+        First rows of the file, without empty rows.
     """
     named = None
     described: dict[str, list[str]] = {}
@@ -54,7 +54,7 @@ def lay_out_channels(rows: Sequence[Row]) -> Layout | None:
 
 
 def _repeats_its_key(named: Sequence[str]) -> bool:
-    """Whether the row of names has its key above each column of times."""
+    """Return whether the row of names repeats its key above each time column."""
     return len(named) > 2 and sum(cell.strip().lower() == NAME for cell in named) > 1
 
 
@@ -74,7 +74,7 @@ def _layout(
     parts = []
     if absent or not any(row[at] for row in rows for at in clocks if at < len(row)):
         if absent:
-            # The samples have no columns of times, unlike the rows that describe the channels.
+            # The samples have no time columns, unlike the rows that describe the channels.
             names, units, periods = ([r[at] for at in channels] for r in (names, units, periods))
             channels = list(range(len(channels)))
         for period in dict.fromkeys(periods[at] for at in channels):
@@ -89,26 +89,26 @@ def _layout(
 
 
 def _widest(samples: Sequence[Sequence[str]]) -> int:
-    """Cells of the longest row, without empty ones at its end."""
+    """Return the number of cells of the longest row, without empty cells at its end."""
     return max(max((at for at, cell in enumerate(row, 1) if cell), default=0) for row in samples)
 
 
 def _cells(
     described: dict[str, list[str]], key: str, named: Sequence[str], clocks: Sequence[int]
 ) -> list[str]:
-    """Cells of a key's row; empty where its keys are not where those of the names are."""
+    """Return the cells of a key's row; empty if it is not aligned with the row of names."""
     cells = described.get(key, [])
     aligned = all(at < len(cells) and cells[at].lower() in (key, "") for at in clocks)
     return [*cells, *[""] * len(named)][: len(named)] if aligned else [""] * len(named)
 
 
 def _unit(cell: str) -> str:
-    """The unit of `mm/s (Velocity)`; empty of `(None)`."""
+    """Return the unit of a cell such as `mm/s (Velocity)`; empty for `(None)`."""
     return cell.partition("(")[0].strip()
 
 
 def _rate(period_ms: str) -> float | None:
-    """Samples a second of a sample time, whichever mark its decimals have."""
+    """Convert a sample time in ms, with a decimal point or comma, to a rate in Hz."""
     try:
         period = float(period_ms.replace(",", "."))
     except ValueError:

@@ -1,7 +1,7 @@
-"""Text: CSV as loggers, oscilloscopes, spreadsheets and drives write it, plain or gzipped.
+"""Text files: CSV of loggers, oscilloscopes, spreadsheets and drives, plain or gzipped.
 
-Read in blocks of lines. A block is turned into numbers at once, and looked at cell by cell only
-where that fails: a good file goes fast and a bad one still gets its row and column named.
+Files are read in blocks of lines. A block is converted to numbers at once, and cell by cell only if
+that fails. Valid files are thus read fast, and errors still state the row and column.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _COMMENTS = ("#", "%", "//")
 
 
 class TextSource(Source):
-    """A text file of one table, or of several next to each other."""
+    """A text file of one table, or of several tables next to each other."""
 
     def __init__(self, path: Path, options: Options) -> None:
         self.path = path
@@ -66,7 +66,7 @@ class TextSource(Source):
         self.tables = tuple(self._tables())
 
     def _lines(self) -> Iterator[tuple[int, str]]:
-        """Every line with its number."""
+        """Yield every line with its number."""
         with _opened(self.path) as raw:
             self._handle = raw
             try:
@@ -79,7 +79,7 @@ class TextSource(Source):
                 ) from None
             try:
                 for number, line in enumerate(text, 1):
-                    # Some programs write the sign that books print.
+                    # Some programs write the typographic minus sign.
                     yield number, line.replace("\u2212", "-")
             except (OSError, EOFError, UnicodeError) as error:
                 problem = f"cannot be read ({error})"
@@ -105,7 +105,7 @@ class TextSource(Source):
         except InputError as error:
             raise error.within(file=self.path) from None
         if layout.headless and options.header is None:
-            # The names may stand in a comment, as numpy.savetxt writes them.
+            # The names may be in a comment, as numpy.savetxt writes them.
             told = [
                 (n, self.dialect.cells(line.strip().lstrip("#%/ ")))
                 for n, line in enumerate(lines[: layout.first - 1], 1)
@@ -145,8 +145,8 @@ class TextSource(Source):
                         file=self.path, column=name, problem=error.problem, mend=error.mend
                     ) from None
                 start = as_date(instant) or start
-                # One of dates and one of times of day, for all columns: their clocks are to be
-                # compared.
+                # All columns of dates share one origin, and all columns of times of day another, so
+                # that their clocks can be compared.
                 dated = as_date(instant) is not None
                 self._firsts.setdefault(dated, instant)
                 self._origins[name] = (self._firsts[dated], order)
@@ -167,7 +167,10 @@ class TextSource(Source):
             )
 
     def _clock_of(self, table: Table) -> int | None:
-        """Place of the times of one of several tables: rows without one are not its own."""
+        """Return the index of the time column if there are several tables, else None.
+
+        Rows without a time do not belong to the table.
+        """
         if len(self.tables) < 2:
             return None
         places = [self.layout.names.index(column.name) for column in table.columns]
@@ -175,14 +178,17 @@ class TextSource(Source):
         return next((at for at in places if at in clocks), None)
 
     def _holds_something(self, column: Column, rows: Sequence[tuple[int, list[str]]]) -> bool:
-        """A nameless column without a value is a delimiter at the end of each line."""
+        """Return whether a column is kept.
+
+        A column without name and values results from a delimiter at the end of each line.
+        """
         at = self.layout.names.index(column.name)
         if column.name.startswith(LABEL):
             return column.kind != "word"
         return not column.name.startswith("column ") or any(row[at].strip() for _, row in rows)
 
     def _samples(self) -> Iterator[tuple[int, str]]:
-        """Every line from the first row of samples on, without blank lines and comments."""
+        """Yield every line from the first row of samples, without blank lines and comments."""
         for number, line in self._lines():
             if number >= self.layout.first and line.strip() and not line.startswith(_COMMENTS):
                 yield number, line
@@ -193,14 +199,14 @@ class TextSource(Source):
         damage: DamagedRows | None = None,
         words: list[int] | None = None,
     ) -> Iterator[tuple[int, list[str]]]:
-        """Every row of samples with its number, as many cells as there are names.
+        """Yield every row of samples with its number, with one cell for each name.
 
         Parameters
         ----------
         lines
-            From `_samples`.
+            Lines from `_samples`.
         damage, words
-            Where rows that are passed over are counted.
+            Counters of damaged rows and list of rows of words; both are skipped.
         """
         damage, words = damage or DamagedRows(self.path), [] if words is None else words
         names = self.layout.names
@@ -210,17 +216,17 @@ class TextSource(Source):
             damage.rows += 1
             cells = split(line.rstrip("\n"))
             few = len(cells) < width and (self.dialect.delimiter == " " or len(cells) < width // 2)
-            # Of tables next to each other the shorter ones may end first.
+            # Shorter tables may end before the tables next to them.
             few = few and not self.layout.parts
             if few or (len(cells) > width and any(cells[width:])):
                 problem = f"has {len(cells)} cells where the header has {width}"
                 mend = "correct the row, or say delimiter and decimal under [file]"
                 damage.add(InputError(row=number, problem=problem, mend=mend))
                 continue
-            # Empty cells at the end may be left out.
+            # Empty cells at the end may be missing.
             cells += [""] * (width - len(cells))
             if cells[0].strip() == first_name and [c.strip() for c in cells[:width]] == [*names]:
-                continue  # a logger that was started anew writes its header again
+                continue  # a restarted logger writes its header again
             if cells[0][:1].isalpha() and not any(map(self._counts, cells)):
                 words.append(number)  # "End of data"
                 continue
@@ -231,12 +237,12 @@ class TextSource(Source):
         return self.dialect.is_number(cell) or is_instant(cell)
 
     def left_out(self) -> list[tuple[int, str, int | None]]:
-        """Rows of words among the samples, and damaged rows."""
+        """Return the rows of words among the samples, and the damaged rows."""
         words = [(len(self._words), "there are only words", self._words[0])] if self._words else []
         return [*words, *self._damage.left_out()]
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Columns in blocks of lines."""
+        """Yield the columns in blocks of lines."""
         places = [self.layout.names.index(table.column(name).name) for name in names]
         kinds = [table.column(name).kind for name in names]
         readers = {
@@ -341,7 +347,7 @@ class TextSource(Source):
         return seconds_since(instants, self._origins[name][0])
 
     def row_of(self, table: Table, sample: int) -> int | None:
-        """The line of a sample."""
+        """Return the line number of a sample."""
         bad, clock = self._damage.lines, self._clock_of(table)
         good = (
             number
@@ -351,7 +357,7 @@ class TextSource(Source):
         return next(islice(good, sample, None), None)
 
     def read_bytes(self) -> tuple[int, int]:
-        """How much of the file has been read, and its size."""
+        """Return the number of bytes read, and the size of the file."""
         size = self.path.stat().st_size
         handle = self._handle
         if handle is None or handle.closed:
@@ -375,11 +381,11 @@ def _opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
 
 
 def open_text(path: Path, options: Options) -> Source:
-    """Open a text file: a table, or a controller's trace of a block a variable."""
+    """Open a text file: a table, or the trace of a controller with one block for each variable."""
     with _opened(path) as file:
         begin = file.read(_TRACE_BYTES)
     encoding = options.encoding or decode(begin)
-    # An unknown encoding is refused where the text is read.
+    # An unknown encoding causes an error when the text is read.
     if is_trace(begin.decode(_known(encoding), errors="replace").splitlines()):
         with _opened(path) as file:
             return open_trace(path, io.TextIOWrapper(file, encoding, errors="replace"))
@@ -387,7 +393,7 @@ def open_text(path: Path, options: Options) -> Source:
 
 
 def _known(encoding: str) -> str:
-    """The encoding, or Latin-1 in place of an unknown one."""
+    """Return the encoding, or Latin-1 in place of an unknown encoding."""
     try:
         return codecs.lookup(encoding).name
     except LookupError:

@@ -1,4 +1,4 @@
-"""Damaged rows among the samples of a text file: counted, left out, or an error."""
+"""Damaged rows among the samples of a text file: counted and left out, or an error."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ STOP_SHARE, STOP_ROWS = 1e-2, 20
 
 @dataclass
 class DamagedRows:
-    """Damaged rows of a file; a few, as broken lines leave them, are left out, more are an error.
+    """Damaged rows of a file: a few, as from broken lines, are left out; more are an error.
 
     Attributes
     ----------
     rows
         Number of rows that were read.
     lines
-        Line numbers of the damaged ones.
+        Line numbers of the damaged rows.
     """
 
     path: Path
@@ -30,7 +30,7 @@ class DamagedRows:
     first: InputError | None = None
 
     def add(self, error: InputError) -> None:
-        """Count a damaged row; refuse the file if there are too many."""
+        """Count a damaged row; raise an error if there are too many."""
         assert error.row is not None
         self.lines.add(error.row)
         self.first = self.first or error
@@ -38,12 +38,12 @@ class DamagedRows:
             raise self._refused()
 
     def check(self) -> None:
-        """Refuse a file in which more than a share of `DAMAGED` of the rows is damaged."""
+        """Raise an error if more than a share of `DAMAGED` of the rows is damaged."""
         if len(self.lines) > max(DAMAGED * self.rows, 1.0):
             raise self._refused()
 
     def left_out(self) -> list[tuple[int, str, int | None]]:
-        """Number of the damaged rows, the reason and the first of them."""
+        """Return the number of damaged rows, the reason and the first of them."""
         if self.first is None:
             return []
         where = "" if self.first.column is None else f" in column {self.first.column}"

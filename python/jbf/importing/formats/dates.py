@@ -1,10 +1,12 @@
-"""Dates and times of day as loggers write them, in whole nanoseconds.
+"""Dates and times of day in the notations of loggers, in whole nanoseconds.
 
-ISO 8601, `31.12.2026 23:59:59,125`, `31-Dec-2026 23:59:59`, `12/31/2026 11:59:59.125 PM`,
-`23:59:59.125`, file times of Windows. A time of day that starts again goes on to the next day.
+Notations: ISO 8601, `31.12.2026 23:59:59,125`, `31-Dec-2026 23:59:59`,
+`12/31/2026 11:59:59.125 PM`, `23:59:59.125`, file times of Windows. A time of day that starts again
+continues on the next day.
 
-A column is converted by NumPy: cells are grouped by their shape (the text with each digit replaced
-by 0), the pattern is matched once for each shape, and the digits of all its cells are combined.
+A column is converted by NumPy. Cells are grouped by their shape, which is the text with each digit
+replaced by 0. The pattern is matched once for each shape, and the digits of all its cells are
+combined.
 """
 
 from __future__ import annotations
@@ -20,12 +22,12 @@ from jbf.errors import InputError, quoted
 Nanoseconds = npt.NDArray[np.int64]
 DAY_FIRST, MONTH_FIRST = "day_first", "month_first"
 NO_INSTANT = int(np.iinfo(np.int64).min)
-"""Of an empty cell; numpy's NaT."""
+"""Value of an empty cell; equal to the NaT of NumPy."""
 
 _DAY_NS = 86_400 * 10**9
 _FILE_TIME = re.compile(r"1[23]\d{16}")
 _FILE_TIME_1970 = 116_444_736 * 10**9
-"""1970 as a file time of Windows, which counts 100 ns from 1601."""
+"""The year 1970 as a file time of Windows, which counts 100 ns from 1601."""
 _INSTANT = re.compile(
     r"(?:(?:(?P<y>\d{4})[-/.](?P<m>\d{1,2})[-/.](?P<d>\d{1,2})"
     r"|(?P<a>\d{1,2})(?P<mark>[-/.])(?P<b>\d{1,2})[-/.](?P<y2>\d{4}|\d{2})"
@@ -39,40 +41,42 @@ _MONTHS = (
     "jan ene gen", "feb fév", "mar mär mrz", "apr avr abr", "may mai mag", "jun juin giu",
     "jul juil lug", "aug aoû ago", "sep set", "oct okt ott", "nov", "dec dez déc dic",
 )  # fmt: skip
-"""Beginnings of the months in English, German, French, Spanish and Italian."""
+"""First letters of the months in English, German, French, Spanish and Italian."""
 _MONTH = {name: n for n, names in enumerate(_MONTHS, 1) for name in names.split()}
 _LONGEST = 64
 _FIRST_YEAR, _LAST_YEAR = 1678, 2261
-"""Years whose instants fit into 64 bits."""
+"""First and last year whose instants in nanoseconds fit into 64 bits."""
 
 
 def is_file_time(cell: str) -> bool:
-    """Whether a cell is a file time of Windows, of the years 1981 to 2041."""
+    """Return whether a cell is a file time of Windows of the years 1981 to 2041."""
     return _FILE_TIME.fullmatch(cell.strip()) is not None
 
 
 def is_instant(cell: str) -> bool:
-    """Whether a cell is written as a date, a time of day or both."""
+    """Return whether a cell is written as a date, a time of day or both."""
     return _matched(cell) is not None
 
 
 def _matched(cell: str) -> re.Match[str] | None:
     match = _INSTANT.fullmatch(cell.strip())
-    # Date and time are both optional in the pattern.
+    # Both the date and the time are optional in the pattern.
     if match is None or not match[0] or len(match[0]) >= _LONGEST:
         return None
     return match if match["name"] is None or _month(match["name"]) else None
 
 
 def _month(name: str) -> int | None:
-    """Number of a month by the first letters of its name."""
+    """Return the number of a month from the first letters of its name."""
     word = name.lower()
     return _MONTH.get(word[:4]) or _MONTH.get(word[:3])
 
 
 def day_or_month_first(cells: Sequence[str]) -> str | None:
-    """Whether dates with slashes have the day first, as far as these tell; None where it matters
-    and they do not tell."""
+    """Return the order of day and month in dates, or None if these cells do not determine it.
+
+    The order of ISO dates and of dates with full stops is known.
+    """
     first = [m for c in cells if (m := _INSTANT.fullmatch(c.strip())) is not None and m["a"]]
     if not first:
         return DAY_FIRST
@@ -82,12 +86,12 @@ def day_or_month_first(cells: Sequence[str]) -> str | None:
         return MONTH_FIRST
     if all(m["mark"] == "." for m in first):
         return DAY_FIRST
-    # Of one day all instants are apart by their time of day.
+    # If all dates are the same day, only the times of day differ.
     return DAY_FIRST if len({(m["a"], m["b"], m["y2"]) for m in first}) == 1 else None
 
 
 class Instants:
-    """Reads blocks of cells; remembers the day where only times of day are written."""
+    """Parser of blocks of cells that counts the days if only times of day are written."""
 
     def __init__(self, order: str = DAY_FIRST) -> None:
         self.order = order
@@ -95,12 +99,12 @@ class Instants:
         self._days = 0
 
     def parse(self, cells: Sequence[str], is_empty: Sequence[bool]) -> Nanoseconds:
-        """Nanoseconds since 1970 or since midnight; `NO_INSTANT` of an empty cell.
+        """Return nanoseconds since 1970 or since midnight; `NO_INSTANT` for an empty cell.
 
         Raises
         ------
         InputError
-            A cell is no instant; its row counts from 0, and no file is named.
+            If a cell is not an instant. Its row counts from 0, and the error names no file.
         """
         result = np.full(len(cells), NO_INSTANT, dtype=np.int64)
         full = np.flatnonzero(~np.asarray(is_empty, dtype=bool)).tolist()
@@ -138,7 +142,7 @@ class Instants:
     def _decoded(
         self, match: re.Match[str], digits: Nanoseconds
     ) -> tuple[Nanoseconds, npt.NDArray[np.bool_]]:
-        """Values of cells of one shape, and whether each is a date of the calendar."""
+        """Return the values of cells of one shape, and whether each is a valid calendar date."""
 
         def number(group: str, longest: int = 9) -> Nanoseconds:
             begin, end = match.span(group)
@@ -173,7 +177,7 @@ class Instants:
         return date.astype(np.int64) * _DAY_NS + of_day, valid
 
     def _continued(self, of_day: Nanoseconds) -> Nanoseconds:
-        """Times of day in the order of the file, each after midnight on the next day."""
+        """Continue times of day, in the order of the file, on the next day after midnight."""
         if not of_day.size:
             return of_day
         last = of_day[0] if self._last is None else self._last
@@ -183,14 +187,14 @@ class Instants:
 
 
 def seconds_since(instants: Nanoseconds, origin: int) -> npt.NDArray[np.float64]:
-    """Seconds from an instant on, nan where there is none."""
+    """Convert instants to seconds since an origin; NaN where there is none."""
     found = (instants - origin) / 1e9
     found[instants == NO_INSTANT] = np.nan
     return found
 
 
 def as_date(instant: int) -> str | None:
-    """ISO 8601 of an instant; None of a time of day."""
+    """Return an instant in ISO 8601, or None for a time of day."""
     if 0 <= instant < 400 * _DAY_NS:
         return None
     return str(np.datetime64(instant, "ns"))

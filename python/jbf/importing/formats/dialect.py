@@ -1,7 +1,8 @@
-"""How a text file is written: its encoding, what parts the cells, what marks the decimals.
+"""Dialect of a text file: its encoding, delimiter, and marks of decimals and thousands.
 
-The delimiter is the one at which most lines have the same number of cells and most cells are
-numbers; a comma between digits is decided with it, since it may be either.
+The delimiter is the one for which most lines have the same number of cells and most cells are
+numbers. The decimal mark is determined together with it, since a comma between digits may be
+either.
 """
 
 from __future__ import annotations
@@ -46,16 +47,16 @@ _PARTS = re.compile(r"[+-]?(\d+)([.,])(\d+)")
 
 @dataclass(frozen=True)
 class Dialect:
-    """How cells are parted and numbers written.
+    """Delimiter of cells and notation of numbers.
 
     Attributes
     ----------
     delimiter
-        A blank stands for any number of blanks.
+        Separator of cells; a blank means any number of blanks.
     decimal, thousands
-        The marks within a number; no thousands where `thousands` is empty.
+        Marks within a number; `thousands` is empty if there is no such mark.
     question
-        What cannot be decided, in a line; None where all is sure.
+        Question that the file does not answer, in one line; None if there is none.
     """
 
     delimiter: str
@@ -64,11 +65,11 @@ class Dialect:
     question: str | None = None
 
     def cells(self, line: str) -> list[str]:
-        """A line's cells, without blanks around them."""
+        """Return the cells of a line, without surrounding blanks."""
         return [cell.strip() for cell in self.split(line)]
 
     def split(self, line: str) -> list[str]:
-        """A line's cells as they stand."""
+        """Return the cells of a line unchanged."""
         if self.delimiter == " ":
             return line.split()
         if '"' not in line:
@@ -76,11 +77,11 @@ class Dialect:
         return next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
 
     def is_number(self, cell: str) -> bool:
-        """Whether a cell holds a number."""
+        """Return whether a cell holds a number."""
         return _is_number(cell, self.decimal)
 
     def plain(self, text: str) -> str:
-        """A number as every computer reads it."""
+        """Return a number with a decimal point and without marks of thousands."""
         if self.thousands:
             for mark in " \u00a0\u202f" if self.thousands == " " else self.thousands:
                 text = text.replace(mark, "")
@@ -88,16 +89,19 @@ class Dialect:
 
 
 def is_empty(cell: str, words: frozenset[str] = frozenset()) -> bool:
-    """Whether a cell says that there is no sample."""
+    """Return whether a cell denotes a missing sample."""
     low = cell.strip().lower()
     return not low or low in _EMPTY_WORDS or low in words
 
 
 def decode(data: bytes) -> str:
-    """The encoding of a text: by its mark, else UTF-8 where it is that, else Windows' Latin."""
+    """Return the encoding of a text: by its byte order mark, else UTF-8 if valid, else cp1252.
+
+    Latin-1 applies if the text is not valid cp1252 either.
+    """
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "utf-16"
-    # A block may end within a character.
+    # The data may end within a character.
     for cut in range(4):
         try:
             data[: len(data) - cut].decode("utf-8")
@@ -114,11 +118,11 @@ def decode(data: bytes) -> str:
 def sniff(
     lines: list[str], delimiter: str | None, decimal: str | None, thousands: str | None
 ) -> Dialect:
-    """The dialect of a text's first lines; what is given is not asked."""
+    """Determine the dialect from the first lines of a text; arguments that are given are kept."""
     lines = [line for line in lines if line.strip() and not line.lstrip().startswith(("#", "%"))]
-    # What matters is where the samples are; titles stand before them.
+    # Titles come before the samples: use the later lines only.
     sample = lines[len(lines) // 3 :][-200:] or lines
-    # In quotes a number may hold the delimiter.
+    # A quoted number may contain the delimiter.
     quotes = any('"' in line for line in sample)
     best: tuple[tuple[float, float, int], Dialect] | None = None
     for place, mark in enumerate([delimiter] if delimiter else DELIMITERS):
@@ -141,14 +145,18 @@ def sniff(
 
 
 def _score(dialect: Dialect, lines: list[str]) -> tuple[float, float]:
-    """Share of the text's cells that stand in lines of one length and are numbers, and how many."""
+    """Return the score of a dialect: share of regular numeric cells, and width (at most 2).
+
+    The first value is the share of lines of the most common length, times the share of numbers in
+    their non-empty cells.
+    """
     rows = [dialect.cells(line) for line in lines]
     if not rows:
         return 0.0, 0.0
     width, count = Counter(map(len, rows)).most_common(1)[0]
     cells = [cell for row in rows if len(row) == width for cell in row]
     good = sum(dialect.is_number(cell) or is_instant(cell) for cell in cells if not is_empty(cell))
-    # Empty cells say nothing either way; a text of one column is one only if nothing parts it.
+    # Empty cells are neutral; a text has one column only if no delimiter divides it.
     full = sum(not is_empty(cell) for cell in cells)
     share = (count / len(rows)) * (good / full if full else 0.0)
     return round(share, 2), float(min(width, 2))
@@ -167,7 +175,7 @@ def _thousands(cells: list[str], decimal: str) -> str:
 
 
 def _doubt(cells: list[str]) -> str | None:
-    """A line where a single mark, always before three digits, may part thousands or decimals."""
+    """Return a question if each single comma precedes three digits: thousands or decimals."""
     seen = [m for cell in cells if (m := _PARTS.fullmatch(cell)) is not None]
     commas = [m for m in seen if m[2] == ","]
     if not commas or any(m[2] == "." for m in seen) or len(commas) < len(seen):

@@ -1,4 +1,4 @@
-"""Excel workbooks, by openpyxl: each sheet is laid out by the rules of text files."""
+"""Excel workbooks, by openpyxl, with the same layout rules for each sheet as for text files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ExcelSource(Source):
         self.options = options
         self._book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         self._layouts: dict[str, tuple[Layout, Dialect]] = {}
-        # One of dates and one of times of day, for all sheets: their clocks are to be compared.
+        # All sheets share one origin for dates and one for times of day, to compare their clocks.
         self._origins: dict[bool, float] = {}
         tables = [t for name in self._book.sheetnames if (t := self._table(name)) is not None]
         if not tables:
@@ -69,7 +69,7 @@ class ExcelSource(Source):
         yield from enumerate(self._book[name].iter_rows(values_only=True), 1)
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Columns in blocks of rows."""
+        """Yield the columns in blocks of rows."""
         layout, dialect = self._layouts[table.name]
         places = {name: layout.names.index(name) for name in names}
         rows = (
@@ -116,11 +116,11 @@ class ExcelSource(Source):
         )
 
     def row_of(self, table: Table, sample: int) -> int | None:
-        """The row of a sample, empty rows left aside."""
+        """Return the row of a sample, without regard to empty rows."""
         return self._layouts[table.name][0].first + sample
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
         self._book.close()
 
 

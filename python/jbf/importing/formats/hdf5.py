@@ -1,4 +1,4 @@
-"""HDF5, by h5py: vectors that share a group and a length are a table; records are one, too."""
+"""HDF5 files, by h5py: vectors of one group and length form a table, as do records."""
 
 from __future__ import annotations
 

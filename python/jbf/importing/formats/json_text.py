@@ -1,8 +1,8 @@
-"""JSON and JSON lines: records of numbers, or arrays of one length.
+"""JSON and JSON lines: records of numbers, or arrays of equal length.
 
-What holds samples is looked for at any depth: a list of records (a row each), or a mapping of
-arrays (a column each). Several such mappings in a list, one a recording, are one table after
-another, told apart by the column `run`. JSON lines are a list of records.
+Samples are searched at any depth: a list of records (one row each), or a mapping of arrays (one
+column each). If a list holds several such mappings, one for each recording, their rows are
+concatenated, and the column `run` numbers them. JSON lines are a list of records.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from jbf.importing.formats.table import DAMAGED, Options, Source, unique
 from jbf.text_files import read_text
 
 SETTINGS = ("config", "settings", "meta", "metadata", "header", "info", "sampling", "recording")
-"""Keys of mappings that may state the sampling rate of the arrays next to them."""
+"""Keys of mappings that may state the sampling rate of neighbouring arrays."""
 RATES = ("hz", "rate_hz", "fs", "fs_hz", "sample_rate", "sampling_rate", "sample_rate_hz")
-"""Keys of a rate, samples a second."""
+"""Keys of a sampling rate, Hz."""
 FEWEST = 3
-"""Samples from which on a list of numbers is a column."""
+"""Least number of samples for a list of numbers to be a column."""
 Columns = dict[str, npt.NDArray[np.float64]]
 
 
@@ -49,7 +49,7 @@ def open_json(path: Path, options: Options) -> Source:
 
 
 def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
-    """The content, of JSON lines a list; and how many torn lines were passed over, and why."""
+    """Return the content (a list for JSON lines), and the skipped torn lines with the reason."""
     text = read_text(path)
     try:
         return json.loads(text), []
@@ -77,7 +77,7 @@ def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
 def _tables(
     content: Any, name: str, rate_hz: float | None
 ) -> Iterator[tuple[str, Columns, float | None]]:
-    """Every table in a value: its name, columns and rate."""
+    """Yield every table in a value: its name, columns and rate."""
     if isinstance(content, Mapping):
         for holder in (*(content.get(key) for key in SETTINGS), content):
             rates = [holder.get(k) for k in RATES] if isinstance(holder, Mapping) else []
@@ -102,7 +102,7 @@ def _tables(
 
 
 def _columns(content: Mapping[str, Any]) -> Columns:
-    """The arrays of numbers of one length in a mapping, matrices by their columns."""
+    """Return the numeric arrays of the most common length; matrices are split into columns."""
     arrays: Columns = {}
     for key, value in content.items():
         if not isinstance(value, list) or len(value) < FEWEST:
@@ -118,7 +118,7 @@ def _columns(content: Mapping[str, Any]) -> Columns:
 
 
 def _is_row(record: Mapping[str, Any]) -> bool:
-    """Whether a record is one sample: there are numbers in it beside arrays, which are short."""
+    """Return whether a record is one sample: it has scalar numbers, and any arrays are short."""
     arrays = [value for value in record.values() if isinstance(value, list)]
     alone = {k: v for k, v in record.items() if not isinstance(v, list) and k not in RATES}
     return max(map(len, arrays), default=0) <= LONGEST and any(True for _ in leaves_of(alone))
@@ -137,7 +137,7 @@ def _one_after_the_other(recordings: Sequence[Columns]) -> Columns:
 
 
 def _of_records(records: Sequence[Any]) -> Columns:
-    """Columns of records; nan where a record lacks one."""
+    """Return the columns of records; NaN where a record lacks a value."""
     rows = [dict(leaves_of(record)) for record in records]
     keys = dict.fromkeys(key for row in rows for key in row)
     return {key: _numbers([row.get(key) for row in rows]) for key in keys}

@@ -1,6 +1,6 @@
-"""Where in a table of cells the names stand, where the units, and where the samples begin.
+"""Find the rows of names and units in a table of cells, and the first row of samples.
 
-Works on rows of text, so that a sheet of a workbook is laid out by the same rules as a text file.
+The functions work on rows of text, so that the same rules apply to workbook sheets and text files.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from jbf.importing.formats.table import unique
 from jbf.units.unit import parse_unit
 
 Row = tuple[int, list[str]]
-"""A row's number in the file, the first being 1, and its cells."""
+"""Number of a row in the file, counted from 1, and its cells."""
 
 _RATE = re.compile(
     r"(?P<word>abtast|sampl|rate|frequen|frequenz|fréquence|interval|intervall|period|dt\b|échant)",
@@ -27,9 +27,9 @@ _RATE = re.compile(
 _VALUE = re.compile(r"(?P<value>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[a-zµμA-Z/]*)")
 _NUMERAL = re.compile(r"[+-]?\d+(?:[.,]\d*)?(?:[eE][+-]?\d+)?")
 _EXACT = 16
-"""Digits of a number that a float keeps."""
+"""Number of characters from which a numeral may exceed the precision of a float."""
 LABEL = "label of"
-"""Columns that hold the name of the next column in each row."""
+"""Prefix of columns that hold the name of the next column in each row."""
 _HZ = {"hz": 1.0, "khz": 1e3, "s/s": 1.0, "sps": 1.0}
 
 
@@ -40,11 +40,11 @@ class Part:
     Attributes
     ----------
     columns
-        Places of its columns, the first being 0.
+        Indices of its columns, counted from 0.
     clock
-        Place of its column of times; None where it has none.
+        Index of its time column; None if it has none.
     rate_hz
-        Samples a second, where the file states it.
+        Sampling rate, if the file states it, Hz.
     """
 
     columns: tuple[int, ...]
@@ -59,11 +59,11 @@ class Layout:
     Attributes
     ----------
     rate_hz
-        Samples a second, where the lines before the header state it.
+        Sampling rate, if the lines before the header state it, Hz.
     parts
-        Tables next to each other; empty where all columns share their rows.
+        Tables next to each other; empty if all columns share their rows.
     start
-        Date of the first instant, where the lines before the header state it.
+        Date of the first instant, if the lines before the header state it.
     """
 
     names: tuple[str, ...]
@@ -81,17 +81,17 @@ def lay_out(
     header: int | None = None,
     units: int | None = None,
 ) -> Layout:
-    """The layout of a table's first rows.
+    """Determine the layout of a table from its first rows.
 
     Parameters
     ----------
     header, units
-        Rows that a person has named; 0 where there is none.
+        Rows that the user has stated; 0 if there is none.
 
     Raises
     ------
     InputError
-        There are no rows of numbers; names no file.
+        If there are no rows of numbers. The error names no file.
     """
 
     def counts(cell: str) -> bool:
@@ -104,7 +104,7 @@ def lay_out(
     if not wide:
         raise InputError(problem="holds no rows of numbers", mend="name a file with samples")
     width = Counter(wide[len(wide) // 2 :]).most_common(1)[0][0]
-    # Of tables next to each other the shorter ones end before the others do.
+    # Shorter tables may end before the tables next to them.
     width = max([width, *(len(cells) for _, cells in rows if _side_by_side(cells))])
     first = _first_sample(rows, width, numeric, counts)
     if first is None:
@@ -113,7 +113,7 @@ def lay_out(
         first = max(first, next((i for i, (n, _) in enumerate(rows) if n > header), first))
         first = max(first, next((i for i, (n, _) in enumerate(rows) if n > (units or 0)), first))
     above = list(rows[:first])
-    # The last columns may begin empty; then only the row of the names tells of them.
+    # If the last columns begin with empty cells, only the row of names shows them.
     told = [len(_trimmed(cells)) for _, cells in above[-3:] if len(_trimmed(cells)) > 1]
     width = max([width, *told])
     rate = _rate(above)
@@ -147,7 +147,7 @@ def lay_out(
 
 
 def _side_by_side(names: Sequence[str]) -> tuple[Part, ...]:
-    """Tables next to each other: each begins with a column of times, named as the first one is."""
+    """Return tables next to each other, each with a first column named as the first one."""
     clocks = [at for at, name in enumerate(names) if name == names[0]]
     ends = [*clocks[1:], len(names)]
     apart = all(end - at > 1 for at, end in zip(clocks, ends, strict=True))
@@ -157,12 +157,12 @@ def _side_by_side(names: Sequence[str]) -> tuple[Part, ...]:
 
 
 def merged(parts: tuple[Part, ...], rows: Iterable[Sequence[str]]) -> tuple[Part, ...]:
-    """Tables next to each other, those with the same times throughout as one.
+    """Merge tables next to each other that have the same times throughout.
 
     Parameters
     ----------
     rows
-        Cells of every row of samples; read where more than one table has times only.
+        Cells of every row of samples; read only if there are several tables with times.
     """
     clocks = [part.clock for part in parts if part.clock is not None]
     if len(clocks) < len(parts) or len(parts) < 2:
@@ -186,13 +186,13 @@ def merged(parts: tuple[Part, ...], rows: Iterable[Sequence[str]]) -> tuple[Part
 
 
 def _instant(cell: str) -> float | str:
-    """A time to compare: `0` is `0.0`."""
+    """Return a time in a form for comparison, in which `0` equals `0.0`."""
     cell = cell.strip()
     return float(cell.replace(",", ".")) if len(cell) < _EXACT and _is_numeral(cell) else cell
 
 
 def _labels(rows: Sequence[list[str]]) -> tuple[str, ...] | None:
-    """Names of columns whose values have their name in front of them, `x 1.5 y 2.5`."""
+    """Return the column names of rows in which each value follows its name, `x 1.5 y 2.5`."""
     words = {tuple(cells[::2]) for cells in rows}
     values = [cell for cells in rows for cell in cells[1::2]]
     if len(words) != 1 or any(len(cells) % 2 for cells in rows) or not any(words):
@@ -214,7 +214,7 @@ def _first_sample(
     numeric: Callable[[list[str]], int],
     counts: Callable[[str], bool],
 ) -> int | None:
-    """The first row that is one of samples, and is followed by such."""
+    """Return the index of the first row of samples that is followed by rows of samples."""
 
     def sample(cells: list[str]) -> bool:
         cells = _trimmed(cells)
@@ -224,7 +224,7 @@ def _first_sample(
     for at in range(len(rows)):
         following = rows[at : at + 3]
         if all(sample(cells) for _, cells in following):
-            # A row of names may hold numbers (years, channels); one of samples holds no names.
+            # A row of names may hold numbers (years, channels); a row of samples holds no names.
             here = _trimmed(rows[at][1])
             after = _trimmed(rows[at + 1][1]) if at + 1 < len(rows) else here
             if sum(map(counts, here)) >= sum(map(counts, after)):
@@ -233,14 +233,14 @@ def _first_sample(
 
 
 def _may_be_head(cells: list[str], width: int) -> bool:
-    """Whether a row can name columns: as many cells as the samples have, or some of them."""
+    """Return whether a row can name columns: it is as wide as the samples, or nearly."""
     return len(cells) >= min(width, 2) and sum(map(bool, cells)) >= max(1, width // 2)
 
 
 def _is_units(cells: list[str]) -> bool:
     full = [_bare_unit(cell) for cell in cells if cell]
     known = sum(parse_unit(cell) is not None for cell in full)
-    # `s` is a unit and a name: a row of units names no quantity in whole words.
+    # `s` is a unit and a name; whole words that name a quantity do not occur in a row of units.
     named = sum(understood(cell).kind is not None and len(cell) > 2 for cell in full)
     return bool(full) and known > 0.5 * len(full) and named < known
 
@@ -262,7 +262,7 @@ def _row(rows: Sequence[Row], number: int) -> list[str]:
 
 
 def _trimmed(cells: Sequence[str]) -> list[str]:
-    """Without the empty cells at its end."""
+    """Return the cells without empty cells at the end."""
     end = len(cells)
     while end and not cells[end - 1]:
         end -= 1
@@ -274,7 +274,7 @@ def _padded(cells: Sequence[str], width: int) -> tuple[str, ...]:
 
 
 def _carried(cells: Sequence[str], width: int) -> list[str]:
-    """A group's name stands above its first column only."""
+    """Repeat the name of a group, which is written only above its first column."""
     found: list[str] = []
     for cell in _padded(cells, width):
         found.append(cell or (found[-1] if found else ""))
@@ -282,7 +282,7 @@ def _carried(cells: Sequence[str], width: int) -> list[str]:
 
 
 def _rate(rows: Sequence[Row]) -> float | None:
-    """The rate that a line before the header states."""
+    """Return the sampling rate that a line before the header states, Hz."""
     for _, cells in rows:
         line = " ".join(cells)
         word = _RATE.search(line)

@@ -1,4 +1,4 @@
-"""MAT files up to version 7, by scipy; tables and timetables in them by mat-io, where it is."""
+"""MAT files up to version 7, by SciPy; tables and timetables in them by mat-io, if installed."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _tree(value: Any) -> Tree:
         return {field: _tree(getattr(value, field)) for field in fields}
     array = np.asarray(value)
     if array.dtype == object:
-        # A structure stands in an array of one.
+        # A structure is stored in an array of one element.
         items = [_tree(item) for item in array.reshape(-1)]
         return items[0] if len(items) == 1 else items
     if array.dtype.kind == "U":
@@ -45,7 +45,7 @@ def _tree(value: Any) -> Tree:
     if array.dtype.kind not in "biuf" or array.size < 2:
         return None
     if array.ndim == 3:
-        # The samples of a signal of several elements lie along the last dimension.
+        # The samples of a signal with several elements lie along the last dimension.
         array = array.reshape(-1, array.shape[2], order="F").T
     columns = list(vectors_of("", array).values())
     return Samples(len(columns[0]), tuple(map(slices, columns))) if columns else None

@@ -1,4 +1,4 @@
-"""MAT files of version 7.3, which are HDF5 with MATLAB's habits, by h5py."""
+"""MAT files of version 7.3, which are HDF5 with conventions of MATLAB, by h5py."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from jbf.importing.formats.matlab_tables import add_tables
 from jbf.importing.formats.table import Options, Source
 
 _WIDEST = 64
-"""Columns of a matrix; a wider one holds no channels."""
+"""Largest number of columns of a matrix of channels; wider matrices are ignored."""
 _DEEPEST = 32
-"""Levels of structures; a file that refers to itself has no end."""
+"""Largest depth of nested structures, since a file may refer to itself."""
 
 
 def open_mat73(path: Path, options: Options) -> Source:
@@ -34,7 +34,7 @@ def open_mat73(path: Path, options: Options) -> Source:
 
 
 def _is_opaque(item: Any) -> bool:
-    """Whether MATLAB's own objects are in a variable."""
+    """Return whether a variable contains opaque objects of MATLAB."""
     if isinstance(item, h5py.Group):
         return any(map(_is_opaque, item.values()))
     return "MATLAB_object_decode" in item.attrs
@@ -64,7 +64,7 @@ def _tree(file: Any, item: Any, depth: int) -> Tree:
 
 
 def _is_array_of_structures(group: Any) -> bool:
-    """Whether each field of a group refers to its values in one structure after the other."""
+    """Return whether each field of a group refers to its values in successive structures."""
     fields = list(group.values())
     return bool(fields) and all(
         isinstance(field, h5py.Dataset)
@@ -75,9 +75,9 @@ def _is_array_of_structures(group: Any) -> bool:
 
 
 def _samples(item: Any) -> Samples | None:
-    """The columns of a dataset; MATLAB's columns are HDF5's rows."""
+    """Return the columns of a dataset; columns of MATLAB are rows of HDF5."""
     if item.ndim == 3:
-        # The samples of a signal of several elements lie along MATLAB's last dimension.
+        # The samples of a signal with several elements lie along MATLAB's last dimension.
         width = item.shape[1] * item.shape[2]
         columns = tuple(_element(item, at) for at in range(width))
         return Samples(item.shape[0], columns) if width <= _WIDEST else None

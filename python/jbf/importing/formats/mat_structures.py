@@ -1,8 +1,9 @@
-"""Structures of MAT files: which of their fields are signals, with which names and clocks.
+"""Signals in structures of MAT files, with their names and clocks.
 
-A signal is a structure that holds samples (`values`, `Data`) and their label: Simulink's
-"Structure with time", a timeseries as a structure, recordings of dSPACE. Its clock is the time of
-the structure itself, or of the nearest one around it. All other vectors are named by their path.
+A signal is a structure that holds samples (`values`, `Data`) and their label, such as Simulink's
+"Structure with time", a timeseries as a structure, or recordings of dSPACE. Its clock is the time
+of the structure itself, or of the nearest enclosing structure. All other vectors are named by their
+path.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from typing import Any, TypeAlias
 from jbf.importing.formats.arrays import ArraySource, Signal, Slice, add_by_clock
 
 SAMPLES = ("values", "data")
-"""Fields that hold the samples of a signal, in small letters."""
+"""Fields that hold the samples of a signal, in lower case."""
 LABELS = ("label", "name", "signalname", "blockname")
-"""Fields that name a signal, the best first."""
+"""Fields that name a signal, in order of preference."""
 UNITS = ("unit", "units")
 """Fields that state a unit."""
 SECONDS = ("s", "sec", "seconds")
-"""Units of a time that are seconds."""
+"""Names of the second as a unit of time."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class _Found:
     clock: _Clock | None = None
 
     def columns(self) -> Iterator[tuple[str, Slice]]:
-        """Columns by name; of a matrix they are numbered from 1."""
+        """Yield the columns by name; those of a matrix are numbered from 1."""
         for at, column in enumerate(self.samples.columns, 1):
             several = len(self.samples.columns) > 1
             yield f"{self.name} column {at}" if several else self.name, column
@@ -76,12 +77,12 @@ def add_structures(source: ArraySource, content: Mapping[str, Tree]) -> None:
 
 
 def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Found]:
-    """Signals and vectors of a variable.
+    """Yield the signals and vectors of a variable.
 
     Parameters
     ----------
     clock
-        Time of the structure around it.
+        Time of the enclosing structure.
     """
     if isinstance(node, Samples):
         if node.rows > 1:
@@ -110,7 +111,7 @@ def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> 
     entries = below if signal is None else [signal, *below]
     if own is not None:
         if any(entry.clock is own for entry in entries):
-            # Vectors next to a clock, of its length, were sampled by it.
+            # Vectors in a structure with a clock, and of its length, are sampled by this clock.
             entries = [
                 replace(entry, clock=own)
                 if entry.clock is None and entry.samples.rows == own.samples.rows
@@ -123,13 +124,13 @@ def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> 
 
 
 def _clock(node: Mapping[str, Tree], fields: Mapping[str, str]) -> _Clock | None:
-    """The time that a structure holds."""
+    """Return the time that a structure holds, or None."""
     time = node.get(fields.get("time", ""))
     if not isinstance(time, Samples) or time.rows < 2 or len(time.columns) != 1:
         return None
     about = node.get(fields.get("timeinfo", ""))
     unit = _text(about, UNITS) if isinstance(about, Mapping) else ""
-    # Simulink counts in seconds.
+    # Times of Simulink are in seconds.
     simulink = "signals" in fields
     return _Clock(time, "s" if simulink or unit.lower() in SECONDS else unit)
 
@@ -137,7 +138,7 @@ def _clock(node: Mapping[str, Tree], fields: Mapping[str, str]) -> _Clock | None
 def _signal(
     node: Mapping[str, Tree], fields: Mapping[str, str], name: str, clock: _Clock | None
 ) -> _Found | None:
-    """The signal that a structure is; None of one without samples, or without label and clock."""
+    """Return the signal of a structure; None without samples, or without both label and clock."""
     held = [node[fields[key]] for key in SAMPLES if key in fields]
     samples = next((item for item in held if isinstance(item, Samples) and item.rows > 1), None)
     if samples is None:
@@ -152,7 +153,7 @@ def _signal(
 
 
 def _text(node: Mapping[str, Any], keys: tuple[str, ...]) -> str:
-    """The first text that is not empty among fields."""
+    """Return the first non-empty text among fields."""
     fields = {key.lower(): value for key, value in node.items()}
     texts = (fields.get(key) for key in keys)
     return next((text.strip() for text in texts if isinstance(text, str) and text.strip()), "")

@@ -1,4 +1,4 @@
-"""MATLAB's tables and timetables, which scipy and HDF5 show as opaque objects, by mat-io."""
+"""MATLAB tables and timetables, which SciPy and HDF5 present as opaque objects, by mat-io."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def add_tables(source: ArraySource, path: Path) -> None:
     Raises
     ------
     InputError
-        mat-io is not there, or cannot read the file.
+        If mat-io is not installed, or cannot read the file.
     """
     try:
         from matio import load_from_mat
@@ -37,7 +37,7 @@ def add_tables(source: ArraySource, path: Path) -> None:
 
 
 def _add_frame(source: ArraySource, name: str, frame: Any) -> None:
-    """A table came as a frame of pandas; the index of a timetable is its time."""
+    """Add a table, given as a pandas frame; the index of a timetable is its time."""
     columns: dict[str, tuple[Any, str]] = {}
     clock = None
     index = frame.index.to_numpy()

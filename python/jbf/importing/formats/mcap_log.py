@@ -1,4 +1,4 @@
-"""MCAP, by mcap and mcap-ros2-support: ROS 2 messages and JSON."""
+"""MCAP logs, by mcap and mcap-ros2-support: ROS 2 messages and JSON."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from jbf.importing.formats.table import Options, Source
 
 
 class _JsonDecoder(DecoderFactory):
-    """Messages that are JSON."""
+    """Decoder of JSON messages."""
 
     def decoder_for(self, message_encoding: str, schema: Any) -> Callable[[bytes], Any] | None:
         return json.loads if message_encoding == "json" else None
@@ -44,14 +44,14 @@ class McapSource(MessageSource):
             raise InputError(file=path, problem=problem, mend="write its messages as JSON or CSV")
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
-        """The messages of a topic."""
+        """Yield the messages of a topic."""
         self._file.seek(0)
         reader = make_reader(self._file, decoder_factories=[Ros2Decoder(), _JsonDecoder()])
         for _, _, message, decoded in reader.iter_decoded_messages(topics=[topic]):
             yield message.log_time, decoded
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
         self._file.close()
 
 

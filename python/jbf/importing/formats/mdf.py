@@ -1,4 +1,4 @@
-"""MDF3 and MDF4, by asammdf: each channel group has its master, and is read record by record."""
+"""MDF3 and MDF4 files, by asammdf; each channel group has its own clock and is read in blocks."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class MdfSource(Source):
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        # It says to the log what it then raises.
+        # asammdf also logs the errors that it raises.
         logging.getLogger("asammdf").setLevel(logging.CRITICAL)
-        # From an open file a part is read where only a part is asked for; by its name, all of it.
+        # asammdf reads requested parts from an open file, but the complete file from a path.
         self._handle = path.open("rb")
         try:
             self._file = MDF(self._handle, use_display_names=False)
@@ -72,7 +72,7 @@ class MdfSource(Source):
         return np.asarray(signal[0])
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Columns in blocks of records."""
+        """Yield the columns in blocks of records."""
         group, places = self._places[table.name]
         assert table.rows is not None
         for first in range(0, table.rows, BLOCK):
@@ -87,7 +87,7 @@ class MdfSource(Source):
             yield found
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
         self._file.close()
         self._handle.close()
 

@@ -1,5 +1,8 @@
-"""Messages of robots' logs as rows: each field that is a number is a column, `effort[0]`,
-`header.stamp`; each topic is a table with the clock of its stamps, or of the log."""
+"""Messages of robot logs as rows: each topic is a table, and each numeric field is a column.
+
+Columns are named by their path, such as `effort[0]` or `header.stamp`. The clock of a table is the
+stamp in the messages, or the time of the log.
+"""
 
 from __future__ import annotations
 
@@ -17,27 +20,27 @@ from jbf.importing.formats.table import BLOCK, Column, Source, Table, Values
 
 LOG_TIME = "log_time"
 LONGEST = 32
-"""Elements of a list that become columns."""
+"""Largest number of list elements that become columns."""
 _SECONDS = ("sec", "secs")
 _NANOSECONDS = ("nanosec", "nanosecs", "nsec", "nsecs")
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 
 class MessageSource(Source):
-    """A log of messages by topic."""
+    """A log of messages, grouped by topic."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.tables = ()
-        # One for all topics and stamps: their clocks are to be compared.
+        # All topics and stamps share one origin, so that their clocks can be compared.
         self.origin_ns = 0
 
     @abstractmethod
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
-        """Log time, ns, and message, in the order of the log."""
+        """Yield log time, ns, and message, in the order of the log."""
 
     def add_topic(self, topic: str, count: int | None) -> None:
-        """Look at a topic's first message, and add it where it holds numbers."""
+        """Inspect the first message of a topic, and add the topic if it holds numbers."""
         first = next(iter(self.messages(topic)), None)
         if first is None:
             return
@@ -58,10 +61,10 @@ class MessageSource(Source):
         self.tables = (*self.tables, Table(topic, tuple(columns), clock, count, start=start))
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Columns in blocks of messages; a field that a message lacks is no sample."""
+        """Yield the columns in blocks of messages; NaN where a message lacks a field."""
         paths = [None if name == LOG_TIME else path_of(name) for name in names]
         rows: list[list[float]] = []
-        # A message may be far larger than the numbers that are wanted of it: none is kept.
+        # A message may be much larger than its requested numbers: do not keep any.
         for stamp, message in self.messages(table.name):
             rows.append(
                 [
@@ -83,7 +86,7 @@ def _columns(names: Sequence[str], rows: list[list[float]]) -> dict[str, Values]
 
 
 def leaves_of(message: Any, lead: str = "") -> Iterator[tuple[str, Any]]:
-    """Every number and every stamp of a message, with its path."""
+    """Yield every number and every stamp of a message, with its path."""
     for name, value in _parts(message):
         path = f"{lead}{name}"
         if isinstance(value, bool | np.bool_ | str | bytes) or value is None:
@@ -115,19 +118,19 @@ def _is_stamp(value: Any) -> bool:
 
 
 def nanoseconds(stamp: Any) -> int:
-    """A stamp of seconds and nanoseconds in nanoseconds."""
+    """Convert a stamp of seconds and nanoseconds to nanoseconds."""
     parts = dict(_parts(stamp))
     whole = next(int(parts[n]) for n in _SECONDS if n in parts)
     return whole * 10**9 + next(int(parts[n]) for n in _NANOSECONDS if n in parts)
 
 
 def path_of(name: str) -> list[str | int]:
-    """`a.b[2]` as steps."""
+    """Split a path such as `a.b[2]` into steps."""
     return [m[1] if m[1] is not None else int(m[2]) for m in _STEP.finditer(name)]
 
 
 def value_at(message: Any, path: Sequence[str | int], origin: int) -> float:
-    """The number at a path, a stamp in seconds from its origin on; nan where there is none."""
+    """Return the number at a path, or a stamp in seconds since the origin; NaN if there is none."""
     value = message
     try:
         for step in path:

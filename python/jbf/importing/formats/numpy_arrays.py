@@ -1,4 +1,4 @@
-"""NumPy: `.npy` (a matrix or records) and `.npz` (arrays by name)."""
+"""NumPy files: `.npy` (a matrix or records) and `.npz` (named arrays)."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from jbf.importing.formats.table import Options, Source
 
 
 def open_arrays(path: Path, options: Options) -> Source:
-    """Open a file of arrays; nothing in it is run (no pickles)."""
+    """Open a file of arrays; pickles are not loaded, so that no code is run."""
     with path.open("rb") as file:
         alone = file.read(6) == b"\x93NUMPY"
-    # A single array stays on the disk until it is asked for.
+    # A single array remains on the disk until it is read.
     content: Any = np.load(path, mmap_mode="r" if alone else None, allow_pickle=False)
     arrays = {"": content} if alone else dict(content)
     source = ArraySource(path)

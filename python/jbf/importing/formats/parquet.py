@@ -1,4 +1,4 @@
-"""Parquet, by pyarrow: batch by batch, units from the fields' metadata."""
+"""Parquet files, by pyarrow, in batches; units come from the metadata of the fields."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ class ParquetSource(Source):
     def __init__(self, path: Path) -> None:
         self.path = path
         self._origin: np.datetime64 | None = None
-        # Read ahead, a gigabyte stays in memory.
+        # With pre-buffering, a file of one gigabyte would stay in memory.
         self._file = pq.ParquetFile(path, pre_buffer=False, buffer_size=1 << 20)
         schema = self._file.schema_arrow
         columns = [c for field in schema if (c := _column(field)) is not None]
         self.tables = (Table("", tuple(columns), rows=self._file.metadata.num_rows),)
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Columns in batches."""
+        """Yield the columns in batches."""
         kinds = {name: table.column(name).kind for name in names}
         for batch in self._file.iter_batches(BLOCK, columns=list(dict.fromkeys(names))):
             found: dict[str, Values] = {}
@@ -35,7 +35,7 @@ class ParquetSource(Source):
                 column = batch.column(name)
                 if kinds[name] == "instant":
                     values = column.cast(pa.timestamp("ns")).to_numpy(zero_copy_only=False)
-                    # One for all columns of instants: their clocks are to be compared.
+                    # All columns of dates share one origin, so that their clocks can be compared.
                     self._origin = self._origin or first_instant(values)
                     found[name] = seconds(values, self._origin)
                 elif kinds[name] == "word":
@@ -46,7 +46,7 @@ class ParquetSource(Source):
             yield found
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
         self._file.close()
 
 

@@ -1,8 +1,8 @@
-"""Blocks of text lines without irregularities, converted by the parser of NumPy.
+"""Fast conversion of regular blocks of text lines by the parser of NumPy.
 
-`numpy.loadtxt` is several times faster than a loop over cells, and gives the same bits as `float`.
-It cannot report the row and column of a wrong cell, nor keep the other rows. A block that it does
-not accept is therefore left to the caller.
+`numpy.loadtxt` is several times faster than a loop over cells, and returns the same bits as
+`float`. It cannot report the row and column of an invalid cell, nor keep the other rows. If it does
+not accept a block, the caller must convert it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from jbf.importing.formats.dialect import Dialect
 def plain_columns(
     lines: Sequence[str], dialect: Dialect, width: int, numeric: Sequence[int], text: Sequence[int]
 ) -> tuple[npt.NDArray[np.float64], list[list[str]]] | None:
-    """Columns of a block of lines.
+    """Convert a block of lines to columns.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def plain_columns(
     -------
     tuple of array and list, or None
         Numbers, one row for each numeric column, and cells of each text column. None if a line has
-        another number of cells, a quote, or a cell of a numeric column is not a finite number.
+        another number of cells or a quote, or if a cell of a numeric column is not a finite number.
     """
     mark = dialect.delimiter
     if not numeric or dialect.thousands or any('"' in line for line in lines):

@@ -1,6 +1,6 @@
-"""Which format a file is: by its first bytes where they tell, else by its name's end.
+"""Determine the format of a file: by its first bytes if possible, else by its suffix.
 
-A format is one module: `open_...(path, options) -> Source`, and one line here.
+A format is one module with a function `open_...(path, options) -> Source`, and one line here.
 """
 
 from __future__ import annotations
@@ -23,15 +23,16 @@ class Format:
     Attributes
     ----------
     name
-        As a person calls it.
+        Name for messages.
     opener
         `module:function` within this package; the module is imported at first use.
     suffixes
-        Ends of file names, in small letters.
+        Suffixes of file names, in lower case.
     magic, magic_at
-        How its files begin, or what stands so many bytes from there.
+        Bytes that identify the files, and their position.
     library, extra
-        What it is read by, and the extra of jbf that installs it; empty where it comes with jbf.
+        Library that reads the format, and the extra of jbf that installs it; empty if none is
+        needed.
     """
 
     name: str
@@ -43,7 +44,7 @@ class Format:
     magic_at: int = 0
 
     def open(self, path: Path, options: Options) -> Source:
-        """The file as a source; an InputError where the library is absent."""
+        """Open a file; raise an InputError if the library is not installed."""
         module, _, function = self.opener.partition(":")
         try:
             opener: Callable[[Path, Options], Source] = getattr(
@@ -57,7 +58,7 @@ class Format:
             raise self.absent(path) from None
 
     def absent(self, path: Path) -> InputError:
-        """The line that says what to install."""
+        """Return the error that states what to install."""
         return InputError(
             file=path,
             problem=f"is {self.name}, which {self.library} reads, and that is not installed",
@@ -93,16 +94,16 @@ FORMATS = (
 
 @dataclass(frozen=True)
 class Unread:
-    """A format that is recognised, and not read.
+    """A format that is recognised but cannot be read.
 
     Attributes
     ----------
     name
-        As a person calls it.
+        Name for messages.
     mend
         What to do with the file.
     suffixes, magic
-        Ends of its file names, in small letters, and how its files begin.
+        Suffixes of its file names, in lower case, and the first bytes of its files.
     """
 
     name: str
@@ -139,12 +140,12 @@ UNREAD = (
 
 
 def format_of(path: Path) -> Format:
-    """The format of a file; text where nothing says otherwise.
+    """Return the format of a file; text by default.
 
     Raises
     ------
     InputError
-        The file cannot be read, or is of a format that is not read.
+        If the file cannot be read, or its format is not supported.
     """
     if os.path.isdir(path):
         # ROS 2 writes a folder.
@@ -168,7 +169,7 @@ def format_of(path: Path) -> Format:
 
 
 def _is_text(begin: bytes) -> bool:
-    """Whether a file begins with printable characters only, and is no XML."""
+    """Return whether a file begins with printable characters only, and is not XML."""
     xml = begin.lstrip().startswith(b"<")
     return bool(begin) and not xml and all(byte >= 32 or byte in b"\t\r\n" for byte in begin)
 
@@ -179,7 +180,7 @@ def open_source(path: str | os.PathLike[str], options: Options | None = None) ->
     Raises
     ------
     InputError
-        The file is not there, is broken, or its library is not installed.
+        If the file does not exist or is broken, or its library is not installed.
     """
     path = path_of(path)
     return format_of(path).open(path, options or Options())

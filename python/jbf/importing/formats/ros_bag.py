@@ -1,4 +1,4 @@
-"""ROS bags, by rosbags: ROS 1 files, ROS 2 folders; no ROS needs to be installed."""
+"""ROS bags, by rosbags, without an installation of ROS: files of ROS 1, folders of ROS 2."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class BagSource(MessageSource):
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
-        # A ROS 2 bag is its folder, whichever file of it was named.
+        # A ROS 2 bag is a folder, even if the user names a file in it.
         bag = path.parent if path.suffix == ".db3" else path
         store = get_typestore(Stores.ROS2_HUMBLE)
         self._reader = AnyReader([bag], default_typestore=store)
@@ -34,13 +34,13 @@ class BagSource(MessageSource):
             )
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
-        """The messages of a topic."""
+        """Yield the messages of a topic."""
         own = [c for c in self._reader.connections if c.topic == topic]
         for connection, stamp, raw in self._reader.messages(connections=own):
             yield stamp, self._reader.deserialize(raw, connection.msgtype)
 
     def close(self) -> None:
-        """Let the bag go."""
+        """Close the bag."""
         self._reader.close()
 
 

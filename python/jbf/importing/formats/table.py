@@ -1,7 +1,7 @@
-"""What every format gives: tables of columns that share their rows, read in blocks.
+"""Common interface of all formats: tables of columns that share their rows, read in blocks.
 
-A recording with several clocks is several tables. Values come as they stand in the file: units and
-meaning are others' work.
+A recording with several clocks has several tables. Values are those of the file: other modules
+interpret units and meaning.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ import numpy.typing as npt
 from jbf.errors import InputError, did_you_mean
 
 DAMAGED = 1e-3
-"""Share of the rows of a text that may be damaged; one always may."""
+"""Largest share of damaged rows in a text file; one damaged row is always permitted."""
 BLOCK = 50_000
-"""Rows that are held at a time."""
+"""Number of rows in memory at a time."""
 Values = npt.NDArray[Any]
-"""float64, nan where there is no sample; text (object) of a column of words."""
+"""Values of a column: float64 with NaN for a missing sample, or text (object) for words."""
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,13 @@ class Column:
     Attributes
     ----------
     name
-        As the file has it, one of its kind in the table.
+        Name in the file, unique in the table.
     unit
-        What the file says of its unit, apart from the name; empty where it says nothing.
+        Unit that the file states apart from the name; empty if there is none.
     kind
         `number`; `instant`: read as seconds from the table's first instant; `word`: text.
     note
-        What was seen of it that a person should know.
+        Remark on the column for the user.
     """
 
     name: str
@@ -55,17 +55,17 @@ class Table:
     Attributes
     ----------
     name
-        Sheet, group or topic; empty where the file has but one.
+        Sheet, group or topic; empty if the file has only one.
     clock
-        The column that the format itself gives as time, in seconds; None where it gives none.
+        Time column, in seconds, that the format itself defines; None if it defines none.
     rows
-        How many; None where only reading would tell.
+        Number of rows; None if it is unknown before reading.
     rate_hz
-        The rate that the file states, where it states one.
+        Sampling rate that the file states, if any, Hz.
     start
-        The first instant as a date, where it is known.
+        First instant as a date, if known.
     questions
-        What cannot be decided of how it is written, each in a line.
+        Open questions about the notation of the file, one line each.
     """
 
     name: str
@@ -77,7 +77,7 @@ class Table:
     questions: tuple[str, ...] = ()
 
     def column(self, name: str) -> Column:
-        """The column of a name; an InputError says which there are."""
+        """Return the column of a given name; an InputError suggests a similar name."""
         for column in self.columns:
             if column.name == name:
                 return column
@@ -87,26 +87,26 @@ class Table:
 
 @dataclass(frozen=True)
 class Options:
-    """How a file is to be read, where a person knows better; None leaves it to be found out.
+    """Options for reading a file; None means that the option is detected.
 
     Attributes
     ----------
     delimiter, decimal, thousands, encoding
-        Of text.
+        Notation of a text file.
     header
-        The row of the names, the first being 1; 0 where there is none.
+        Row of the names, counted from 1; 0 if there is none.
     units
-        The row of the units; 0 where there is none.
+        Row of the units; 0 if there is none.
     table
-        The sheet, group, topic or variable; all by default.
+        Sheet, group, topic or variable; all by default.
     rate_hz
-        Samples a second of a file without times.
+        Sampling rate of a file without times, Hz.
     steady
-        Whether each row is a steady state, in the place of a time: a table of a Stribeck curve.
+        Whether each row is a steady state without a time, as in a table of a Stribeck curve.
     dates
-        `day_first` or `month_first`, of dates written with slashes.
+        `day_first` or `month_first`, for dates with slashes.
     empty
-        Words that stand where there is no sample.
+        Words that denote a missing sample.
     """
 
     delimiter: str | None = None
@@ -130,21 +130,21 @@ class Source(ABC):
 
     @abstractmethod
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """What a format does of `blocks`; what its library raises, may leave it."""
+        """Yield blocks as `blocks` does; errors of the format's library may propagate."""
 
     def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """The columns of those names, in blocks of rows in the order of the file.
+        """Yield the named columns in blocks of rows, in the order of the file.
 
         Raises
         ------
         InputError
-            A cell is wrong, or the file is broken there; names file, row and column.
+            If a cell is invalid, or the file is broken; names file, row and column.
         """
         with library_errors(self.path, "cannot be read"):
             yield from self.read_blocks(table, names)
 
     def head(self, table: Table, rows: int = 20_000) -> dict[str, Values]:
-        """The first rows of every column."""
+        """Return the first rows of every column."""
         names = [column.name for column in table.columns]
         parts: list[Mapping[str, Values]] = []
         there = 0
@@ -158,20 +158,22 @@ class Source(ABC):
         return {name: np.concatenate([p[name] for p in parts])[:rows] for name in names}
 
     def row_of(self, table: Table, sample: int) -> int | None:
-        """The row in the file, the first being 1, of a sample that is counted from 0; None where
-        rows have no numbers that a person could go to."""
+        """Return the row in the file, counted from 1, of a sample, counted from 0.
+
+        None if the rows of the file have no numbers that a user could look up.
+        """
         return None
 
     def left_out(self) -> list[tuple[int, str, int | None]]:
-        """How many rows the last reading passed over, why, and the first of them."""
+        """Return number, reason and first row of the rows that the last reading skipped."""
         return []
 
     def read_bytes(self) -> tuple[int, int]:
-        """How much of the file has been read, and its size; noughts where that is not known."""
+        """Return the number of bytes read and the size of the file; zeros if unknown."""
         return 0, 0
 
-    def close(self) -> None:  # noqa: B027 (most have nothing to let go of)
-        """Let the file go."""
+    def close(self) -> None:  # noqa: B027 (most have nothing to close)
+        """Close the file."""
 
     def __enter__(self) -> Source:
         return self
@@ -182,7 +184,7 @@ class Source(ABC):
 
 @contextmanager
 def library_errors(path: Path, problem: str) -> Iterator[None]:
-    """Whatever a broken file makes a library raise, in one line."""
+    """Convert any error that a library raises for a broken file to an InputError of one line."""
     try:
         yield
     except (InputError, ModuleNotFoundError, MemoryError):
@@ -194,7 +196,7 @@ def library_errors(path: Path, problem: str) -> Iterator[None]:
 
 
 def unique(names: Sequence[str]) -> list[str]:
-    """Names, each once: what stands twice is told apart by its place."""
+    """Make names unique: repeated names are numbered, and empty names become `column N`."""
     found: list[str] = []
     for at, name in enumerate(names, 1):
         if names.count(name) > 1 and name:
@@ -204,14 +206,14 @@ def unique(names: Sequence[str]) -> list[str]:
 
 
 def in_blocks(columns: Mapping[str, Values], size: int = BLOCK) -> Iterator[dict[str, Values]]:
-    """Arrays that are there already, in blocks."""
+    """Yield arrays that are already in memory in blocks."""
     rows = max((len(values) for values in columns.values()), default=0)
     for first in range(0, rows, size):
         yield {name: values[first : first + size] for name, values in columns.items()}
 
 
 def as_numbers(values: Any) -> Values:
-    """An array as float64, or as text where it holds some."""
+    """Convert an array to float64, or to text if it contains any."""
     array = np.asarray(values)
     if array.dtype.kind in "biuf":
         return array.astype(np.float64)

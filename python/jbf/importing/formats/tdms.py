@@ -1,4 +1,4 @@
-"""TDMS, by npTDMS: channels with a waveform's increment have a clock of their own."""
+"""TDMS files, by npTDMS; channels with a waveform increment have their own clock."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jbf.importing.formats.table import Options, Source
 
 CLOCK = "time"
 Group = tuple[str, int, float | None, float, str]
-"""Name, samples, seconds from sample to sample, first instant, date that it counts from."""
+"""Name, number of samples, sampling interval (s), first time (s), and date of the origin."""
 
 
 def open_tdms(path: Path, options: Options) -> Source:
@@ -46,13 +46,13 @@ def open_tdms(path: Path, options: Options) -> Source:
         name, length, step_s, first_s, _ = key
         clock = None
         if key in starts and first is not None:
-            # Waveforms that were started at different instants keep their distance.
+            # Waveforms that were started at different instants keep their difference in time.
             first_s += float((starts[key] - first) / np.timedelta64(1, "ns")) / 1e9
         if step_s is not None:
             clock = CLOCK
             columns = {CLOCK: (_even(step_s, first_s), "s"), **columns}
         if names.count(name) > 1:
-            # Told apart by their channels, which are unique in a group.
+            # Add the channels to the name, since they are unique in a group.
             name = f"{name}: {', '.join(c for c in columns if c != CLOCK)}"
         date = None if key not in starts else str(first)
         source.add(name if len(found) > 1 else "", columns, length, clock, date)
@@ -66,7 +66,7 @@ def _read(channel: Any) -> Slice:
 
 
 def _even(step_s: float, first_s: float) -> Slice:
-    # A division where the rate is whole: 1/50 s is no number, 50 Hz is.
+    # Divide by a whole rate: 50 Hz is exact in floating point, 1/50 s is not.
     rate = round(1.0 / step_s)
     whole = rate > 0 and 1.0 / rate == step_s
     return lambda first, end: (

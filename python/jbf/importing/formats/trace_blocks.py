@@ -1,6 +1,6 @@
-"""Trace exports of controllers: a block of times and values for each variable, one after the other.
+"""Trace exports of controllers: for each variable in turn, a block of times and values.
 
-CODESYS and the systems made of it (Machine Expert, ctrlX, e!COCKPIT) write `0.Variable; NAME`, more
+CODESYS and systems based on it (Machine Expert, ctrlX, e!COCKPIT) write `0.Variable; NAME`, more
 lines about the variable, and then its samples, `; time; value`.
 """
 
@@ -21,12 +21,12 @@ _SAMPLE = re.compile(r"^\s*[;,\t]\s*(?P<time>[^;\t]+?)\s*[;\t,]\s*(?P<value>[^;\
 
 
 def is_trace(lines: Iterable[str]) -> bool:
-    """Whether a file's first lines are those of such an export."""
+    """Return whether the first lines of a file are those of such an export."""
     return any(VARIABLE.match(line) for line in lines)
 
 
 def open_trace(path: Path, lines: Iterable[str]) -> Source:
-    """Open a trace export; variables with the same times share a table."""
+    """Open a trace export; variables with equal times share a table."""
     source = ArraySource(path)
     add_by_clock(source, _blocks(path, lines))
     if not source.tables:
@@ -35,7 +35,7 @@ def open_trace(path: Path, lines: Iterable[str]) -> Source:
 
 
 def _blocks(path: Path, lines: Iterable[str]) -> Iterator[Signal]:
-    """Each variable with its times."""
+    """Yield each variable with its times."""
     name, rows = "", list[list[float]]()
     for number, line in enumerate(lines, 1):
         if (variable := VARIABLE.match(line)) is not None:

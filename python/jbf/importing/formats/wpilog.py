@@ -1,7 +1,7 @@
-"""WPILib data logs, read as their specification (version 1.0) describes: records of entries, each
-with its instant in microseconds.
+"""WPILib data logs, read according to their specification (version 1.0).
 
-The library of WPILib is not used: of a truncated log it returns values from beyond the end.
+A log consists of records of entries, each with its instant in microseconds. The library of WPILib
+is not used, because it returns values from beyond the end of a truncated log.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from jbf.importing.formats.messages import LONGEST
 from jbf.importing.formats.table import Options, Source
 
 _TYPES = {"double": "<f8", "float": "<f4", "int64": "<i8", "boolean": "?"}
-"""Types of entries that hold numbers, and of arrays of them (`double[]`)."""
+"""NumPy types of numeric entries, and of arrays of them (`double[]`)."""
 _UNITS = ("unit", "units")
 """Keys of an entry's metadata that state its unit."""
 _START, _FINISH, _METADATA = 0, 1, 2
-"""Kinds of control records, which are those of entry 0."""
+"""Kinds of control records, which are the records of entry 0."""
 _US = 1e6
 _HEADER = 12
 _LARGEST = 2**63 - 1
@@ -36,7 +36,7 @@ class _TornError(Exception):
 
 @dataclass
 class _Entry:
-    """Samples of one entry: instants, where each sample begins in the log, and its size."""
+    """Samples of one entry: instants, and the position and size of each sample in the log."""
 
     name: str
     kind: str
@@ -46,11 +46,11 @@ class _Entry:
     sizes: array[int] = field(default_factory=lambda: array("q"))
 
     def signals(self, data: bytes, origin_us: int) -> Iterator[Signal]:
-        """The entry as signals, an array by its elements; times are seconds from the origin."""
+        """Yield one signal for each array element; times are in seconds since the origin."""
         dtype = np.dtype(_TYPES[self.kind.removesuffix("[]")])
         lengths = np.array(self.sizes) // dtype.itemsize
         width = min(int(lengths.max(initial=0)), LONGEST if self.kind.endswith("[]") else 1)
-        # A log may hold records in any order.
+        # Records may be in any order.
         order = np.argsort(self.stamps_us, kind="stable")
         times = (np.array(self.stamps_us)[order] - origin_us) / _US
         values = np.full((len(order), width), np.nan)
@@ -63,7 +63,7 @@ class _Entry:
 
 
 def open_wpilog(path: Path, options: Options) -> Source:
-    """Open a data log; a torn record at its end is passed over."""
+    """Open a data log; a torn record at its end is skipped."""
     data = path.read_bytes()
     if len(data) < _HEADER:
         raise InputError(
@@ -81,8 +81,10 @@ def open_wpilog(path: Path, options: Options) -> Source:
 
 
 def _entries(data: bytes) -> tuple[list[_Entry], int | None]:
-    """Entries that hold numbers, and where a torn record begins; entries of one name and type, as
-    after a restart, are one."""
+    """Return the numeric entries, and the position of a torn record or None.
+
+    Entries of equal name and type, as after a restart, are merged.
+    """
     found: dict[tuple[str, str], _Entry] = {}
     by_number: dict[int, _Entry] = {}
     at = _HEADER + int.from_bytes(data[8:_HEADER], "little")
@@ -130,7 +132,7 @@ def _control(
 
 
 def _text(content: bytes, at: int) -> tuple[str, int]:
-    """A text after its length, and where it ends."""
+    """Return a text with a length prefix, and the position of its end."""
     end = at + 4 + int.from_bytes(content[at : at + 4], "little")
     if end > len(content):
         raise _TornError
@@ -138,7 +140,7 @@ def _text(content: bytes, at: int) -> tuple[str, int]:
 
 
 def _unit(metadata: str) -> str:
-    """The unit that an entry's metadata states, as JSON."""
+    """Return the unit in the metadata of an entry, which is JSON."""
     try:
         content = json.loads(metadata)
     except ValueError:

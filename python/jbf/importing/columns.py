@@ -138,7 +138,7 @@ class Header:
     name
         Header without the unit.
     unit
-        Text of the unit; empty if the header has none.
+        Text of the unit; empty if the header states no unit.
     kind
         Quantity that the words indicate; None if they indicate none.
     sure
@@ -160,7 +160,7 @@ class Header:
 
 
 def split_unit(text: str) -> tuple[str, str]:
-    """Split a header into its name and the stated unit, which is empty if there is none."""
+    """Split a header into its name and the stated unit, which may be empty."""
     # Names that occur twice in a file are numbered.
     shown = re.sub(r" #\d+$", "", " ".join(text.split()))
     loose: list[tuple[str, str]] = []

@@ -1,4 +1,4 @@
-"""A look at a file: which column is what, in which unit, and how sure that is."""
+"""Propose the quantity and unit of each column of a file, and state how certain they are."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ from jbf.units.table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
 from jbf.units.unit import parse_unit
 
 HEAD = 5_000
-"""Rows that are looked at."""
+"""Number of rows that are inspected."""
 NEVER = ("index", "acceleration", "coefficient", "run")
-"""Quantities that make no column of a run."""
+"""Quantities that never become a column of a run."""
 _TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
 _BY_UNIT = ("temperature", "pressure", "current", "time", "speed", "force", "torque", "place")
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A column of the file and the column of a run that it may make."""
+    """A column of the file and the column of a run that it may provide."""
 
     key: str
     column: Column
@@ -53,7 +53,7 @@ class Candidate:
 
     @property
     def expression(self) -> str:
-        """As the map has it; the unit is written out where it is open."""
+        """Expression for the map, with `[?]` for an open unit and with a unit outside the name."""
         name = written(self.called or self.column.name)
         if self.question is not None:
             return f"{name} [{OPEN}]"
@@ -63,17 +63,18 @@ class Candidate:
 
 
 def guess(source: Source, joint: str | None = None) -> Guess:
-    """What a file's columns are.
+    """Propose a map for a file.
 
     Parameters
     ----------
     joint
-        Name or number of one joint of several that the file holds.
+        Name or number of one joint, if the file holds several.
 
     Raises
     ------
     InputError
-        The file is broken where it was looked at, or it holds several joints and none is named.
+        If the inspected part of the file is broken, or the file holds several joints and none is
+        named.
     """
     entries: dict[str, Entry] = {}
     ignored: dict[str, str] = {}
@@ -107,7 +108,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         whole_head = len(next(iter(head.values()), ())) < HEAD
         blank = [c for c in found if whole_head and not np.isfinite(head[c.column.name]).any()]
         found = [c for c in found if c not in blank]
-        # Of several groups each has its own clock, and no line of the map names them all.
+        # Each of several groups has its own clock; no single line of the map names them all.
         own_clock = several and table.clock is not None
         time, open_ = (None, []) if own_clock else guess_time(table, head)
         if time is not None and several:
@@ -116,7 +117,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         for key in dict.fromkeys(c.key for c in found):
             rivals = [c for c in found if c.key == key]
             if key in ("temperature_c", "pressure_pa") and not _one(rivals, key):
-                # What no law needs is left out rather than asked for.
+                # Columns that no model requires are left out without a question.
                 ignored |= {c.column.name: f"one of several that may be {key}" for c in rivals}
                 continue
             entry, rest, asked = _chosen(key, rivals)
@@ -135,7 +136,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
                     if other and key != "time_s" and time is not None:
                         clocks[key] = time.expression
                 elif key not in (*FRICTION, "time_s") and made_in[key] != file_of(source, table):
-                    # The main file's own clock is that of the recording.
+                    # The clock of the main file is that of the recording.
                     ignored[column_of(entry)] = f"{key} is read from {made_in[key].name}"
                 elif key != "time_s":
                     ask = f"is in [{table.name}], too; say table under [file], or write it out"
@@ -157,7 +158,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         questions = [q for q in questions if q.place not in entries["time_s"].expression]
         entries["time_s"] = by_motion
         unit = by_motion.expression[by_motion.expression.rindex("[") :]
-        # The unit of another file's times is its own.
+        # The unit of times in another file is independent.
         of = made_in["time_s"]
         clocks = {
             key: text.replace(f"[{OPEN}]", unit) if made_in[key] == of else text
@@ -178,7 +179,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
 
 
 def _joints(tables: Sequence[Table]) -> list[str]:
-    """Labels of the joints, where a friction and a motion of each of several are there."""
+    """Return the labels of joints if several joints have both a friction and a motion."""
     found: dict[bool, list[str]] = {True: [], False: []}
     for table in tables:
         for candidate in _candidates(table):
@@ -189,12 +190,12 @@ def _joints(tables: Sequence[Table]) -> list[str]:
 
 
 def _placed(questions: list[Question], table: Table) -> list[Question]:
-    """Questions with the table's name before the column's."""
+    """Add the name of the table to the place of each question."""
     return [replace(question, place=f"{table.name}/{question.place}") for question in questions]
 
 
 def _qualified(expression: str, table: Table, whole: Counter[str]) -> str:
-    """A time's expression with its table's name, where another has a column of that name."""
+    """Add the table name to the columns of a time expression whose names occur in other tables."""
     for column in table.columns:
         if whole[column.name] > 1:
             expression = expression.replace(
@@ -223,7 +224,7 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
         return Candidate(column.name, column, header, True, "its name is jbf's own")
     header = understood(column.name, column.unit)
     if header.kind is None and not header.setpoint:
-        # `force/value`: the group says what its column does not, unless another column does.
+        # `force/value`: the name of the group applies, unless another column has its quantity.
         by_group = understood(f"{table.name} {column.name}", column.unit)
         if by_group.kind not in {understood(c.name, c.unit).kind for c in table.columns}:
             header = by_group
@@ -234,9 +235,9 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
     if kind == "force" and unit is not None and unit.dimensions == TORQUE:
         kind = "torque"  # a friction in N m
     if unit is not None and (kind is None or unit.dimensions not in KINDS[kind]):
-        # A name of two letters is no witness against a unit.
+        # A name of at most two letters does not contradict a unit.
         if kind == "time":
-            return None  # a time that is none: what is one is looked for elsewhere
+            return None  # a time without a unit of time: the time is searched for elsewhere
         if kind is not None and header.sure:
             ask = f"{header.unit} is no unit of a {kind}; write the one that it is"
             return Candidate(_key(kind, header), column, header, False, why, ask)
@@ -269,7 +270,7 @@ def _fits(unit: str, key: str) -> bool:
 
 
 def _key(kind: str, header: Header) -> str:
-    """The column of a run that a quantity in this unit makes."""
+    """Return the column of a run for a quantity with the unit of its header."""
     unit = parse_unit(header.unit)
     size = NONE if unit is None else unit.dimensions
     motor = "motor_" if header.motor else ""
@@ -299,17 +300,17 @@ def _key(kind: str, header: Header) -> str:
 
 
 def _one(rivals: list[Candidate], key: str) -> bool:
-    """Whether one of them stands out."""
+    """Return whether one candidate is unambiguous."""
     own = [c for c in rivals if c.column.name == key]
     return len(own) == 1 or (len(rivals) == 1 and rivals[0].sure)
 
 
 def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
-    """The column that makes `key`, those that do not, and what must be asked."""
+    """Return the column for `key`, the rejected columns and the open questions."""
     sure = [c for c in rivals if c.sure]
     named = [c for c in rivals if c.why != "its unit alone"]
     if named and len(named) < len(rivals):
-        # A unit alone is no rival to a name.
+        # A candidate known by its unit only does not compete with one known by its name.
         entry, rest, asked = _chosen(key, named)
         return entry, [*rest, *(c.called for c in rivals if c not in named)], asked
     own = [c for c in rivals if c.column.name == key]
@@ -331,7 +332,7 @@ def _is_used(column: Column, entries: Mapping[str, Entry]) -> bool:
 
 
 def _missing(entries: Mapping[str, Entry], source: Source, lone_motion: bool) -> list[Question]:
-    """Questions for the friction and the motion; a file of a motion alone is a coast-down."""
+    """Return questions for the friction and the motion; a motion alone is a coast-down."""
     names = [c.name for t in source.tables for c in t.columns]
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
     found = []

@@ -1,4 +1,4 @@
-"""Propose how the clocks of files that were recorded at the same time are aligned."""
+"""Propose an alignment of the clocks of files that were recorded at the same time."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from jbf.importing.recording import aligned
 from jbf.importing.side_by_side import SideBySide, stem_of
 
 _NEVER = ("time", "index", "run")
-"""Quantities that are no common signal."""
+"""Quantities that cannot be a common signal."""
 
 
 def with_alignment(guess: Guess, source: SideBySide) -> Guess:
-    """A guess with the further files and an `[align]` section, or a question for each open entry.
+    """Add the further files and an `[align]` section, or a question for each open entry.
 
-    Dates align files without an entry. Else the one column of numbers that two files have in common
-    is proposed, and is sure if its two records determine the offset.
+    Dates align files without an entry. Otherwise, if two files have exactly one numeric column in
+    common, that column is proposed. The proposal is certain if its records determine the offset.
     """
     guess = replace(guess, beside=source.files[1:])
     align: dict[str, str | float] = {}
@@ -58,7 +58,7 @@ def with_alignment(guess: Guess, source: SideBySide) -> Guess:
 
 
 def _is_used(guess: Guess, source: SideBySide, file: Path) -> bool:
-    """Whether a column of the file is taken, as far as that is decided."""
+    """Return whether columns of the file are used, as far as this is decided."""
     try:
         channels = channels_of(source, _decided(guess))
     except InputError:
@@ -67,7 +67,7 @@ def _is_used(guess: Guess, source: SideBySide, file: Path) -> bool:
 
 
 def _decided(guess: Guess) -> Map:
-    """The map without the lines that are open as wholes."""
+    """Return the map without lines whose whole value is open."""
     mapping = guess.map()
     columns = {key: text for key, text in mapping.columns.items() if text != OPEN}
     return replace(mapping, columns=columns)
@@ -76,7 +76,10 @@ def _decided(guess: Guess) -> Map:
 def _tried(
     guess: Guess, source: SideBySide, file: Path, align: Mapping[str, str | float]
 ) -> str | InputError | None:
-    """How a file is aligned; the error where it is not, None where a time is still open."""
+    """Try an alignment and describe it.
+
+    Return the error if it fails, and None if a time is still open.
+    """
     mapping = replace(_decided(guess), align=align)
     try:
         every = channels_of(source, mapping)
@@ -93,7 +96,7 @@ def _tried(
 
 
 def _shared(source: SideBySide, file: Path) -> list[str]:
-    """Pairs of columns of one name in the main file and another, as the map has them."""
+    """Return pairs of equally named columns of the main file and another file, as in the map."""
     by_name: tuple[dict[str, str], dict[str, str]] = ({}, {})
     for table in source.tables:
         of = source.file_of(table)

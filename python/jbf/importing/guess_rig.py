@@ -1,4 +1,4 @@
-"""What a file's columns say of the machine: sections of its rig, and what only a person knows."""
+"""Derive rig sections from the columns of a file, and questions for the user."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _ASKS = {
 
 
 def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list[Question]]:
-    """The sections of the rig, `?` where a value is open.
+    """Return the sections of the rig, with `?` for open values, and the questions.
 
     Parameters
     ----------
     keys
         Columns of the run.
     lone_motion
-        Whether the file holds a motion and nothing else: that of a coast-down.
+        Whether the file holds only a motion, as of a coast-down.
     """
     linear = any(key in keys for key in LINEAR)
     turning = any(key in keys for key in TURNING)
@@ -69,12 +69,12 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
 
 
 def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
-    """Entries renamed for the machine: next to the motion of a slide, a torque is the motor's."""
+    """Rename entries for the machine: if a slide moves, a recorded torque belongs to its motor."""
     found = dict(entries)
     places = [key for key in ("position_m", "velocity_m_s") if key in found]
     of_torque = found.keys() & {"torque_n_m", "current_a", "torque_percent", "voltage_v"}
     if of_torque and places and all(found[k].expression.endswith(f"[{OPEN}]") for k in places):
-        # Next to a torque, a position without a unit is more often an angle.
+        # If a torque is recorded, a position without a unit is more often an angle.
         for key, turning in (("position_m", "angle_rad"), ("velocity_m_s", "velocity_rad_s")):
             if key in found and turning not in found:
                 found[turning] = replace(found.pop(key), key=turning)
@@ -89,7 +89,10 @@ def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
 
 
 def redundant_motor_columns(entries: Mapping[str, Entry]) -> list[str]:
-    """Columns of a motor, where a slide has a force and a motion: they would ask for a pitch."""
+    """Return the motor columns that are not needed if a slide has a force and a motion.
+
+    They would require a screw pitch.
+    """
     if "friction_n" not in entries or not entries.keys() & {"position_m", "velocity_m_s"}:
         return []
     return [key for key in entries if key.startswith("motor_")]
@@ -120,6 +123,6 @@ def force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[
 
 
 def column_of(entry: Entry) -> str:
-    """The file's column that an entry is made of; its key where that is open."""
+    """Return the file column of an entry; its key if the expression is open."""
     parts = entry.expression.split("`")
     return parts[1] if len(parts) > 1 else entry.key

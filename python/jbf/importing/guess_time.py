@@ -1,4 +1,4 @@
-"""Which column is the time, and in what."""
+"""Find the time column of a table and its unit."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from jbf.units.table import TIME
 from jbf.units.unit import parse_unit
 
 _FROM_S, _TO_S = 9.5e8, 4.1e9
-"""Seconds since 1970, from the year 2000 to 2100."""
+"""Seconds since 1970 of the years 2000 and 2100."""
 FORWARD, FEW = 0.9, 4
-"""Minimum share of increasing steps of a clock, and rows below which it is not tested."""
+"""Least share of increasing steps of a clock, and number of rows below which it is not tested."""
 SHORTEST_S = 1e-6
-"""A step that no logger of friction has."""
+"""Smallest plausible sampling interval of a friction recording, s."""
 Found = tuple[Entry | None, list[Question]]
 
 
 def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
-    """The line of the map for the time of a table, and what is open about it."""
+    """Return the map entry for the time of a table, and open questions about it."""
     if table.clock is not None:
         return Entry("time_s", written(table.clock), "the format's own clock"), []
     own = [c for c in table.columns if c.name == "time_s" and c.kind == "number"]
@@ -63,10 +63,11 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
 def time_by_motion(
     entries: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
 ) -> Entry | None:
-    """The time whose unit is open, in the one unit in which speed and change of place agree.
+    """Determine an open unit of time by the agreement of speed and change of position.
 
-    A place and a speed without units are taken to be in units that belong together, such as rad and
-    rad/s: no other two differ by the factor of 1000 between units of time.
+    Return the entry if exactly one unit fits, else None. Position and speed without units are
+    assumed to be in units that belong together, such as rad and rad/s. Other pairs do not differ by
+    the factor of 1000 between units of time.
     """
     time = entries.get("time_s")
     if time is None or time.sure or not time.expression.endswith(f"[{OPEN}]"):
@@ -91,13 +92,13 @@ def time_by_motion(
 
 
 def _in_its_unit(entry: Entry) -> Entry:
-    """An entry whose open unit is that of its column of a run."""
+    """Return an entry with an open unit replaced by that of its run column."""
     unit = wanted_unit(entry.key).text
     return replace(entry, expression=entry.expression.replace(f"[{OPEN}]", f"[{unit}]"))
 
 
 def is_doubtful_time(header: Header) -> bool:
-    """A time in `m`: minutes or milliseconds, and no place."""
+    """Return whether a header is a time in `m`, which may mean minutes or milliseconds."""
     return header.kind == "time" and header.unit == "m"
 
 
@@ -146,7 +147,7 @@ def _of_number(column: Column, step: float | None = None) -> Found:
 
 
 def _since_1970(column: Column, values: Values) -> Entry | None:
-    """A number without a unit that only counts from 1970, in one unit, can be."""
+    """Return an entry for a number without a unit if it counts from 1970 in exactly one unit."""
     known = np.asarray(values, dtype=np.float64)
     known = known[np.isfinite(known)]
     if understood(column.name, column.unit).unit or not known.size:
@@ -159,7 +160,7 @@ def _since_1970(column: Column, values: Values) -> Entry | None:
 
 
 def _runs_forward(values: Values) -> bool:
-    """Whether a column may be a clock: it grows, but where a recording starts again."""
+    """Return whether a column may be a clock: it increases, except where a recording restarts."""
     known = np.asarray(values, dtype=np.float64)
     steps = np.diff(known[np.isfinite(known)])
     steps = steps[steps != 0.0]
@@ -169,7 +170,7 @@ def _runs_forward(values: Values) -> bool:
 
 
 def _steps(values: Values) -> float | None:
-    """The usual step of a column that grows; None where it does not."""
+    """Return the median step of an increasing column, or None if it does not increase."""
     steps = np.diff(np.asarray(values, dtype=np.float64))
     grows = steps[steps > 0.0]
     return float(np.median(grows)) if grows.size > 0.5 * max(steps.size, 1) else None

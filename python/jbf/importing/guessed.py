@@ -1,4 +1,4 @@
-"""What a look at a file gave: columns with how sure they are, and what must be asked."""
+"""Results of the inspection of a file: columns with their certainty, and open questions."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from jbf.importing.mapping import Map
 
 @dataclass(frozen=True)
 class Question:
-    """Something that the file does not say.
+    """Information that the file does not contain.
 
     Attributes
     ----------
     place
-        The column of the file, or the key of the map, that it is about.
+        Column of the file, or key of the map, that the question concerns.
     asks
-        The question in a line, and what to do.
+        Question in one line, with the required action.
     """
 
     place: str
@@ -37,11 +37,11 @@ class Entry:
     Attributes
     ----------
     key, expression
-        Column of a run, and what it is made of; with `?` where something is open.
+        Column of a run, and its expression, with `?` for open parts.
     why
-        What it was known by.
+        Evidence for the entry.
     sure
-        Nothing about it is open.
+        Whether nothing about the entry is open.
     """
 
     key: str
@@ -52,30 +52,30 @@ class Entry:
 
 @dataclass(frozen=True)
 class Guess:
-    """A file's columns as far as they can be told.
+    """Proposed map for a file.
 
     Attributes
     ----------
     path
         The file.
     format
-        What it is.
+        Format of the file.
     tables
-        What is in it.
+        Tables of the file.
     entries
         Lines of the map.
     ignored
-        Columns of the file that nothing is made of, and why.
+        Columns of the file that are not used, and why.
     rig
-        Sections of the rig; `?` where a value is open.
+        Sections of the rig; `?` for an open value.
     questions
-        What must be answered before it can be imported.
+        Questions that must be answered before the import.
     clocks
         Columns with a time of their own.
     beside
         Further files of the recording, with separate clocks.
     align, align_notes
-        How their clocks are aligned, and by what that is known.
+        Alignment of these clocks, and its evidence.
     """
 
     path: Path
@@ -92,11 +92,11 @@ class Guess:
 
     @property
     def sure(self) -> bool:
-        """Whether it can be imported as it is."""
+        """Whether the file can be imported without further information."""
         return not self.questions
 
     def map(self) -> Map:
-        """The guess as a map."""
+        """Return the proposal as a map."""
         columns = {entry.key: entry.expression for entry in self.entries}
         return Map(
             columns=columns,

@@ -1,4 +1,4 @@
-"""From files to a campaign: read through a map, cut, written."""
+"""Import files as a campaign: read them through a map, cut them and write the runs."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Report = Callable[[str, int, int], None]
 
 
 class OpenQuestions(InputError):
-    """A file does not say all that an import must know.
+    """A file does not contain all information that an import requires.
 
     Attributes
     ----------
@@ -57,19 +57,19 @@ class OpenQuestions(InputError):
 
 
 def look(path: PathLike, joint: str | None = None, beside: Sequence[PathLike] = ()) -> Guess:
-    """What a file's columns are, as far as it tells.
+    """Propose a map for a file, as far as its contents permit.
 
     Parameters
     ----------
     joint
-        Name or number of one joint of several that the file holds.
+        Name or number of one joint, if the file holds several.
     beside
         Further files that were recorded at the same time with separate clocks.
 
     Raises
     ------
     InputError
-        The file is not there, is broken, or its library is not installed.
+        If the file does not exist or is broken, or its library is not installed.
     """
     with open_recording(path, _further(beside)) as source:
         found = guess(source, joint)
@@ -88,35 +88,35 @@ def import_files(
     beside: Sequence[PathLike] | None = None,
     progress: Report | None = None,
 ) -> Import:
-    """Recordings as a campaign: runs and a rig.
+    """Import recordings as a campaign: runs and a rig.
 
     Parameters
     ----------
     files : path or iterable of path
         Recordings of any format, all of which one map fits.
     map : path or Map, optional
-        The map; without one everything in the files must be sure.
+        The map. Without a map, the contents of the files must be unambiguous.
     out : path, optional
-        The campaign's folder; without one a temporary folder, which goes with the result.
+        Folder of the campaign. By default a temporary folder, which is deleted with the result.
     cut_file : path, optional
-        Trims (`cut.toml`) in the place of the map's `[cut]`.
+        Trims (`cut.toml`), which replace the `[cut]` section of the map.
     whole : bool
-        Whether recordings are left whole where the map says nothing of cutting; else they are cut
-        at their rests.
+        Whether recordings remain whole if the map has no cutting method. By default they are then
+        cut at their rests.
     replace_folder : bool
-        Whether an earlier import there may be replaced.
+        Whether an earlier import in the folder may be replaced.
     joint : str, optional
-        Name or number of one joint of several that the files hold; without a map only.
+        Name or number of one joint, if the files hold several; only without a map.
     beside : sequence of path, optional
-        Further files of one recording, with separate clocks, in the place of the map's; `files` is
-        then one file.
+        Further files of one recording, with separate clocks, which replace those of the map;
+        `files` is then one file.
     progress : callable, optional
-        Called with a message, how much is done and how much there is.
+        Function that is called with a message, the amount done and the total amount.
 
     Raises
     ------
     InputError
-        A file, the map or a unit is wrong, or something is open; nothing is written.
+        If a file, the map or a unit is invalid, or information is missing; nothing is written.
     """
     paths = _paths(files)
     folder = None if out is None else path_of(out)
@@ -164,9 +164,9 @@ def read_recording(
     beside: Sequence[PathLike] | None = None,
     progress: Report | None = None,
 ) -> tuple[Rig, list[Run]]:
-    """The rig and the runs of recordings, as `import_files` makes them; no folder is left.
+    """Return the rig and the runs of recordings, as `import_files` makes them, without a folder.
 
-    Parameters are those of `import_files`.
+    The parameters are those of `import_files`.
 
     Raises
     ------
@@ -194,13 +194,13 @@ def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
 
 
 def _further(files: Sequence[PathLike]) -> tuple[Path, ...]:
-    """Paths of further files, each of which can be read."""
+    """Return the paths of further files, each of which is readable."""
     given = [files] if isinstance(files, str | os.PathLike) else files
     return tuple(_paths(given)) if given else ()
 
 
 def _check_beside(paths: Sequence[Path], mapping: Map) -> None:
-    """Refuse several recordings with further files, and further files that are not there."""
+    """Raise an error for several recordings with further files, or for missing further files."""
     if mapping.beside and len(paths) > 1:
         problem = f"{len(paths)} files are given together with files recorded beside one"
         mend = f"name one main file: {paths[0].name}, or leave the others out"
@@ -217,7 +217,7 @@ def _map(
     joint: str | None,
     beside: Sequence[Path],
 ) -> tuple[Map, str]:
-    """The map and its text; a guess, once it is sure, where none is given."""
+    """Return the map and its text; without a given map, a proposal if it is certain."""
     if isinstance(given, Map):
         text = "" if given.path is None else read_text(given.path)
         return given, text
@@ -254,7 +254,7 @@ def _pieces(recordings: Sequence[Recording], mapping: Map) -> list[Piece]:
 
 
 def _unique_names(recordings: Sequence[Recording]) -> None:
-    """Files of one stem and several ends are told apart by them."""
+    """Add the suffix to the names of recordings whose files have equal stems."""
     names = [recording.name for recording in recordings]
     for recording in recordings:
         if names.count(recording.name) > 1:

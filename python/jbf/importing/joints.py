@@ -1,4 +1,4 @@
-"""Joints of a robot's log: the units that their names imply, and which joint is meant."""
+"""Joints in the log of a robot: the units that their names imply, and the choice of a joint."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ JOINT_UNITS: tuple[tuple[set[str], dict[str, str]], ...] = (
     ),
     ({"q", "tau"}, {"q": "rad", "qd": "rad/s", "dq": "rad/s", "tau": "N m"}),
 )
-"""Units of a joint by the names that robots' software gives, where a file has none."""
+"""Units of joints by the names in robot software, for files without units."""
 
 
 class JointNotChosen(InputError):
-    """A file holds several joints, and none of them was named.
+    """A file holds several joints, and no valid one was named.
 
     Attributes
     ----------
     joints
-        Their labels.
+        Labels of the joints.
     """
 
     def __init__(self, path: Path, joints: Sequence[str], named: str | None) -> None:
@@ -43,8 +43,7 @@ class JointNotChosen(InputError):
 
 
 def with_units_of_joint_states(table: Table) -> Table:
-    """A table with the units of revolute joints (`sensor_msgs/JointState`), where the file has
-    none."""
+    """Add the units of revolute joints (`sensor_msgs/JointState`) to a table without units."""
     words = {c.name: set(re.findall("[a-z]+", c.name.lower())) for c in table.columns}
     there = {word for found in words.values() for word in found}
     units = next((units for needed, units in JOINT_UNITS if needed <= there), {})

@@ -1,5 +1,7 @@
-"""The ledger of an import, `import.json`: which file became which run, in which units, and what was
-left out."""
+"""The ledger of an import, `import.json`.
+
+It records which file became which run, in which units, and what was left out.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ _PART = 1 << 20
 
 
 def file_hash(path: Path) -> str:
-    """SHA-256 of a file, or of a folder's files in the order of their names."""
+    """Return the SHA-256 of a file, or of the files of a folder in the order of their names."""
     digest = hashlib.sha256()
     files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
     for file in files:
@@ -34,7 +36,7 @@ def file_hash(path: Path) -> str:
 def ledger_of(
     recordings: Sequence[Recording], pieces: Sequence[Piece], mapping: Map
 ) -> dict[str, Any]:
-    """The ledger as plain values."""
+    """Return the ledger as plain values."""
     return {
         "jbf": __version__,
         "map": {
@@ -67,7 +69,7 @@ def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
 
 
 def _beside(recording: Recording) -> dict[str, Any]:
-    """Further files of a recording, and how their clocks were aligned."""
+    """Return the further files of a recording, and the alignment of their clocks."""
     if not recording.beside:
         return {}
     aligned = {alignment.file: alignment.to_dict() for alignment in recording.alignments}
@@ -90,7 +92,7 @@ def _span(piece: Piece) -> dict[str, Any]:
 
 
 def ledgers_beside(paths: Iterable[Path | None]) -> list[dict[str, Any]]:
-    """The ledgers in the folders of some runs; one that cannot be read is none."""
+    """Return the ledgers in the folders of given runs; unreadable ledgers are skipped."""
     folders = dict.fromkeys(path.resolve().parent for path in paths if path is not None)
     found = []
     for folder in folders:

@@ -1,4 +1,4 @@
-"""A guess as the text of `map.toml`: what is sure, open, or left out, each with its why."""
+"""Write a proposed map as `map.toml`: certain, open and unused columns, each with its reason."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ CHOICES = {
     "motion": '  # "linear" or "rotary"',
     "friction": '  # "force" (linear only), "torque", "current", "percent", "voltage", "none"',
 }
-"""What else may stand there."""
+"""Comments with the alternatives of a value."""
 
 
 def map_was_written_for(text: str, file_name: str) -> bool:
-    """Whether a look at a file of that name wrote this map."""
+    """Return whether an inspection of a file of that name wrote this map."""
     made = re.search(r"^#   jbf import (.+) --map ", text, re.MULTILINE)
     return made is not None and Path(made[1]).name == file_name
 
 
 def map_text(guess: Guess, name: str = "map.toml") -> str:
-    """The map, commented."""
+    """Return the text of the map, with comments."""
     parts = [_HEAD.format(file=guess.path, map=name)]
     if guess.questions:
         asked = "\n".join(f"#   {question}" for question in guess.questions)
@@ -85,7 +85,7 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
 
 
 def _align(guess: Guess) -> list[str]:
-    """The section of the clocks of further files."""
+    """Return the section for the clocks of further files."""
     if not guess.beside:
         return []
     lines = [
@@ -103,7 +103,7 @@ def _align(guess: Guess) -> list[str]:
 
 
 def _relative(path: Path, main: Path) -> str:
-    """A path as the map next to the main file has it."""
+    """Return a path relative to the folder of the main file, in which the map is stored."""
     try:
         return Path(os.path.relpath(path.absolute(), real_path(main).parent)).as_posix()
     except ValueError:
@@ -120,7 +120,7 @@ def _aligned(lines: list[tuple[str, str]]) -> list[str]:
 
 
 def _cut(guess: Guess) -> str:
-    """The section of the cut, with a column of the file that it could go by."""
+    """Return the section for cutting, with a column of the file that is suitable for it."""
     for table in guess.tables:
         for column in table.columns:
             header = understood(column.name, column.unit)

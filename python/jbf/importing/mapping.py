@@ -1,8 +1,8 @@
-"""The map: `map.toml` says which columns of a file make which columns of a run, and on what rig.
+"""The map, `map.toml`: the file columns that provide the columns of a run, and the rig.
 
-[file]      how the file is to be read, where it does not say so itself; files recorded with it
+[file]      how the file is read, as far as it does not state this; files recorded with it
 [columns]   column of a run = "expression over the file's columns"
-[clocks]    column of a run = "its own time", where that is not time_s
+[clocks]    column of a run = "its own time", if that is not time_s
 [align]     further file = "common signal" or seconds
 [cut]       how one recording becomes runs
 [drive] or [bearing], [lubricant], [load]   as in rig.toml
@@ -33,24 +33,24 @@ SECTIONS = ("file", "columns", "clocks", "align", "cut", *RIG)
 
 @dataclass(frozen=True)
 class Map:
-    """What a map says.
+    """Contents of a map.
 
     Attributes
     ----------
     columns, clocks
-        Column of a run to an expression over the file's columns.
+        Expressions over the columns of the file, by column of a run.
     options
-        How files are read.
+        Options for reading files.
     cut
-        How a recording becomes runs.
+        Settings for cutting a recording into runs.
     rig
         Sections of a `rig.toml`.
     path
-        Where it was read; None of a guess.
+        File of the map; None for a proposed map.
     beside
         Further files of the recording, with separate clocks.
     align
-        Stem of a further file to a common signal, or to the seconds that are added to its times.
+        Common signal, or seconds added to the times, by stem of a further file.
     """
 
     columns: Mapping[str, str]
@@ -63,7 +63,7 @@ class Map:
     align: Mapping[str, str | float] = field(default_factory=dict)
 
     def open_questions(self) -> Iterator[InputError]:
-        """One error for each `?` that still stands in it."""
+        """Yield an error for each remaining `?`."""
         sections: dict[str, Mapping[str, Any]] = {
             "columns": self.columns,
             "clocks": self.clocks,
@@ -81,12 +81,12 @@ class Map:
                     )
 
     def check(self) -> Rig:
-        """The rig, once nothing is open.
+        """Check that the map is complete and return the rig.
 
         Raises
         ------
         InputError
-            A key is unknown, open or missing.
+            If a key is unknown, open or missing.
         """
         try:
             for error in self.open_questions():
@@ -123,12 +123,12 @@ class Map:
 
 
 def read_map(path: PathLike) -> Map:
-    """Read a map.
+    """Read a map; open questions are reported later.
 
     Raises
     ------
     InputError
-        It is not TOML, or a key is unknown or of the wrong kind; what is open is asked later.
+        If the file is not TOML, or a key is unknown or has an invalid value.
     """
     content = read_toml(path)
     try:
@@ -157,7 +157,7 @@ def _map_of(content: Mapping[str, Any], path: Path) -> Map:
 
 
 def _beside(names: object, folder: Path) -> tuple[Path, ...]:
-    """Further files; their paths are relative to the folder of the map."""
+    """Return the further files; their paths are relative to the folder of the map."""
     if not isinstance(names, list) or not all(isinstance(n, str) and n for n in names):
         mend = 'write a list of files, such as ["force.csv"]'
         raise InputError(key="file.beside", problem=f"{names!r} does not fit", mend=mend)

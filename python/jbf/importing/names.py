@@ -1,4 +1,4 @@
-"""What a file's columns may be called in an expression."""
+"""Names of file columns in expressions."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from jbf.importing.formats.table import Table
 
 
 def column_names(tables: Sequence[Table]) -> dict[str, str]:
-    """Every name that means one column: as it stands, without its unit, with its table's name.
+    """Return every name that denotes one column: as in the file, without unit, or with its table.
 
-    Of a column that stands in several tables only the name with the table's means one.
+    A column name that occurs in several tables is valid only together with the name of its table.
     """
     whole = Counter(column.name for table in tables for column in table.columns)
     found: dict[str, str] = {}
@@ -34,12 +34,12 @@ def column_names(tables: Sequence[Table]) -> dict[str, str]:
 
 
 def qualified(table: Table, name: str, whole: Counter[str]) -> str:
-    """A column's name, with its table's where it stands in several."""
+    """Return the name of a column, with that of its table if it occurs in several tables."""
     return name if whole[name] == 1 else f"{table.name}/{name}"
 
 
 def located(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
-    """For each name that `column_names` gives, the table and the column in it."""
+    """Return the table and its column for each name that `column_names` returns."""
     whole = Counter(column.name for table in tables for column in table.columns)
     return {
         qualified(table, column.name, whole): (table, column.name)
@@ -49,7 +49,7 @@ def located(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
 
 
 def column_units(tables: Sequence[Table]) -> dict[str, str]:
-    """What the file says of each column's unit."""
+    """Return the unit that the file states for each column."""
     units = {}
     for name, (table, column_name) in located(tables).items():
         column = table.column(column_name)

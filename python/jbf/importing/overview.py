@@ -1,4 +1,4 @@
-"""A recording in few points: the least and the largest value of each of some hundred stretches."""
+"""Reduce a recording to the minimum and maximum in each of some hundred or more intervals."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ _POINTS = 1_200
 
 @dataclass(frozen=True, eq=False)
 class Overview:
-    """What a picture of a recording needs.
+    """Data for the plot of a recording.
 
     Attributes
     ----------
     file
         Name of the file.
     starts_s
-        For each stretch of growing time: what is to be added to its times, s, so that stretches
-        stand one after the other.
+        Time added to the times of each segment of increasing time, s, so that segments follow one
+        another.
     curves
-        Column to time, least and largest value, each of shape (points,).
+        Time, minimum and maximum by column, each of shape (points,).
     """
 
     file: str
@@ -38,7 +38,7 @@ class Overview:
 
 
 def overview(recording: Recording) -> Overview:
-    """A recording's friction, its motion and its load."""
+    """Return the friction, motion and load of a recording."""
     starts, offset = [], 0.0
     stream = recording.streams[0]
     for first, end in stream.segments:

@@ -1,4 +1,4 @@
-"""Do place, speed and time go together in the units that were read? Where not, it is asked."""
+"""Check the consistency of position, speed and time in their units, and ask if they disagree."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from jbf.importing.names import column_names, column_units
 from jbf.importing.targets import wanted_unit
 
 _ALIKE = 0.9
-"""Correlation of speed and change of place above which their ratio means something."""
+"""Least correlation of speed and change of position for a meaningful ratio."""
 OFF = 1.25
-"""A ratio that is no ratio of units."""
+"""Factor by which a ratio may exceed or fall below 1 without indicating a wrong unit."""
 PAIRS = (
     ("position_m", "velocity_m_s"),
     ("angle_rad", "velocity_rad_s"),
     ("angle_rad", "speed_rpm"),
     ("motor_angle_rad", "motor_speed_rpm"),
 )
-"""A place and its speed."""
+"""Pairs of a position and its speed."""
 _LEAST = 20
 
 
 def contradictions(
     by_key: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
 ) -> list[Question]:
-    """A question where a speed is not the change of its place."""
+    """Return a question for each speed that is not the change of its position."""
     found = []
     for place, speed in PAIRS:
         if not {place, speed, "time_s"} <= by_key.keys():
@@ -52,7 +52,7 @@ def speed_ratio(
     tables: Sequence[Table],
     heads: Mapping[str, Values],
 ) -> float | None:
-    """The speed over the change of the place; None where they do not go together at all."""
+    """Return the ratio of speed to change of position, or None if they are not correlated."""
     names, units = column_names(tables), column_units(tables)
     values = []
     try:

@@ -1,4 +1,4 @@
-"""A file read through a map: every column in its unit, every clock as it was, onto the disk."""
+"""Read a file through a map onto the disk: converted columns, each with its original clock."""
 
 from __future__ import annotations
 
@@ -39,20 +39,20 @@ Array = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
 
 LOADED = 0.1
-"""Share of the usual load below which a machine counts as unloaded, in what is suggested."""
+"""Share of the usual load below which a machine counts as unloaded; used in suggestions."""
 STEADY = "none: each row is a steady state"
-"""What a ledger says of the clock of steady states."""
+"""Text of the ledger for the clock of steady states."""
 
 
 def read_recording(
     source: Source, mapping: Map, folder: Path, report: Report | None = None
 ) -> Recording:
-    """A source through a map, spooled into a folder.
+    """Read a source through a map and spool it into a folder.
 
     Raises
     ------
     InputError
-        A column is not there, a unit does not fit, a cell or a time is wrong.
+        If a column does not exist, a unit does not fit, or a cell or a time is invalid.
     """
     recording = Recording(stem_of(source.path), source.path, "", steady=mapping.options.steady)
     try:
@@ -84,9 +84,9 @@ def aligned(
     Parameters
     ----------
     folder
-        Where signals are spooled.
+        Folder in which signals are spooled.
     clocks
-        For each file its clock, corrected in place; by default new ones.
+        Clock of each file, corrected in place; by default new clocks.
 
     Raises
     ------
@@ -220,7 +220,7 @@ def _values(
 
 
 class _Words:
-    """Numbers for words, in the order in which they come."""
+    """Numeric codes for words, in the order of their first occurrence."""
 
     def __init__(self, recording: Recording) -> None:
         self.labels = recording.labels
@@ -234,7 +234,7 @@ class _Words:
 
 
 def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
-    """Refuse what no machine does, such as what a division by zero makes; nan is a gap."""
+    """Raise an error for implausibly large values, as from a division by zero; NaN is a gap."""
     beyond = np.abs(rows) > LARGEST
     if beyond.any():
         row, column = np.argwhere(beyond)[0]
@@ -246,12 +246,12 @@ def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
 
 
 def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> None:
-    """Refuse a run with a load that is not above zero.
+    """Raise an error for a run with a load that is not above zero.
 
     Raises
     ------
     InputError
-        Names the run and the instant.
+        With the file, and the time and value of the first such load.
     """
     found = recording.stream_of("load_n")
     if found is None:
@@ -307,7 +307,7 @@ def _described(
 
 
 def _further(file: Path | None, recording: Recording) -> str | None:
-    """The name of a file that is not the main one."""
+    """Return the name of a file, or None for the main file."""
     return None if file is None or file == recording.path else file.name
 
 
@@ -317,7 +317,7 @@ def keep_common_span(recording: Recording) -> None:
     Raises
     ------
     InputError
-        No time is covered by all files.
+        If no time is covered by all files.
     """
     spans = []
     for stream in recording.streams:

@@ -1,4 +1,4 @@
-"""What an import gave."""
+"""Result of an import."""
 
 from __future__ import annotations
 
@@ -18,20 +18,21 @@ from jbf.results import Result
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Import(Result):
-    """Runs and a rig, made of recordings.
+    """Runs and a rig from recordings.
 
     Attributes
     ----------
     folder : Path
-        Where they are: the runs as CSV, `rig.toml`, `map.toml`, `cut.toml`, `import.json`.
+        Folder with the runs as CSV, `rig.toml`, `map.toml`, `cut.toml` and `import.json`.
     rig : Rig
-        What they were recorded on.
+        Rig of the recordings.
     pieces : tuple of Piece
-        How the recordings were cut, what is left out among it.
+        Pieces of the recordings, including those that are left out.
     ledger : dict
-        What `import.json` holds: file, channel, unit as read and made, clock, rows dropped and why.
+        Contents of `import.json`: files, channels, units as read and converted, clocks, dropped
+        rows and reasons.
     overviews : tuple of Overview
-        Each recording in few points, for a picture.
+        Each recording reduced to few points, for plotting.
     """
 
     folder: Path
@@ -39,15 +40,15 @@ class Import(Result):
     pieces: tuple[Piece, ...]
     ledger: Mapping[str, Any]
     overviews: tuple[Overview, ...] = ()
-    # Kept for as long as the result is: where nobody named a folder.
+    # Kept as long as the result, if no folder was named.
     _temporary: TemporaryDirectory[str] | None = field(default=None)
 
     @property
     def runs(self) -> list[Run]:
-        """The runs, read anew."""
+        """The runs, read again at each access."""
         names = [piece.name for piece in self.pieces if piece.keep]
         return read_runs([self.folder / f"{name}.csv" for name in names], self.rig)
 
     def to_dict(self) -> dict[str, Any]:
-        """The ledger."""
+        """Return the ledger."""
         return dict(self.ledger)

@@ -1,4 +1,4 @@
-"""Do a map's columns go with its rig? Asked before hours are read, not when the runs are."""
+"""Check the columns of a map against its rig before the files are read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jbf.records.rig import Rig
 
 
 def check_rig_columns(rig: Rig, mapping: Map) -> None:
-    """An InputError where the runs could not be read with the rig."""
+    """Raise an InputError if the runs could not be read with the rig."""
     file = mapping.path or Path("the columns")
     keys = ["time_s", *mapping.columns]
     if rig.drive is not None:

@@ -1,7 +1,7 @@
-"""A piece of a recording as the CSV of a run, block by block.
+"""Write a piece of a recording as the CSV file of a run, block by block.
 
-Where clocks differ, a row stands at each instant of any of them, and a cell is empty where its
-channel has no sample. Nothing is resampled.
+If clocks differ, there is a row at each instant of any clock, and cells without a sample are
+empty. Nothing is resampled.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ Array = npt.NDArray[np.float64]
 
 
 def run_columns(recording: Recording) -> list[str]:
-    """The columns of its runs in order: known ones first."""
+    """Return the columns of the runs of a recording, known columns first."""
     keys = [stream.columns[at] for stream in recording.streams for at in _written(stream)[1:]]
     known = [key for key in COLUMNS if key in keys or key == "time_s"]
     return known + [key for key in keys if key not in COLUMNS]
 
 
 def _written(stream: Stream) -> list[int]:
-    """Columns of a stream that a run has: none that it was cut by, and none without values."""
+    """Return the stream columns that a run contains, without cutting columns and empty columns."""
     of_cutting = [at for at, key in enumerate(stream.columns) if key in OF_CUTTING]
     return [at for at in range(len(stream.columns)) if at not in (*of_cutting, *stream.empty)]
 
 
 def run_text(recording: Recording, piece: Piece) -> Iterator[str]:
-    """The text of a run, in parts."""
+    """Yield the text of a run in parts."""
     columns = run_columns(recording)
     called = [POINT if recording.steady and c == "time_s" else c for c in columns]
     yield ",".join(called) + "\n"
@@ -43,7 +43,7 @@ def run_text(recording: Recording, piece: Piece) -> Iterator[str]:
 
 
 def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator[Array]:
-    """Rows of a run, shape (n, columns), nan where a channel has no sample."""
+    """Yield the rows of a run, shape (n, columns), with NaN for missing samples."""
     parts = [_Part(stream, piece) for stream in recording.streams]
     taken = [_written(p.stream) for p in parts]
     places = [
@@ -51,11 +51,11 @@ def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator
         for part, own in zip(parts, taken, strict=True)
     ]
     while True:
-        # Every part is filled, not only the first that has rows.
+        # Fill every part, not only the first that has rows.
         there = [part.fill() for part in parts]
         if not any(there):
             return
-        # As far as every clock is known, and no farther.
+        # Process rows only up to the last time that every clock has reached.
         horizon = min((p.last for p in parts if p.more), default=np.inf)
         blocks = [part.take(horizon) for part in parts]
         times = np.unique(np.concatenate([block[:, 0] for block in blocks]))
@@ -69,7 +69,7 @@ def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator
 
 
 class _Part:
-    """A stream's rows within a piece, read ahead by a block."""
+    """Rows of a stream within a piece, read one block ahead."""
 
     def __init__(self, stream: Stream, piece: Piece) -> None:
         self.stream = stream
@@ -84,11 +84,11 @@ class _Part:
 
     @property
     def last(self) -> float:
-        """The last instant that was read."""
+        """The last instant that was read, s."""
         return float(self.rows[-1, 0]) if len(self.rows) else -np.inf
 
     def fill(self) -> bool:
-        """Read a block where there is none; False at the end."""
+        """Read a block if no rows are buffered; return False at the end."""
         while not len(self.rows) and self.more:
             rows = self.stream.read(self.next, min(self.next + BLOCK, self.end))
             self.next += len(rows)
@@ -96,7 +96,7 @@ class _Part:
         return bool(len(self.rows))
 
     def take(self, horizon: float) -> Array:
-        """The rows up to an instant."""
+        """Return and remove the buffered rows up to an instant."""
         count = int(np.searchsorted(self.rows[:, 0], horizon, side="right"))
         taken, self.rows = self.rows[:count], self.rows[count:]
         return taken

@@ -1,6 +1,6 @@
-"""Files that were recorded at the same time with separate clocks, as one source.
+"""Combine files that were recorded at the same time with separate clocks into one source.
 
-Each file is a table (or several) of the source, named by the file's stem.
+Each file provides one or several tables of the source, named by the stem of the file.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from jbf.importing.formats.table import Options, Source, Table, Values
 
 
 class SideBySide(Source):
-    """Several open files; the clock of the first one is that of the recording.
+    """Several open files; the clock of the first file is that of the recording.
 
     Attributes
     ----------
@@ -42,11 +42,11 @@ class SideBySide(Source):
         self.tables = tuple(tables)
 
     def file_of(self, table: Table) -> Path:
-        """The file that a table is in."""
+        """Return the file that contains a table."""
         return self._origins[table.name][0].path
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Blocks of the table's file; an error names that file."""
+        """Yield the blocks of the table's file; an error names that file."""
         source, origin = self._origins[table.name]
         self._reading = source
         try:
@@ -55,16 +55,16 @@ class SideBySide(Source):
             raise error.within(file=source.path) from None
 
     def row_of(self, table: Table, sample: int) -> int | None:
-        """The row in the table's file."""
+        """Return the row in the table's file."""
         source, origin = self._origins[table.name]
         return source.row_of(origin, sample)
 
     def left_out(self) -> list[tuple[int, str, int | None]]:
-        """Rows that the last reading passed over."""
+        """Return the rows that the last reading skipped."""
         return self._reading.left_out()
 
     def read_bytes(self) -> tuple[int, int]:
-        """How much of the file that is being read has been read, and its size."""
+        """Return the number of bytes read from the current file, and its size."""
         return self._reading.read_bytes()
 
     def close(self) -> None:
@@ -73,12 +73,12 @@ class SideBySide(Source):
 
 
 def file_of(source: Source, table: Table) -> Path:
-    """The file that a table of a source is in."""
+    """Return the file that contains a table of a source."""
     return source.file_of(table) if isinstance(source, SideBySide) else source.path
 
 
 def stem_of(path: Path) -> str:
-    """A file's name without its end, and without `.gz` after that."""
+    """Return the name of a file without its suffix, and without a final `.gz`."""
     return (path.with_suffix("") if path.suffix.lower() == ".gz" else path).stem
 
 
@@ -97,7 +97,8 @@ def open_recording(
     Raises
     ------
     InputError
-        A file is not there, is broken, or its library is not installed; or two have one stem.
+        If a file does not exist or is broken, its library is not installed, or two files have the
+        same stem.
     """
     options = options or Options()
     if not beside:
@@ -116,7 +117,7 @@ def open_recording(
 
 
 def _chosen(sources: Sequence[Source], name: str | None) -> list[tuple[Table, ...]]:
-    """The tables of each file: those of a name in the files that have it, else all."""
+    """Return the tables of each file: those of a given name if it has any, else all."""
     if name is None:
         return [source.tables for source in sources]
     named = [tuple(t for t in source.tables if t.name == name) for source in sources]

@@ -1,6 +1,6 @@
-"""A recording on its way: columns of each clock, in a file of plain numbers, read in blocks.
+"""Intermediate storage of a recording: the columns of each clock in a binary file.
 
-A day at 50 Hz is as large in memory as an hour: a block.
+The file is read in blocks, so that the memory required does not depend on the duration.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ Mask = npt.NDArray[np.bool_]
 
 @dataclass
 class Stream:
-    """Columns that share a clock; time is the first of them.
+    """Columns that share a clock; the first column is the time.
 
     Attributes
     ----------
     columns
         Names, `time_s` first.
     segments
-        First row and end of each stretch in which time grows.
+        First row and end of each segment of increasing time.
     file
-        Rows of float64; nan where a column has no sample.
+        Rows of float64; NaN for a missing sample.
     missing
-        How many rows lack a value of each column.
+        Number of rows without a value of each column.
     source
-        The file that it was read from.
+        File from which the stream was read.
     """
 
     columns: tuple[str, ...]
@@ -53,8 +53,11 @@ class Stream:
 
     @property
     def needed(self) -> list[int]:
-        """Columns whose few gaps are missing values; one with more has a clock of its own, and its
-        empty cells stay. By the rule that a run is read by."""
+        """Columns whose few gaps are missing values.
+
+        A column with more gaps has a clock of its own, and its empty cells remain. Reading of
+        runs applies the same rule.
+        """
         if self.missing is None:
             return []
         few = (self.missing > 0) & (self.missing < OWN_CLOCK * self.rows)
@@ -62,18 +65,18 @@ class Stream:
 
     @property
     def empty(self) -> list[int]:
-        """Columns without a single value."""
+        """Columns without any value."""
         if self.missing is None:
             return []
         return [int(column) for column in np.flatnonzero(self.missing == self.rows)]
 
     def complete(self, block: Array) -> Mask:
-        """Rows that have what is needed."""
+        """Return a mask of the rows that have all needed values."""
         mask: Mask = np.all(np.isfinite(block[:, self.needed]), axis=1)
         return mask
 
     def append(self, block: Array) -> None:
-        """Add rows, shape (n, columns)."""
+        """Append rows, shape (n, columns)."""
         lacking = np.isnan(block).sum(axis=0)
         self.missing = lacking if self.missing is None else self.missing + lacking
         with self.file.open("ab") as file:
@@ -81,7 +84,7 @@ class Stream:
         self.rows += len(block)
 
     def read(self, first: int, end: int) -> Array:
-        """Rows from `first` to before `end`, shape (n, columns)."""
+        """Return the rows from `first` to before `end`, shape (n, columns)."""
         width = len(self.columns)
         first, end = max(first, 0), min(end, self.rows)
         count = max(end - first, 0)
@@ -89,7 +92,7 @@ class Stream:
         return values.reshape(count, width)
 
     def blocks(self, first: int = 0, end: int | None = None, size: int = BLOCK) -> Iterator[Array]:
-        """The same in blocks."""
+        """Yield the rows from `first` to before `end` in blocks."""
         last = self.rows if end is None else min(end, self.rows)
         for begin in range(first, last, size):
             yield self.read(begin, min(begin + size, last))
@@ -97,15 +100,17 @@ class Stream:
     def overlapping(
         self, first: int, end: int, margin: int, size: int = BLOCK
     ) -> Iterator[tuple[int, int, Array]]:
-        """Blocks with `margin` rows more at both sides, where there are so many: the row that the
-        block proper begins with, its place in what is given, and the rows."""
+        """Yield blocks with up to `margin` additional rows on both sides, where they exist.
+
+        Each item is the first row of the block proper, its index in the rows, and the rows.
+        """
         for begin in range(first, end, size):
             low = max(begin - margin, first)
             high = min(begin + size + margin, end)
             yield begin, begin - low, self.read(low, high)
 
     def rewrite(self, column: int, values: Iterator[Array]) -> None:
-        """Put other values into a column, block by block."""
+        """Replace the values of a column, block by block."""
         width = len(self.columns)
         with self.file.open("r+b") as file:
             first = 0
@@ -117,11 +122,11 @@ class Stream:
                 first += len(part)
 
     def at(self, row: int) -> float:
-        """The time of a row, s."""
+        """Return the time of a row, s."""
         return float(self.read(row, row + 1)[0, 0])
 
     def rows_between(self, segment: int, first_s: float, last_s: float) -> tuple[int, int]:
-        """First row and end of those within two instants, both included."""
+        """Return the first row and the end of the rows within two instants, both included."""
         low, high = self.segments[segment]
         return self._search(low, high, first_s, right=False), self._search(
             low, high, last_s, right=True
@@ -140,7 +145,7 @@ class Stream:
 
 @dataclass
 class Dropped:
-    """Rows that were left out, and why; the file where it is not the recording's own."""
+    """Rows that were left out, and why, with the file if it is not the main file."""
 
     rows: int
     why: str
@@ -150,22 +155,22 @@ class Dropped:
 
 @dataclass
 class Recording:
-    """One file, read: its streams, and what was done on the way.
+    """Contents of one file: its streams, and remarks on how it was read.
 
     Attributes
     ----------
     name
-        The file's stem.
+        Stem of the file.
     start
-        The first instant as a date, where the file tells.
+        First instant as a date, if the file states it.
     clocks
-        The clock of each file.
+        Clock of each file.
     beside
         Further files with separate clocks.
     alignments
-        How the clocks of further files were aligned to that of `path`.
+        Alignments of the clocks of further files to that of `path`.
     steady
-        Whether each row is a steady state and has no time.
+        Whether each row is a steady state without a time.
     """
 
     name: str
@@ -183,7 +188,7 @@ class Recording:
     steady: bool = False
 
     def stream_of(self, *keys: str) -> tuple[Stream, str] | None:
-        """The stream that holds the first of these columns that is there, and has values."""
+        """Return the stream and name of the first of these columns that has values."""
         for key in keys:
             for stream in self.streams:
                 if key in stream.columns and stream.columns.index(key) not in stream.empty:
@@ -191,13 +196,13 @@ class Recording:
         return None
 
     def clock_of(self, file: Path) -> FileClock:
-        """The clock of a file."""
+        """Return the clock of a file."""
         return self.clocks.setdefault(file, FileClock())
 
     def seconds(
         self, file: Path, node: Node, values: Mapping[str, Values], units: Mapping[str, str]
     ) -> Array:
-        """Times of a file, s."""
+        """Return the times of a file, s."""
         clock = self.clock_of(file)
         time = clock.seconds(node, values, units)
         note = f"times count from {clock.origin_s:.0f} s after 1970"
@@ -208,5 +213,5 @@ class Recording:
 
     @property
     def segments(self) -> int:
-        """Stretches in which time grows."""
+        """Number of segments of increasing time."""
         return max((len(stream.segments) for stream in self.streams), default=0)

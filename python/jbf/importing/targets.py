@@ -1,4 +1,4 @@
-"""The columns that an import can make, and what each is in."""
+"""Columns that an import can create, and their units."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from jbf.records.csv_file import OF_DRIVES
 from jbf.units.unit import Unit, unit_of_name
 
 KNOWN = (*COLUMNS, *OF_DRIVES, "pressure_pa")
-"""Columns that a run can have and that mean something to it."""
+"""Columns of a run that have a defined meaning."""
 FRICTION = (
     "friction_n", "torque_n_m", "motor_torque_n_m", "current_a", "torque_percent", "force_percent",
     "voltage_v",
@@ -24,18 +24,18 @@ _STEMS = {found[0]: key for key in reversed(KNOWN) if (found := unit_of_name(key
 
 
 def wanted_unit(key: str) -> Unit:
-    """What a column of a run is in, by the end of its name.
+    """Return the unit of a column of a run, from the end of its name.
 
     Raises
     ------
     InputError
-        The name is a slip of a known one, or ends in no unit.
+        If the name resembles a known name, or does not end in a unit.
     """
     if key not in KNOWN:
         near = closest(key, [k for k in KNOWN if k.count("_") == key.count("_")], _ALIKE)
         found = unit_of_name(key)
         if near is None and found is not None:
-            # Of a known quantity: units are converted, and the name must not say another.
+            # A known quantity must have its standard name: the name must not state another unit.
             near = _STEMS.get(found[0])
         if near is not None:
             raise InputError(

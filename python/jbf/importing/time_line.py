@@ -1,5 +1,8 @@
-"""The times of a stream, one block after the other: what repeats is left out, where time starts
-again a stretch ends, and where it runs back the file is wrong."""
+"""Check the times of a stream block by block.
+
+Rows with repeated times are left out, and a segment ends where time restarts. Decreasing time
+otherwise is an error.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +18,13 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 _BEGINNING = 0.05
-"""A time that falls back into so small a part of what has passed starts again."""
+"""Share of the elapsed time of a segment; time that falls back below it counts as a restart."""
 _MANY = 0.1
-"""A clock that stands still in such a share of the rows is too coarse to be one."""
+"""Share of rows with repeated times above which a clock is too coarse."""
 
 
 class TimeLine:
-    """Counts rows of the file and rows that are kept."""
+    """Counter of rows of the file and of rows that are kept."""
 
     def __init__(self, row_of: Callable[[int], int | None]) -> None:
         self.seen = 0
@@ -35,12 +38,12 @@ class TimeLine:
         self._timeless = 0
 
     def keep(self, times: Array) -> Mask:
-        """Which rows of the next block stay.
+        """Return a mask of the rows of the next block that are kept.
 
         Raises
         ------
         InputError
-            Time runs back and does not start again.
+            If time decreases without a restart.
         """
         keep = np.isfinite(times)
         self._timeless += int((~keep).sum())
@@ -83,12 +86,12 @@ class TimeLine:
             kept += 1
 
     def segments(self, rows: int) -> list[tuple[int, int]]:
-        """First row and end of each stretch, of the rows that were kept.
+        """Return the first row and end of each segment, counted in kept rows.
 
         Raises
         ------
         InputError
-            The clock stands still too often.
+            If too many times are repeated.
         """
         if self._repeats > _MANY * max(self.seen, 1):
             raise InputError(
@@ -99,7 +102,7 @@ class TimeLine:
         return list(zip(self._starts, [*self._starts[1:], rows], strict=True))
 
     def dropped(self) -> list[Dropped]:
-        """What was left out."""
+        """Return the rows that were left out, and why."""
         found = []
         if self._repeats:
             found.append(Dropped(self._repeats, "time repeats", self._first_repeat))

@@ -1,4 +1,4 @@
-"""An angle that starts again at each turn goes on."""
+"""Unwrap angles that restart at each turn."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TURN = 2.0 * math.pi
 
 
 def unwrapped(stream: Stream) -> list[str]:
-    """Unwrap each angle of one turn that jumps; says what was done."""
+    """Unwrap each angle that jumps within one turn; return notes on what was done."""
     notes = []
     for key in _ANGLES:
         if key not in stream.columns:

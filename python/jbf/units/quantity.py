@@ -1,4 +1,4 @@
-"""Quantities with a unit in TOML, converted to the unit that their key ends in."""
+"""Convert quantities with a unit in TOML to the unit at the end of their key."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ _LONGEST = 60
 
 
 def quantities(section: Mapping[str, Any], prefix: str) -> dict[str, Any]:
-    """A section of a rig with each quantity as a number in the unit of its key.
+    """Convert each quantity in a section of a rig to a number in the unit of its key.
 
     Parameters
     ----------
     section
         Keys and values: `pitch_m = "10 mm"` becomes `pitch_m = 0.01`. Values that are not text of a
-        number and a unit, and those of keys that end in no unit, are unchanged.
+        number and a unit, and those of keys that do not end in a unit, are unchanged.
     prefix
-        Put before the key in an error, such as ``"drive."``.
+        Text before the key in an error, such as ``"drive."``.
 
     Raises
     ------
     InputError
-        The unit is unknown or has other dimensions than that of the key.
+        If the unit is unknown or has other dimensions than that of the key.
     """
     return {key: _converted(key, value, prefix) for key, value in section.items()}
 
@@ -44,7 +44,7 @@ def _converted(key: str, value: object, prefix: str) -> object:
     if match is None:
         return value
     wanted, unit = named[1], parse_unit(match["unit"])
-    # Equal dimensions: a lead of "10 mm/rev" would become one of 1.6 mm.
+    # Dimensions must be equal, angles included: "10 mm/rev" would become a lead of 1.6 mm.
     if unit is None or unit.dimensions != wanted.dimensions:
         raise InputError(
             key=f"{prefix}{key}",

@@ -1,7 +1,7 @@
-"""Units of recordings by the names that loggers give them, with exact sizes in SI.
+"""Units of recordings by their names in loggers, with exact sizes in SI units.
 
-A size is a ratio of whole numbers times a power of pi, so that a conversion is rounded once:
-milliseconds are divided by 1000, not multiplied by a rounded 0.001. Angles and counts have
+A size is a ratio of integers times a power of pi, so that a conversion is rounded only once.
+Milliseconds are divided by 1000, not multiplied by a rounded 0.001. Angles and counts have
 dimensions of their own, so that a missing revolution (a factor of 2 pi) is an error.
 """
 
@@ -18,7 +18,7 @@ Entry = tuple[Fraction, int, Dimensions]
 
 
 def dimensions(**powers: int) -> Dimensions:
-    """Exponents in the order of `BASES`."""
+    """Return exponents in the order of `BASES`."""
     return tuple(powers.get(base, 0) for base in BASES)
 
 
@@ -138,7 +138,7 @@ ASK = {
     "Hz": "rev/s or rad/s",
     "oz": "ozf (a force) or a mass",
 }
-"""Names with several meanings in recordings; the user is asked which one applies."""
+"""Names with several meanings in recordings; the user must state which one applies."""
 
 SUFFIXES = {
     "s": "s", "ms": "ms", "us": "us", "ns": "ns", "min": "min", "h": "h", "sec": "s", "m": "m",

@@ -1,4 +1,4 @@
-"""Parsing of unit texts and conversion of values between units.
+"""Parse unit texts and convert values between units.
 
 A text is a product of factors with integer exponents: `N m`, `N·m`, `Nm`, `mm/s`, `m s^-1`,
 `kg m²`, `N/(mm s)`. A slash divides by the next factor only.
@@ -36,12 +36,12 @@ _LONGEST = 40
 
 @dataclass(frozen=True)
 class Unit:
-    """Size and dimensions: SI value = reading * ratio * pi^pi + zero.
+    """Size and dimensions of a unit: SI value = reading * ratio * pi^pi + zero.
 
     Attributes
     ----------
     text
-        As it was written.
+        Original text.
     ratio, pi
         Size in SI units: `ratio * pi ** pi`.
     zero
@@ -55,7 +55,7 @@ class Unit:
     zero: Fraction = Fraction(0)
 
     def times(self, other: Unit, power: int = 1) -> Unit:
-        """The unit of a product (power 1) or a quotient (-1)."""
+        """Return the unit of a product (power 1) or a quotient (-1)."""
         raised = other.raised(power)
         sign = "*" if power > 0 else "/"
         return Unit(
@@ -66,12 +66,12 @@ class Unit:
         )
 
     def raised(self, power: int) -> Unit:
-        """The unit raised to an integer power."""
+        """Return the unit raised to an integer power."""
         whole = tuple(a * power for a in self.dimensions)
         return Unit(self.text, self.ratio**power, self.pi * power, whole)
 
     def fits(self, wanted: Unit) -> bool:
-        """Whether values in this unit can be converted to `wanted`.
+        """Return whether values in this unit can be converted to `wanted`.
 
         Radians of this unit may be dropped (rad m is m) but not added.
         """
@@ -83,7 +83,7 @@ class Unit:
         return mine == other
 
     def converted(self, values: Array, to: Unit) -> Array:
-        """Values in this unit converted to another, with one rounding where possible."""
+        """Convert values in this unit to another unit, with one rounding where possible."""
         if self.zero != to.zero or (self.zero and self.ratio != to.ratio):
             shift = float((self.zero - to.zero) / to.ratio)
             return values * float(self.ratio / to.ratio) + shift
@@ -96,7 +96,10 @@ class Unit:
 
 
 def scaled(values: Array, ratio: Fraction, pi: int = 0) -> Array:
-    """Values times a ratio and a power of pi; divided where the ratio is 1/n, which rounds once."""
+    """Multiply values by a ratio and a power of pi.
+
+    A ratio of 1/n is applied as a division, which rounds once.
+    """
     if pi:
         return values * (float(ratio) * math.pi**pi)
     if ratio == 1:
@@ -112,7 +115,7 @@ FAHRENHEIT_UNIT = Unit("°F", Fraction(5, 9), 0, TEMPERATURE, Fraction("273.15")
 
 
 def parse_unit(text: str) -> Unit | None:
-    """The unit of a text, or None where the text is not a known unit."""
+    """Return the unit of a text, or None if the text is not a known unit."""
     shown = " ".join(text.split())
     if not shown or len(shown) > _LONGEST:
         return None
@@ -132,7 +135,10 @@ def parse_unit(text: str) -> Unit | None:
 
 
 def unit_of_name(name: str) -> tuple[str, Unit] | None:
-    """A name without its suffix, and the unit of that suffix: `speed_rpm`, `v_m_s`."""
+    """Split a name such as `speed_rpm` or `v_m_s` into its stem and the unit of its suffix.
+
+    Return None if the name does not end in a unit.
+    """
     parts = name.split("_")
     for count in (3, 2, 1):
         if len(parts) <= count:
@@ -145,13 +151,13 @@ def unit_of_name(name: str) -> tuple[str, Unit] | None:
 
 
 def _single(name: str) -> tuple[Fraction, int, Dimensions] | None:
-    """A unit of the table by its name, an alias, or its name in another case."""
+    """Look up a unit by its name, an alias, or its name in another case."""
     if name in UNITS:
         return UNITS[name]
     alias = ALIASES.get(name.lower())
     if alias is not None:
         return UNITS[alias]
-    # In another case, where only one unit matches.
+    # Another case is accepted if exactly one unit matches.
     alike = {entry for known, entry in UNITS.items() if known.lower() == name.lower()}
     return alike.pop() if len(alike) == 1 and len(name) > 1 else None
 

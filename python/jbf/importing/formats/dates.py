@@ -187,7 +187,7 @@ class Instants:
 
 
 def seconds_since(instants: Nanoseconds, origin: int) -> npt.NDArray[np.float64]:
-    """Convert instants to seconds since an origin; NaN where there is none."""
+    """Convert instants to seconds since an origin; NaN for a missing instant."""
     found = (instants - origin) / 1e9
     found[instants == NO_INSTANT] = np.nan
     return found

@@ -54,9 +54,9 @@ class Dialect:
     delimiter
         Separator of cells; a blank means any number of blanks.
     decimal, thousands
-        Marks within a number; `thousands` is empty if there is no such mark.
+        Marks within a number; `thousands` is empty if numbers are not grouped.
     question
-        Question that the file does not answer, in one line; None if there is none.
+        Open question on the notation, in one line; None if the notation is unambiguous.
     """
 
     delimiter: str

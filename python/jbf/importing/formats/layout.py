@@ -42,7 +42,7 @@ class Part:
     columns
         Indices of its columns, counted from 0.
     clock
-        Index of its time column; None if it has none.
+        Index of its time column; None without a time column.
     rate_hz
         Sampling rate, if the file states it, Hz.
     """
@@ -86,7 +86,7 @@ def lay_out(
     Parameters
     ----------
     header, units
-        Rows that the user has stated; 0 if there is none.
+        Rows that the user has stated; 0 if the row does not exist.
 
     Raises
     ------

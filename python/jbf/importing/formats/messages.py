@@ -130,7 +130,7 @@ def path_of(name: str) -> list[str | int]:
 
 
 def value_at(message: Any, path: Sequence[str | int], origin: int) -> float:
-    """Return the number at a path, or a stamp in seconds since the origin; NaN if there is none."""
+    """Return the number at a path, or a stamp in seconds since the origin; NaN if absent."""
     value = message
     try:
         for step in path:

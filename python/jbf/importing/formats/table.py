@@ -35,7 +35,7 @@ class Column:
     name
         Name in the file, unique in the table.
     unit
-        Unit that the file states apart from the name; empty if there is none.
+        Unit that the file states apart from the name; empty if not stated.
     kind
         `number`; `instant`: read as seconds from the table's first instant; `word`: text.
     note
@@ -94,9 +94,9 @@ class Options:
     delimiter, decimal, thousands, encoding
         Notation of a text file.
     header
-        Row of the names, counted from 1; 0 if there is none.
+        Row of the names, counted from 1; 0 for a file without names.
     units
-        Row of the units; 0 if there is none.
+        Row of the units; 0 for a file without units.
     table
         Sheet, group, topic or variable; all by default.
     rate_hz

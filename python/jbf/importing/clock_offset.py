@@ -23,11 +23,11 @@ Mask = npt.NDArray[np.bool_]
 WEAKEST = 0.8
 """Least absolute correlation that is accepted."""
 RIVAL = 1.5
-"""Ratio of unexplained variances, to that of the best offset, below which another offset is a
-rival.
+"""Another offset is a rival if its share of unexplained variance is less than this factor times the
+share of the best offset.
 """
 FLOOR = 0.01
-"""Share of unexplained variance below which it does not distinguish offsets."""
+"""Share of unexplained variance below which offsets count as equally good."""
 OVERLAP = 0.25
 """Least overlap in the search, as a share of the largest overlap."""
 LEAST_SAMPLES = 20

@@ -106,7 +106,7 @@ class ArraySource(Source):
             yield found
 
     def left_out(self) -> list[tuple[int, str, int | None]]:
-        """Return what the format skipped."""
+        """Return the rows or records that the format skipped."""
         return self.passed_over
 
     def close(self) -> None:

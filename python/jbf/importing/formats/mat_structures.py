@@ -1,9 +1,9 @@
 """Signals in structures of MAT files, with their names and clocks.
 
-A signal is a structure that holds samples (`values`, `Data`) and their label, such as Simulink's
-"Structure with time", a timeseries as a structure, or recordings of dSPACE. Its clock is the time
-of the structure itself, or of the nearest enclosing structure. All other vectors are named by their
-path.
+A signal is a structure that holds samples (`values`, `Data`) and their label. Examples are
+Simulink's "Structure with time", a timeseries as a structure, and recordings of dSPACE. Its
+clock is the time of the structure itself, or of the nearest enclosing structure. All other vectors
+are named by their path.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
-"""Reporting: any result in; words, tables, pictures, pages and JSON out.
+"""Reporting of results as text, tables, figures, HTML pages and JSON.
 
-Comes in: `Fit`, `Comparison`, `Diagnosis` and their parts. Goes out: text for a terminal, rows of
-cells, matplotlib axes, self-contained HTML. Computes no statistics and decides nothing.
+Input: `Fit`, `Comparison`, `Diagnosis` and their parts. Output: text for a terminal, rows of
+cells, matplotlib axes, self-contained HTML. The package computes no statistics and takes no
+decisions.
 
-May import: every room of results (`jbf.records` to `jbf.diagnosis`); no room of results imports it:
-their `summary`, `plot`, `report` come here through `jbf.results`.
+May import: every package that produces results (`jbf.records` to `jbf.diagnosis`). None of these
+packages imports it: their methods `summary`, `plot` and `report` call it through `jbf.results`.
 """

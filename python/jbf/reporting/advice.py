@@ -1,5 +1,8 @@
-"""What a residual of some kind usually comes from, and what to do about it: plain words of the
-workshop, beside what the numbers say."""
+"""Usual causes and remedies for each kind of residual structure.
+
+The texts are general workshop experience. They complement the numerical results and do not depend
+on them.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Advice:
-    """Usual causes, and what to do."""
+    """Usual causes of a residual pattern, and the recommended action."""
 
     causes: str
     to_do: str
@@ -99,5 +102,7 @@ ADVICE = {
 
 
 def advice_on(axis: str) -> Advice:
-    """On a residual that has a pattern along an axis, or a remainder of that kind."""
+    """Return the advice for a residual pattern along an axis, or for residual structure of that
+    kind.
+    """
     return ADVICE.get(axis, NONE)

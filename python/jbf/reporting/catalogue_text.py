@@ -1,4 +1,4 @@
-"""The catalogue as plain text: a line an effect, or all that it holds of one."""
+"""Catalogue of effects as plain text: a list of all effects, or the page of one effect."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NEEDS = {
 
 
 def refused_words(effect: Effect) -> str:
-    """The laws that an effect does not go with, and why."""
+    """Format the laws with which an effect cannot be combined, and the reason."""
     reasons = dict.fromkeys(effect.refused.values())
     return "; ".join(
         f"{', '.join(law for law, r in effect.refused.items() if r == reason)} ({reason})"
@@ -32,10 +32,18 @@ def refused_words(effect: Effect) -> str:
 def effects_page(
     pages: Iterable[Effect], law: str | None = None, said: Quantities = OF_BEARING
 ) -> str:
-    """One line an effect, in the order of the signal chain, headed by stage.
+    """List the effects in the order of the signal chain, one line each, under a heading per stage.
 
-    With a law, those that do not go with it follow, each with the reason; one in newtons has no
-    bearing to speak of. `said` has the words for what moves and what is read.
+    Parameters
+    ----------
+    pages
+        Catalogue entries of the effects.
+    law
+        If given, effects that cannot be combined with this law follow in a separate block, each
+        with the reason. The quantities are then those of a bearing if the law needs one, otherwise
+        those of a linear axis.
+    said
+        Names of the motion and of the measured quantity. Overridden if `law` is given.
     """
     pages = list(pages)
     if law is not None:
@@ -60,7 +68,7 @@ def effects_page(
 
 
 def effect_page(effect: Effect) -> str:
-    """Everything the catalogue holds of one effect."""
+    """Format all catalogue data of one effect."""
     lines = [f"{effect.name}: {effect.summary}", ""]
     facts = [
         ("stage", effect.stage),
@@ -88,5 +96,5 @@ def _parameter_row(p: Parameter) -> tuple[str, str, str, str, str, str]:
 
 
 def meaning_of(p: Parameter) -> str:
-    """What a parameter is, and that no fit finds it where none does."""
+    """Return the meaning of a parameter, marked if it is stated by the user and not fitted."""
     return f"{p.meaning} (stated, not fitted)" if p.stated else p.meaning

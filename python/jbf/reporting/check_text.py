@@ -1,4 +1,4 @@
-"""How often diagnoses are right, as plain text."""
+"""Simulated success rates of a diagnosis (`jbf check`) as plain text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from jbf.reporting.words import law_and_effects
 
 
 def check_report(check: Check) -> str:
-    """A rate a line, with its interval."""
+    """Format one rate per line, with its 95 % interval."""
     rows = [("campaigns like this one", "so often", "share", "95 % interval")]
     for rate in check.rates:
         share = 100.0 * rate.count / rate.campaigns
@@ -26,6 +26,6 @@ def check_report(check: Check) -> str:
 
 
 def short_check(check: Check) -> str:
-    """In a line."""
+    """Summarize the check in one line."""
     right = sum(a.right for a in check.answers)
     return f"Check: {right} of {len(check.answers)} campaigns diagnosed right"

@@ -1,4 +1,4 @@
-"""A comparison as one self-contained HTML page, pictures included."""
+"""Report of a comparison as one self-contained HTML page with embedded figures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jbf.reporting.words import comparison_sentence, law_and_effects, listed
 
 
 def comparison_page(comparison: Comparison, command: str = "") -> str:
-    """The HTML text of a comparison's report."""
+    """Return the HTML text of a comparison's report."""
     model = comparison.model
     return page(
         "comparison.html.j2",

@@ -1,7 +1,7 @@
-"""Pictures of a comparison and of one run in it, on matplotlib axes.
+"""Figures of a comparison and of one of its runs, on matplotlib axes.
 
-Every function draws on the axes it is given, or on a new figure's, and returns them; none opens
-a window. `axes[0].figure.savefig(...)` writes the picture.
+Every function draws on the given axes, or on those of a new figure, and returns them. No function
+opens a window. `axes[0].figure.savefig(...)` saves the figure.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 
 def plot_comparison(comparison: Comparison, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Friction against speed in the worst run, and the residual along its worst axis.
+    """Plot friction against speed in the worst run, and the residual along its worst axis.
 
     Parameters
     ----------
     comparison
-        From `jbf.compare`.
+        Result of `jbf.compare`.
     axes
-        Two matplotlib axes to draw on; a new figure's by default.
+        Two matplotlib axes to draw on. Default: those of a new figure.
     """
     left, right = axes_or_new(axes, 1, 2, (10.0, 4.2))
     loops(comparison, most_telling(comparison), ax=left)
@@ -42,16 +42,16 @@ def plot_comparison(comparison: Comparison, axes: Sequence[Axes] | None = None) 
 def plot_run(
     comparison: Comparison, run: int | str | None = None, axes: Sequence[Axes] | None = None
 ) -> list[Axes]:
-    """One run in time: friction measured and modelled, and below it the residual.
+    """Plot one run in time: measured and modelled friction, and the residual below.
 
     Parameters
     ----------
     comparison
-        From `jbf.compare`.
+        Result of `jbf.compare`.
     run
-        Its index or name; the run with the largest error by default.
+        Index or name of the run. Default: the run with the largest error.
     axes
-        Two matplotlib axes to draw on; a new figure's by default.
+        Two matplotlib axes to draw on. Default: those of a new figure.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A comparison as plain text, 80 to 100 columns."""
+"""Comparison as plain text, 80 to 100 columns wide."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def _run_lines(comparison: Comparison) -> list[str]:
 
 
 def comparison_report(comparison: Comparison) -> str:
-    """How far, where it fails, and each run."""
+    """Format the overall error, the axes along which the model fails, and the error of each run."""
     lines = [comparison_sentence(comparison)]
     if comparison.failures:
         lines += [

@@ -1,4 +1,4 @@
-"""Pictures of the thesis's tables and of a compensator's robustness."""
+"""Figures of the thesis's tables and of a compensator's robustness."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE, dress
 
 
 def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
-    """Bench beside thesis for every cell, and our compensator where it was run."""
+    """Plot the RMS errors of the bench and of the thesis for every cell of the tables.
+
+    Columns that the thesis does not have, such as the observed compensator, show the true error.
+    """
     made = Figure(figsize=(10.0, 4.6), layout="constrained") if figure is None else figure
     ax = made.subplots()
     rows = list({key[0]: None for key in tables.cells})
@@ -44,7 +47,10 @@ def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
 
 
 def plot_robustness(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Figure:
-    """Ratio of error with and without compensation: all rows as dots, the worst marked."""
+    """Plot the ratio of the errors with and without compensation, one dot per row of the tables.
+
+    The worst row of each case is marked.
+    """
     made = Figure(figsize=(8.0, 7.0), layout="constrained") if figure is None else figure
     ax = made.subplots()
     for i, outcome in enumerate(reversed(outcomes)):

@@ -1,5 +1,4 @@
-"""Pictures of runs of the loop: response, error, friction and what was learned, schemes side by
-side."""
+"""Figures of control-loop runs: response, error, friction and learned quantities per scheme."""
 
 from __future__ import annotations
 
@@ -17,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def plot_runs(results: Sequence[Result], figure: Figure | None = None) -> Figure:
-    """One column a scheme: response, error, friction against speed, friction in time, learned."""
+    """Plot several runs, one column per scheme.
+
+    The rows are response, error, friction against speed, friction in time, and learned quantities.
+    """
     from matplotlib.figure import Figure
 
     n, rows = len(results), len(TRACES)
@@ -29,7 +31,10 @@ def plot_runs(results: Sequence[Result], figure: Figure | None = None) -> Figure
 
 
 def plot_run_of_loop(run: Result, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """One run: response, error, friction against speed, friction in time, learned; five axes."""
+    """Plot one run on five axes.
+
+    The axes are response, error, friction against speed, friction in time, and learned quantities.
+    """
     found = axes_or_new(axes, len(TRACES), 1, (7.0, 12.5))
     _column(found, run, first=True)
     return found

@@ -1,4 +1,4 @@
-"""Runs of the loop and a compensator's robustness as plain text."""
+"""Control-loop runs and a compensator's robustness as plain text."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FLAGS = {
 
 
 def status_words(result: Result) -> str:
-    """What the loop said of itself, and for how much of the run."""
+    """Format the status flags of a run, each with the share of samples in which it is set."""
     said = []
     for flag, word in _FLAGS.items():
         share = float(((result.status & flag) > 0).mean())
@@ -31,7 +31,7 @@ def status_words(result: Result) -> str:
 
 
 def runs_text(results: Sequence[Result]) -> str:
-    """RMS and peak of several schemes on one task."""
+    """Format RMS and peak error of several schemes on one task."""
     task = results[0].task
     head = f"{task.control} control, {task.wave} {task.low:.3g} to {task.high:.3g} {task.unit}"
     if task.wave != RECORDED:
@@ -48,7 +48,7 @@ def runs_text(results: Sequence[Result]) -> str:
 
 
 def robustness_text(outcomes: Sequence[Outcome]) -> str:
-    """Ratio of error with and without compensation, case by case."""
+    """Format the ratios of the errors with and without compensation, one line per case."""
     names = list(outcomes[0].ratios)
     short = [
         "".join(word[0] if i == 0 else f" {word}" for i, word in enumerate(n.split()))

@@ -1,4 +1,4 @@
-"""The thesis's tables, fitted and predicted, as plain text."""
+"""Fitted and predicted tables of the thesis as plain text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _ratio(cell: Cell) -> str:
 
 
 def friction_lines(model: Model, volts_per_n: float, load_n: float) -> list[str]:
-    """The four fitted numbers."""
+    """Format the four fitted friction parameters."""
     values = {n: p.value for n, p in model.parameters.items()}
     return columns(
         [
@@ -37,7 +37,7 @@ def friction_lines(model: Model, volts_per_n: float, load_n: float) -> list[str]
 
 
 def tables_text(tables: Tables) -> str:
-    """Bench, thesis and ratio for each row and column."""
+    """Format the errors of bench and thesis and their RMS ratio for each row and column."""
     extra = [c for c in {key[1]: None for key in tables.cells} if c not in COLUMNS]
     rows: list[tuple[str, ...]] = []
     head = ("", *(f"{_TITLES[c]}" for c in COLUMNS), *extra)
@@ -63,7 +63,10 @@ def tables_text(tables: Tables) -> str:
 
 
 def score_text(tables: Tables) -> str:
-    """How many of the predicted cells are near, and which are not."""
+    """Report how many predicted cells agree within a factor of 2 and 1.5, and list the others.
+
+    The worst deviation of the fitted cells comes first.
+    """
     worst = max(abs(c.ratio - 1.0) for c in tables.column("none") if c.ratio is not None)
     far = [
         f"{c.row}, {_TITLES[c.column]} ({c.ratio:.2f})"
@@ -81,7 +84,7 @@ def score_text(tables: Tables) -> str:
 
 
 def assumptions_text(found: Sequence[tuple[str, Tables]]) -> str:
-    """Ratios to the thesis under other assumptions, one line each."""
+    """Format the ratios to the thesis under alternative assumptions, one line each."""
     rows: list[tuple[str, ...]] = [("", "dynamic model, learned", "Coulomb", "in 2", "in 1.5")]
     for name, tables in found:
         learning = " ".join(_ratio(c) for c in tables.column("learning"))
@@ -92,7 +95,10 @@ def assumptions_text(found: Sequence[tuple[str, Tables]]) -> str:
 
 
 def better_text(tables: Tables) -> str:
-    """Ours against the better of the thesis's two schemes, by what the shaft truly did."""
+    """Compare the observed compensator with the better of the thesis's two schemes.
+
+    The criterion is the true RMS error of the shaft.
+    """
     gains = tables.gains()
     rows: list[tuple[str, ...]] = [("", "dynamic model", "Coulomb", "observed", "times better")]
     for row, gain in gains.items():
@@ -111,7 +117,7 @@ def better_text(tables: Tables) -> str:
 
 
 def tables_report(tables: Tables, others: Sequence[tuple[str, Tables]]) -> str:
-    """All that `jbf control tables` prints."""
+    """Return the complete output of `jbf control tables`."""
     load = tables.model.rig.load
     load_n = 0.0 if load is None else load.normal_n
     return "\n".join(

@@ -1,4 +1,4 @@
-"""A picture of recordings and of how they were cut."""
+"""Figure of imported recordings and of the pieces into which they were cut."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ _MOST_NAMED = 40
 
 
 def plot_cut(found: Import, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-    """Each recording's channels in time; runs are shaded in turn, what is left out is not."""
+    """Plot each channel of each recording in time.
+
+    Runs are shaded in alternating colours. Pieces that were left out are hatched.
+    """
     rows = [(view, key) for view in found.overviews for key in view.curves]
     drawn = axes_or_new(axes, len(rows), 1, (11.0, 0.8 + 1.7 * len(rows)))
     for ax, (view, key) in zip(drawn, rows, strict=True):
         times, low, high = view.curves[key]
-        # A line through the middle shows where a stretch holds but one sample.
+        # The line at mid-height stays visible where a segment contains a single sample.
         ax.fill_between(times, low, high, color=MEASURED, linewidth=0.0)
         ax.plot(times, 0.5 * (low + high), color="black", linewidth=0.5)
         _shade(ax, found, view)
@@ -53,17 +56,17 @@ def _shade(ax: Axes, found: Import, view: Overview) -> None:
 
 
 def save_cut(found: Import, path: str | os.PathLike[str]) -> None:
-    """Write the picture.
+    """Save the figure of the cut.
 
     Raises
     ------
     InputError
-        The file cannot be written, or its end names no kind of picture.
+        The file cannot be written, or its suffix is not that of an image format.
     """
     save(plot_cut(found), path)
 
 
 def import_page(found: Import) -> str:
-    """The HTML text of an import's page."""
+    """Return the HTML text of an import's page."""
     drawn = svg(plot_cut(found), "Each recording in time, and how it was cut")
     return page("text.html.j2", "Import", words=found.summary(), picture=drawn)

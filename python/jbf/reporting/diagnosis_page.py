@@ -1,4 +1,4 @@
-"""A diagnosis as one self-contained HTML page, pictures included."""
+"""Report of a diagnosis as one self-contained HTML page with embedded figures."""
 
 from __future__ import annotations
 
@@ -50,16 +50,17 @@ from jbf.reporting.words import (
 )
 
 WIDTH = 10.0
-"""Of a picture that is as wide as the page, inches: so its text is as large as the page's."""
+"""Width of a full-width figure in inches, chosen so that its text is as large as that of the page.
+"""
 
 
 def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
-    """The HTML text of a diagnosis's report.
+    """Return the HTML text of a diagnosis's report.
 
     Parameters
     ----------
     command
-        What made it, for its foot.
+        Command that produced the report, printed in the page footer.
     """
     before, after = diagnosis.before, diagnosis.after
     said = diagnosis.model.rig.quantities
@@ -118,14 +119,14 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
 
 
 def _effect(diagnosis: Diagnosis, name: str) -> Effect:
-    """An effect's page in the words of the rig."""
+    """Return the catalogue entry of an effect, worded for the kind of rig."""
     page, said = find_effect(name), diagnosis.model.rig.quantities
     summary = summary_of(page, said) + known_mass(diagnosis.model, name)
     return replace(page, summary=summary, limits=limits_of(page, said))
 
 
 def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[str, ...]]]:
-    """The error of each run, before and after where something was added."""
+    """Return header and rows of the errors per run, before and after effects were added."""
     before, after = diagnosis.before, diagnosis.after
     unit = diagnosis.model.rig.quantities.force
     if not diagnosis.effects:
@@ -145,8 +146,19 @@ def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[st
 
 @dataclass(frozen=True)
 class Round:
-    """What was tried beside a model: its picture, a row for each candidate of which there is
-    something to say, and the names of those that gain no more than chance would."""
+    """Candidates tried in one step of the selection.
+
+    Attributes
+    ----------
+    beside
+        Model to which the candidates were added.
+    picture
+        Ranking of the candidates; empty if none has evidence.
+    rows
+        One row per candidate, without those rejected as no better than chance.
+    nothing
+        Names of the candidates that gain no more than chance would.
+    """
 
     beside: str
     picture: Markup | str
@@ -174,7 +186,7 @@ def _rounds(diagnosis: Diagnosis) -> list[Round]:
 
 
 def _wide(height: float) -> Axes:
-    """Axes of a picture as wide as the page."""
+    """Create axes of a full-width figure."""
     return one_axes(None, (WIDTH, height))
 
 
@@ -184,7 +196,11 @@ def _ledger(diagnosis: Diagnosis) -> Markup:
 
 
 def _before(diagnosis: Diagnosis) -> Markup | str:
-    """The run in which the two models differ most, and the worst failure, before and after."""
+    """Plot the bare law and the final model.
+
+    Left: the run in which they differ most. Right: the residual along the axis of the worst
+    failure. Empty if the final model has no effect.
+    """
     before, after = diagnosis.before, diagnosis.after
     if not diagnosis.model.effects:
         return ""
@@ -199,8 +215,10 @@ def _before(diagnosis: Diagnosis) -> Markup | str:
 
 
 def _last(diagnosis: Diagnosis) -> Markup:
-    """What the final model leaves: in time in the run where it leaves most, and along its worst
-    axis."""
+    """Plot the residual of the final model in time and along its worst axis.
+
+    The time plot shows the run with the largest error.
+    """
     after = diagnosis.after
     left, right = axes_or_new(None, 1, 2, (WIDTH, 3.6))
     residual_in_time(after, most_telling(after), ax=left)
@@ -211,7 +229,7 @@ def _last(diagnosis: Diagnosis) -> Markup:
 
 
 def _friction(diagnosis: Diagnosis) -> Markup:
-    """The loops of the run that tells most, and the means of all."""
+    """Plot the friction loops of the most informative run, and the mean friction of all runs."""
     left, right = axes_or_new(None, 1, 2, (WIDTH, 4.0))
     index = most_telling(diagnosis.before, diagnosis.after)
     loops(diagnosis.after, index, alone=True, ax=left)

@@ -1,4 +1,4 @@
-"""The picture of a diagnosis: the error falling, the residual before and after."""
+"""Figure of a diagnosis: error per step, residual before and after, friction against speed."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 
 def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """The error falling, the residual before and after, and friction against speed.
+    """Plot the error per step, the residual before and after, and friction against speed.
 
-    The last of the four axes shows the final model, or, where no effect was added, the residual
+    The last of the four axes shows the final model. If no effect was added, it shows the residual
     of the run in time.
 
     Parameters
     ----------
     diagnosis
-        From `jbf.diagnose`.
+        Result of `jbf.diagnose`.
     axes
-        Four matplotlib axes to draw on; a new figure's by default.
+        Four matplotlib axes to draw on. Default: those of a new figure.
     """
     falling, residual, first, last = axes_or_new(axes, 2, 2, (11.0, 8.0))
     before, after = diagnosis.before, diagnosis.after
@@ -49,8 +49,10 @@ def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> 
 def before_and_after(
     diagnosis: Diagnosis, pattern: Failure, ax: Axes, *, titled: bool = True
 ) -> None:
-    """Means along the axis of a pattern, of the bare law and, where it differs, of the final
-    model."""
+    """Plot bin means of the residual along the axis of a pattern, before and after.
+
+    The final model is drawn only if it differs from the bare law.
+    """
     said = diagnosis.model.rig.quantities
     noise_band(ax, diagnosis.before.noise_n, unit=said.force)
     changed = bool(diagnosis.model.effects) and diagnosis.after is not diagnosis.before

@@ -1,4 +1,4 @@
-"""A diagnosis as plain text, 80 to 100 columns: the story on a page."""
+"""Diagnosis as plain text, 80 to 100 columns wide, on about one page."""
 
 from __future__ import annotations
 
@@ -69,7 +69,11 @@ def _power_lines(diagnosis: Diagnosis) -> list[str]:
 
 
 def diagnosis_report(diagnosis: Diagnosis) -> str:
-    """The story on a page: verdict, measurement, miss, candidates, error falling, parameters."""
+    """Format the complete report of a diagnosis.
+
+    The order is verdict, measurement, misfit of the bare law, candidates, error per step, and
+    parameters.
+    """
     campaign, bare = diagnosis.before.campaign, diagnosis.steps[0]
     samples = diagnosis.before.samples.count
     model = diagnosis.model

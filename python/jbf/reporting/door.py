@@ -1,6 +1,6 @@
-"""The door through which results reach their words, pictures, tables and pages (`jbf.results`).
+"""Entry point from results to their text, figures, tables and pages (used by `jbf.results`).
 
-One function a verb, dispatched by the kind of result.
+One function per operation, dispatched on the type of the result.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @singledispatch
 def summary(result: object) -> str:
-    """The result in words, as text for a terminal."""
+    """Return the report of a result as text for a terminal."""
     raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
@@ -53,7 +53,7 @@ summary.register(Plan, plan_report)
 
 @singledispatch
 def short_words(result: object) -> str:
-    """The result in a line or two."""
+    """Summarize a result in one or two lines."""
     return object.__repr__(result)
 
 
@@ -70,7 +70,7 @@ short_words.register(Plan, short_plan)
 
 @singledispatch
 def small_table(result: object) -> str:
-    """The result as a small HTML table."""
+    """Return a result as a small HTML table."""
     raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
@@ -90,7 +90,7 @@ small_table.register(Check, small_tables.check_table)
 
 @singledispatch
 def columns(result: object) -> frames.Columns:
-    """The result as columns of one length."""
+    """Return a result as columns of equal length."""
     raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
@@ -104,15 +104,16 @@ columns.register(Import, import_text.import_columns)
 
 
 def plot(result: object, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-    """The result's picture."""
-    # matplotlib takes most of a second to import, and words do not need it.
+    """Plot a result."""
+    # Imported here because matplotlib takes most of a second to import, and text output does not
+    # need it.
     from jbf.reporting import pictures
 
     return pictures.plot(result, axes)
 
 
 def page(result: object) -> str:
-    """The HTML text of the result's page."""
+    """Return the HTML text of a result's page."""
     from jbf.reporting import pictures
 
     return pictures.page(result)

@@ -1,4 +1,4 @@
-"""What effects are on a machine without bearings and a load cell: a drive's own words for them."""
+"""Descriptions of effects, worded for drives, which have no bearing and no load cell."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jbf.reporting.words import number, value_and_error
 
 
 def summary_of(effect: Effect, said: Quantities) -> str:
-    """One clause: what the effect is on a machine of this kind."""
+    """Describe an effect in one clause, worded for the kind of machine."""
     if said.motion == "bearing":
         return effect.summary
     inertia = "inertia" if said.motion == "rotary" else "mass"
@@ -33,14 +33,14 @@ def summary_of(effect: Effect, said: Quantities) -> str:
 
 
 def limits_of(effect: Effect, said: Quantities) -> str:
-    """What the effect does not cover, in the same words."""
+    """Describe the limits of an effect, worded for the kind of machine."""
     if said.motion == "bearing":
         return effect.limits
     return _here(effect.limits, said)
 
 
 def _here(words: str, said: Quantities) -> str:
-    """The catalogue's words without what a bearing's rig has."""
+    """Replace the terms of a bearing rig in a catalogue text."""
     for of_bearing, here in (
         ("the cell", said.sensor),
         ("the journal", "what is driven"),
@@ -51,7 +51,7 @@ def _here(words: str, said: Quantities) -> str:
 
 
 def effect_lines(model: Model) -> list[str]:
-    """What each effect of a model is on its drive; nothing of a rig without [drive]."""
+    """Describe each effect of a model of a drive; empty for a rig without [drive]."""
     if model.rig.drive is None or not model.effects:
         return []
     said = model.rig.quantities
@@ -64,8 +64,10 @@ def effect_lines(model: Model) -> list[str]:
 
 
 def known_mass(model: Model, effect: str) -> str:
-    """The mass or inertia that was found beside the one that the rig tells; empty where it tells
-    none."""
+    """Compare the estimated mass or inertia with the value in the rig file.
+
+    Empty if the effect is not `inertia_leak`, or the rig file contains no such value.
+    """
     drive = model.rig.drive
     if effect != "inertia_leak" or drive is None or drive.friction == "voltage":
         return ""  # an inertia in V s^2/rad has no counterpart in kg m^2

@@ -1,4 +1,4 @@
-"""Fits and runs of the loop as self-contained HTML pages: their text, their picture, tables."""
+"""Self-contained HTML pages of fits and control-loop runs, with text and figures."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ def _page(title: str, words: str, axes: Sequence[Axes], alt: str) -> str:
 
 
 def fit_page(fit: Fit) -> str:
-    """The HTML text of a fit's page."""
+    """Return the HTML text of a fit's page."""
     alt = "Parameters with standard errors; residuals run after run"
     return _page("Fit", fit_report(fit), plot_fit(fit), alt)
 
 
 def bootstrap_page(found: Bootstrap) -> str:
-    """The HTML text of a bootstrap's page."""
+    """Return the HTML text of a bootstrap's page."""
     alt = "Parameters, and the answers of repeated fits"
     words = bootstrap_report(found)
     return _page("Fit, with errors from fits again", words, plot_bootstrap(found), alt)
 
 
 def trajectory_page(fit: TrajectoryFit) -> str:
-    """The HTML text of the page of a fit to known motions."""
+    """Return the HTML text of the page of a trajectory fit."""
     alt = "Parameters with standard errors"
     return _page("Fit of trajectories", trajectory_report(fit), plot_trajectory_fit(fit), alt)
 
 
 def loop_page(run: LoopRun) -> str:
-    """The HTML text of the page of one run of the loop."""
+    """Return the HTML text of the page of one control-loop run."""
     alt = "Response, error, friction and what was learned"
     return _page(f"Loop: {run.scheme}", runs_text([run]), plot_run_of_loop(run), alt)

@@ -1,4 +1,4 @@
-"""Pictures of fitted parameters: each with its interval, and what the fit leaves of the record."""
+"""Figures of fitted parameters with their intervals, and of the residuals of the fit."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 def plot_fit(fit: Fit, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """The parameters with their intervals, and the residuals.
+    """Plot the parameters with their intervals, and the residuals.
 
     Parameters
     ----------
     fit
-        From `jbf.fit`.
+        Result of `jbf.fit`.
     axes
-        Two matplotlib axes to draw on; a new figure's by default.
+        Two matplotlib axes to draw on. Default: those of a new figure.
     """
     left, right = axes_or_new(axes, 1, 2, (10.0, max(height(fit.parameters), 4.2)))
     parameters(fit, ax=left)
@@ -34,7 +34,7 @@ def plot_fit(fit: Fit, axes: Sequence[Axes] | None = None) -> list[Axes]:
 
 
 def plot_bootstrap(found: Bootstrap, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """The parameters with their intervals, and the answers that these come from; one axes."""
+    """Plot the parameters with their intervals and the bootstrap estimates, on one axes."""
     (ax,) = axes_or_new(axes, 1, 1, (7.0, height(found.values)))
     parameters(found.fit, answers=found.values, ax=ax)
     ax.set_title("Parameters, and the answers of repeated fits", loc="left", fontsize="medium")
@@ -42,7 +42,7 @@ def plot_bootstrap(found: Bootstrap, axes: Sequence[Axes] | None = None) -> list
 
 
 def plot_trajectory_fit(fit: TrajectoryFit, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """The parameters with their intervals; one axes."""
+    """Plot the parameters with their intervals, on one axes."""
     (ax,) = axes_or_new(axes, 1, 1, (7.0, height(fit.parameters)))
     intervals(fit.parameters, ax=ax)
     return [ax]

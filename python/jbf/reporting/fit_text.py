@@ -1,4 +1,4 @@
-"""A fit, its bootstrap, and a fit of trajectories as plain text, 80 to 100 columns."""
+"""Fit, bootstrap and trajectory fit as plain text, 80 to 100 columns wide."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from jbf.reporting.words import law_words, number
 
 MOST_CORRELATIONS = 10
 ABOVE = 1.25
-"""Ratio of a residual to the noise of the records from which the report says that it is larger."""
+"""Ratio of residual to noise of the records above which the report adds a note."""
 
 
 def noise_words(noise: Noise) -> str:
-    """`white`, or how much of the noise is coloured and for how long."""
+    """Return `white`, or the share and the correlation time of the coloured noise."""
     if noise.colour <= 0.0:
         return "white"
     return f"coloured, share {number(noise.colour, 2)}, memory {number(noise.memory_s, 2)} s"
 
 
 def lines_of_parameters(fit: Fit) -> list[str]:
-    """A line a parameter, in the quantities of the rig."""
+    """Format one line per parameter, in the quantities of the rig."""
     model = fit.model
     return parameter_lines(model.law, model.effects, fit.parameters, model.rig.quantities)
 
 
 def noise_floor_words(fit: Fit) -> str:
-    """The noise of the records, and how many times as large the residual is."""
+    """Format the noise of the records, and the ratio of the residual to it."""
     if fit.noise_floor_n is None:
         return "not known"
     ratio = fit.rms_n / fit.noise_floor_n
@@ -42,7 +42,7 @@ def noise_floor_words(fit: Fit) -> str:
 
 
 def fit_report(fit: Fit) -> str:
-    """Statistics, parameters with errors, and the strongest correlations."""
+    """Format statistics, parameters with standard errors, and the strongest correlations."""
     model = fit.model
     facts = [
         ("law", law_words(model)),
@@ -84,7 +84,7 @@ def fit_report(fit: Fit) -> str:
 
 
 def bootstrap_report(found: Bootstrap) -> str:
-    """The fit with the errors that the answers show."""
+    """Format the fit with bootstrap standard errors."""
     repeats = len(next(iter(found.values.values())))
     return f"Errors from {repeats} fits of simulated records of the same runs\n" + fit_report(
         found.fit
@@ -92,7 +92,7 @@ def bootstrap_report(found: Bootstrap) -> str:
 
 
 def trajectory_report(fit: TrajectoryFit) -> str:
-    """Statistics, and parameters with errors."""
+    """Format the statistics and the parameters with standard errors."""
     facts = [
         ("samples", str(fit.samples)),
         ("sum of squares", f"{number(fit.sum_of_squares)} (of friction coefficients)"),

@@ -1,4 +1,4 @@
-"""Results as columns of one length, for data frames."""
+"""Results as columns of equal length, for data frames."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def parameter_columns(
     parameters: Mapping[str, ParameterValue],
     quantities: Quantities = OF_BEARING,
 ) -> Columns:
-    """A row a parameter: name, value, stderr, unit, whether it is held, note."""
+    """Return one row per parameter: name, value, stderr, unit, held flag, note."""
     pages = parameters_of(law, effects)
     return {
         "parameter": list(parameters),
@@ -41,18 +41,21 @@ def parameter_columns(
 
 
 def fit_columns(fit: Fit) -> Columns:
-    """A row a parameter."""
+    """Return one row per parameter of a fit."""
     model = fit.model
     return parameter_columns(model.law, model.effects, fit.parameters, model.rig.quantities)
 
 
 def trajectory_columns(fit: TrajectoryFit) -> Columns:
-    """A row a parameter."""
+    """Return one row per parameter of a trajectory fit."""
     return parameter_columns("journal", (), fit.parameters)
 
 
 def comparison_columns(comparison: Comparison) -> Columns:
-    """A row a sample, all runs in a row: record, motion, model, and whether the sample counts."""
+    """Return one row per sample of all concatenated runs.
+
+    The columns are the record, the motion, the model, and a flag for samples that count.
+    """
     prepared = comparison.campaign.prepared
     joined: dict[str, Sequence[Any]] = {
         "time_s": [p.run.time_s for p in prepared],
@@ -67,7 +70,7 @@ def comparison_columns(comparison: Comparison) -> Columns:
 
 
 def diagnosis_columns(diagnosis: Diagnosis) -> Columns:
-    """A row a step of the ledger."""
+    """Return one row per step of the ledger."""
     steps = diagnosis.steps
     return {
         "effects": [" + ".join(s.effects) for s in steps],

@@ -1,4 +1,4 @@
-"""Failures one by one: a picture, what it looks like, what it came from, what to do."""
+"""Cards of individual failures: figure, description, cause, and recommended action."""
 
 from __future__ import annotations
 
@@ -34,11 +34,12 @@ Array = npt.NDArray[np.float64]
 
 SIZE = (4.7, 3.0)
 LEAST_SHARE = 0.08
-"""An effect that makes less of a pattern is not told as its cause."""
+"""Smallest share of a pattern from which an effect is named as its cause."""
 UNCONFIRMED = "predicts runs left out no better"
-"""Words of a candidate that fits better, and is refused."""
+"""Wording of the reason for a candidate that fits better but is rejected."""
 CONFIRMED = 0.6
-"""From here on the effects together are the cause, and not a part of it."""
+"""Total share of a pattern from which the effects are named as its full cause, not as part of it.
+"""
 SEEN_ALONG = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
 
 TITLES = {
@@ -51,12 +52,12 @@ TITLES = {
     "effects": "More effects",
     "unconfirmed": "An effect that runs left out do not confirm",
 }
-"""Of what remains and is no axis."""
+"""Titles of residual structure that lies along no axis."""
 
 
 @dataclass(frozen=True)
 class Card:
-    """One failure."""
+    """Card of one failure in a report."""
 
     title: str
     share: str
@@ -67,7 +68,7 @@ class Card:
 
 
 def failure_cards(diagnosis: Diagnosis) -> list[Card]:
-    """Where the bare law failed, before and after."""
+    """Return one card per failure of the bare law, with the residual before and after."""
     if not diagnosis.failures:
         return []
     try:
@@ -78,7 +79,7 @@ def failure_cards(diagnosis: Diagnosis) -> list[Card]:
 
 
 def remainder_cards(diagnosis: Diagnosis) -> list[Card]:
-    """What remains, none of it explained."""
+    """Return one card per item of unexplained residual structure."""
     return [_remaining(diagnosis.after, remainder) for remainder in diagnosis.unexplained]
 
 
@@ -144,7 +145,7 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
 
 
 def _size(failure: Failure) -> float:
-    """Root mean square of the bins' means, each with its samples, N."""
+    """Return the root mean square of the bin means, weighted by the number of samples, in N."""
     weight = failure.counts / max(int(failure.counts.sum()), 1)
     return float(np.sqrt(np.sum(weight * failure.means_n**2)))
 
@@ -152,7 +153,10 @@ def _size(failure: Failure) -> float:
 def _shares(
     before: Comparison, failure: Failure, made: Mapping[str, Sequence[Array]]
 ) -> dict[str, float]:
-    """How much of a pattern each effect makes, the largest first."""
+    """Estimate the share of a pattern that each effect explains, in descending order.
+
+    Shares below `LEAST_SHARE` are omitted.
+    """
     u_tr = transition_speed(before.model.law, before.model.values.tolist())
     axes = [a for a in all_axes(before.campaign, u_tr) if a.axis == failure.axis]
     whole = float(np.sum(failure.counts * failure.means_n**2))
@@ -163,12 +167,12 @@ def _shares(
         means, counts = bin_means(axes[0], before.samples, list(parts))
         shares[name] = float(np.sum(counts * means * failure.means_n)) / whole
     kept = {name: s for name, s in shares.items() if s >= LEAST_SHARE}
-    # Where one takes back what another overdoes they are more than all of it together.
+    # Effects that partly cancel sum to more than the whole pattern: normalize the shares.
     most = max(sum(kept.values()), 1.0)
     return {name: s / most for name, s in sorted(kept.items(), key=lambda item: -item[1])}
 
 
 def _sentence(words: str) -> str:
-    """With a capital and a full stop; the name of an effect stays as it is."""
+    """Capitalize a clause and end it with a full stop; the name of an effect is not capitalized."""
     capital = words[:1] if "_" in words.partition(" ")[0] else words[:1].upper()
     return f"{capital}{words[1:].rstrip('.')}."

@@ -1,4 +1,4 @@
-"""A look at a file, and an import, in words."""
+"""Text reports of the inspection of a file and of an import."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from jbf.records.counts import count_of
 from jbf.reporting.paragraphs import columns, hanging
 
 _MOST = 12
-"""So many runs and pieces are listed; the ledger has them all."""
+"""Maximum number of runs or pieces in a list; the ledger contains all of them."""
 
 
 def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
-    """What a file is, what is sure of it and what is not.
+    """Report the format and contents of a file, and which assignments are certain or uncertain.
 
     Parameters
     ----------
     kept
-        Whether a map of an earlier look is there and was not written anew.
+        Whether a map from an earlier inspection exists and was not overwritten.
     """
     held = []
     for table in guess.tables:
@@ -61,7 +61,7 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
 
 
 def import_report(found: Import) -> str:
-    """What became runs, what was left out, and what comes next."""
+    """List the runs, their columns, the clock alignments, and the pieces left out."""
     runs = [piece for piece in found.pieces if piece.keep]
     out = [piece for piece in found.pieces if not piece.keep]
     seconds = sum(piece.to_s - piece.from_s for piece in runs)
@@ -97,7 +97,7 @@ def import_report(found: Import) -> str:
 
 
 def channel_rows(files: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str, str, str]]:
-    """Of each channel: what it is, what it was made of, unit as read, its rate, its clock."""
+    """Return one row per channel: name, expression, unit conversion, rate, clock."""
     found: dict[tuple[str, str, str, str, str], None] = {}
     for page in files:
         for channel in page["channels"]:
@@ -119,7 +119,7 @@ def _file_count(files: Sequence[Mapping[str, Any]]) -> str:
 
 
 def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
-    """How the clock of each further file was aligned."""
+    """Describe how the clock of each additional file was aligned."""
     lines = []
     for page in ledger["files"]:
         for further in page.get("beside", ()):
@@ -130,7 +130,7 @@ def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
 
 
 def left_out_lines(ledger: Mapping[str, Any]) -> list[str]:
-    """What was done to the rows of each file."""
+    """List the rows left out of each file, and the notes on it."""
     said = []
     for page in ledger["files"]:
         for dropped in page["dropped"]:
@@ -143,7 +143,7 @@ def left_out_lines(ledger: Mapping[str, Any]) -> list[str]:
 
 
 def short_import(found: Import) -> str:
-    """A line for a prompt."""
+    """Summarize the import in one line."""
     runs = sum(piece.keep for piece in found.pieces)
     return (
         f"Import({count_of(runs, 'run')} from {_file_count(found.ledger['files'])}: {found.folder})"
@@ -151,13 +151,13 @@ def short_import(found: Import) -> str:
 
 
 def import_columns(found: Import) -> dict[str, list[Any]]:
-    """The pieces as columns."""
+    """Return one row per piece."""
     names = ("name", "file", "from_s", "to_s", "keep", "why")
     return {name: [getattr(piece, name) for piece in found.pieces] for name in names}
 
 
 def provenance_rows(ledgers: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str]]:
-    """File, hash, and how its channels were read, for a page."""
+    """Return file, hash prefix, and a description of how the channels were read, for a page."""
     rows = []
     for ledger in ledgers:
         for page in ledger["files"]:

@@ -9,7 +9,10 @@ from typing import Any
 
 
 def json_text(value: Any) -> str:
-    """Strict JSON: a number that is none (nan) is null, an infinite one is the word."""
+    """Serialize to strict JSON.
+
+    NaN becomes `null`; infinities become the strings `"inf"` and `"-inf"`.
+    """
     return json.dumps(_plain(value), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
@@ -18,7 +21,7 @@ def _plain(value: Any) -> Any:
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
-    if hasattr(value, "tolist"):  # numpy's arrays and scalars
+    if hasattr(value, "tolist"):  # NumPy arrays and scalars
         return _plain(value.tolist())
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else ("inf" if value > 0 else "-inf")

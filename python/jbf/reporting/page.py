@@ -1,4 +1,4 @@
-"""The frame of every self-contained HTML page, and the parts that several pages share."""
+"""Common frame of all self-contained HTML pages, and content shared by several pages."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PACKAGES = ("numpy", "scipy", "matplotlib")
 
 @cache
 def _environment() -> jinja2.Environment:
-    # Names of runs and files come from the user: everything is escaped.
+    # The names of runs and files come from the user: escape everything.
     return jinja2.Environment(
         loader=jinja2.PackageLoader("jbf.reporting", "templates"),
         autoescape=True,
@@ -38,7 +38,7 @@ def _environment() -> jinja2.Environment:
 
 
 def page(template: str, title: str, *, command: str = "", **content: Any) -> str:
-    """The HTML text of a template, with what its foot says of versions, time and the command."""
+    """Render a template, including a footer with the versions, the date and the command."""
     return (
         _environment()
         .get_template(template)
@@ -55,17 +55,17 @@ def page(template: str, title: str, *, command: str = "", **content: Any) -> str
 
 
 def pattern_rows(patterns: Iterable[Failure | Remainder]) -> list[tuple[str, str, str]]:
-    """Axis, share and words of each pattern."""
+    """Return axis, share and description of each pattern."""
     return [(p.axis, f"{100 * p.share:.0f} %", p.where) for p in patterns]
 
 
 def import_rows(comparison: Comparison) -> list[tuple[str, str, str]]:
-    """What the runs were imported from, where they were."""
+    """Return the provenance of the runs that were imported."""
     return provenance_rows(ledgers_beside(p.run.path for p in comparison.campaign.prepared))
 
 
 def measurement(comparison: Comparison, noise_n: float) -> str:
-    """What was recorded, in half a sentence."""
+    """Describe the recorded runs in a phrase: count, duration, samples, noise floor."""
     runs = comparison.campaign.prepared
     unit = comparison.model.rig.quantities.force
     return (

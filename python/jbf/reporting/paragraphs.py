@@ -1,4 +1,4 @@
-"""Lines of plain text: aligned columns, hanging paragraphs."""
+"""Plain-text layout: aligned columns and paragraphs with a hanging indent."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from collections.abc import Sequence
 
 WIDTH = 92
 _TOGETHER = re.compile(r"v (<|>|<=|>=|=) \S+( m/s| rad/s)?|\d (N m|N|m|s|deg|rad)\b")
-"""What a line break would tear: `v < 0`, `0.25 N`."""
+"""Expressions that must not be broken across lines, such as `v < 0` and `0.25 N`."""
 
 
 def columns(rows: Sequence[Sequence[str]], align: str, indent: int = 2) -> list[str]:
-    """Rows of cells as aligned lines; `align` holds `<` or `>` for each column."""
+    """Align rows of cells; `align` holds `<` or `>` for each column."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(align))]
     return [
         (
@@ -27,7 +27,7 @@ def columns(rows: Sequence[Sequence[str]], align: str, indent: int = 2) -> list[
 
 
 def hanging(lead: str, text: str, indent: int = 2) -> list[str]:
-    """A paragraph whose further lines start below the text, not below its lead."""
+    """Wrap a paragraph so that continuation lines are indented by the width of its lead."""
     head = " " * indent + lead
     kept = _TOGETHER.sub(lambda found: found[0].replace(" ", "\0"), text)
     wrapped = textwrap.wrap(kept, WIDTH, initial_indent=head, subsequent_indent=" " * len(head))

@@ -1,4 +1,4 @@
-"""What of the door needs matplotlib: pictures, and the pages that hold them."""
+"""Plot and page functions of the entry point `door`, which require matplotlib."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from jbf.reporting.fit_plot import plot_bootstrap, plot_fit, plot_trajectory_fit
 
 @singledispatch
 def plot(result: object, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-    """The result's picture, on the axes given or a new figure's."""
+    """Plot a result on the given axes, or on those of a new figure."""
     raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 
@@ -41,7 +41,7 @@ plot.register(Import, plot_cut)
 
 @singledispatch
 def page(result: object) -> str:
-    """The HTML text of the result's page."""
+    """Return the HTML text of a result's page."""
     raise TypeError(f"reporting knows no result of type {type(result).__name__}")
 
 

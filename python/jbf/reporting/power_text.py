@@ -1,4 +1,4 @@
-"""Power as plain text: how strong each effect must be to be found."""
+"""Power as plain text: the smallest strength at which each effect is detected."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from jbf.reporting.tables import power_rows
 from jbf.reporting.words import law_words, number
 
 WIDEST = 100
-"""Characters in a line of a table."""
+"""Maximum width of a table line in characters."""
 
 
 def power_lines(power: Iterable[Power], model: Model) -> list[str]:
-    """A line an effect, under a head."""
+    """Format one line per effect, under a header."""
     head = ("effect", "found from", "of friction", "alone from", "else it could be")
     rows = power_rows(power, model.law, model.rig.quantities)
     lines = columns([head, *rows], "<<>><", 4)
-    # Further names stand below the first.
+    # Further names are aligned below the first.
     below = " " * lines[0].index(head[-1])
     return [part for line in lines for part in wrap(line, WIDEST, subsequent_indent=below)]
 
 
 def level_words(level: Level) -> str:
-    """How seldom noise makes a name, and what an effect must gain for one."""
+    """Describe the false-alarm rate and the log-likelihood gain that a detection requires."""
     said = (
         f"noise makes a name in at most {100.0 * level.false_alarms:.3g} % of such campaigns: of "
         f"{count_of(level.candidates, 'candidate')} one must gain {number(level.critical)} in "
@@ -55,7 +55,7 @@ def level_words(level: Level) -> str:
 
 
 def planned_report(planned: PlannedPower) -> str:
-    """What planned runs would show."""
+    """Report the power of planned runs."""
     model = planned.model
     unit = model.rig.quantities.force
     beside = " + ".join([law_words(model, ", "), *model.effects])
@@ -75,7 +75,7 @@ def planned_report(planned: PlannedPower) -> str:
 
 
 def plan_report(plan: Plan) -> str:
-    """Which runs to record, and what they would show."""
+    """List the runs to record, followed by their power."""
     rows = [("run", "motion")]
     rows += [(run.name, words) for run, words in zip(plan.runs, plan.words, strict=True)]
     lines = ["Record, those that tell most first", ""]
@@ -83,12 +83,12 @@ def plan_report(plan: Plan) -> str:
 
 
 def short_plan(plan: Plan) -> str:
-    """In a line."""
+    """Summarize the plan in one line."""
     return f"Plan: {count_of(len(plan.runs), 'run')}; {short_power(plan.planned)}"
 
 
 def short_power(planned: PlannedPower) -> str:
-    """In a line."""
+    """Summarize the power of planned runs in one line."""
     found = sum(p.found_80 is not None for p in planned.power)
     return (
         f"PlannedPower: {count_of(len(planned.runs), 'run')} show {found} of "

@@ -1,4 +1,4 @@
-"""What a page's numbers were made from: the files, their hashes, and one hash of all samples."""
+"""Provenance of the numbers on a page: files, their hashes, and one hash over all samples."""
 
 from __future__ import annotations
 
@@ -14,11 +14,13 @@ if TYPE_CHECKING:
     from jbf.records.run import Run
 
 SHOWN = 16
-"""Digits of a file's hash; those of all samples stand whole."""
+"""Number of hexadecimal digits shown of a file's hash; the hash over all samples is shown in
+full.
+"""
 
 
 def fingerprint(runs: Sequence[Run]) -> str:
-    """SHA-256 over the names and the samples of runs, as they went into the fit."""
+    """Compute the SHA-256 hash over names and samples of the runs, as used in the fit."""
     digest = hashlib.sha256()
     for run in runs:
         digest.update(run.name.encode("utf-8", errors="replace"))
@@ -29,7 +31,10 @@ def fingerprint(runs: Sequence[Run]) -> str:
 
 
 def file_rows(runs: Iterable[Run]) -> list[tuple[str, str, str]]:
-    """Run, file and the beginning of its SHA-256, of those that came from files that are there."""
+    """Return run, file and SHA-256 prefix of each run read from a file.
+
+    A file that no longer exists is marked as such.
+    """
     rows = []
     for run in runs:
         if run.path is None:

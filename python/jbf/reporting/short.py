@@ -1,4 +1,4 @@
-"""Results in a line or two, for a prompt, a debugger, a log: `repr`."""
+"""Short text of results, for `repr` in a prompt, a debugger or a log."""
 
 from __future__ import annotations
 
@@ -16,11 +16,13 @@ from jbf.reporting.tables import shown_names
 from jbf.reporting.words import against_noise, number, value_and_error
 
 LONGEST = 120
-"""Of a list that would grow with a model; a line has two of them at most."""
+"""Maximum length in characters of a list that grows with the model; a line has at most two of
+them.
+"""
 
 
 def first_of(items: Iterable[str], join: str = ", ") -> str:
-    """Items in a row, with dots for those that would make it too long."""
+    """Join items, and replace those beyond the maximum length by an ellipsis."""
     kept = list(items)
     whole = join.join(kept)
     while len(whole) > LONGEST and kept:
@@ -47,7 +49,7 @@ def _law(model: Model) -> str:
 
 
 def short_fit(fit: Fit) -> str:
-    """Model, runs, RMS; below it the parameters."""
+    """Summarize model, runs and RMS, with the parameters on a second line."""
     search = "" if fit.converged else ", not converged"
     unit = fit.model.rig.quantities.force
     return (
@@ -58,13 +60,13 @@ def short_fit(fit: Fit) -> str:
 
 
 def short_bootstrap(found: Bootstrap) -> str:
-    """How many answers, and the parameters with the errors that they show."""
+    """Summarize the number of repeated fits, and the parameters with bootstrap standard errors."""
     repeats = len(next(iter(found.values.values())))
     return f"Bootstrap({count_of(repeats, 'fit')} again;\n    {_fitted(found.fit)})"
 
 
 def short_trajectory_fit(fit: TrajectoryFit) -> str:
-    """The parameters, and how many samples they are from."""
+    """Summarize the number of samples and the parameters."""
     search = "" if fit.converged else ", not converged"
     return (
         f"TrajectoryFit({count_of(fit.samples, 'sample')}{search};\n    {_values(fit.parameters)})"
@@ -72,7 +74,7 @@ def short_trajectory_fit(fit: TrajectoryFit) -> str:
 
 
 def short_comparison(comparison: Comparison) -> str:
-    """How far, and along which axes it fails."""
+    """Summarize the error and the axes along which the model fails."""
     where = first_of(f.axis for f in comparison.failures)
     rms, noise = comparison.rms_n, comparison.noise_n
     unit = comparison.model.rig.quantities.force
@@ -84,7 +86,7 @@ def short_comparison(comparison: Comparison) -> str:
 
 
 def short_diagnosis(diagnosis: Diagnosis) -> str:
-    """Verdict, effects, and how far the final model is from runs left out."""
+    """Summarize the verdict, the effects, and the held-out RMS of the final model."""
     last = diagnosis.steps[-1]
     unit = diagnosis.model.rig.quantities.force
     effects = first_of(diagnosis.effects)

@@ -1,4 +1,4 @@
-"""Results as small HTML tables, for notebooks: `_repr_html_`."""
+"""Results as small HTML tables for notebooks (`_repr_html_`)."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ PARAMETER_HEAD = ("parameter", "value", "standard error", "", "unit", "note")
 
 
 def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A titled table; names come from users, so every cell is escaped."""
+    """Build a titled table; every cell is escaped because names come from users."""
 
     def line(cells: Iterable[str], tag: str) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
@@ -47,7 +47,7 @@ def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> str
 
 
 def fit_table(fit: Fit) -> str:
-    """The parameters with errors."""
+    """Tabulate the parameters with standard errors."""
     said = fit.model.rig.quantities
     search = "" if fit.converged else ", not converged"
     title = f"Fit: {law_and_effects(fit.model)}; RMS {number(fit.rms_n)} {said.force}{search}"
@@ -56,20 +56,20 @@ def fit_table(fit: Fit) -> str:
 
 
 def bootstrap_table(found: Bootstrap) -> str:
-    """The parameters with errors from fits again."""
+    """Tabulate the parameters with bootstrap standard errors."""
     model = found.fit.model
     rows = parameter_rows(model.law, model.effects, found.fit.parameters, model.rig.quantities)
     return table("Errors from fits of simulated records", PARAMETER_HEAD, rows)
 
 
 def trajectory_table(fit: TrajectoryFit) -> str:
-    """The parameters with errors."""
+    """Tabulate the parameters with standard errors."""
     rows = parameter_rows("journal", (), fit.parameters)
     return table(f"Fit of trajectories: {fit.samples} samples", PARAMETER_HEAD, rows)
 
 
 def loop_table(run: LoopRun) -> str:
-    """The errors of a run of the loop."""
+    """Tabulate the errors of a control-loop run."""
     unit = run.task.unit
     head = ("scheme", f"RMS ({unit})", f"peak ({unit})", f"true RMS ({unit})", "status")
     row = (run.scheme, number(run.rms), number(run.peak), number(run.true_rms), status_words(run))
@@ -77,7 +77,7 @@ def loop_table(run: LoopRun) -> str:
 
 
 def comparison_table(comparison: Comparison) -> str:
-    """How far each run is off."""
+    """Tabulate the error of each run."""
     where = listed(f.axis for f in comparison.failures)
     title = comparison_sentence(comparison) + (f"; fails along {where}" if where else "")
     unit = comparison.model.rig.quantities.force
@@ -85,7 +85,7 @@ def comparison_table(comparison: Comparison) -> str:
 
 
 def diagnosis_table(diagnosis: Diagnosis) -> str:
-    """The ledger below the verdict."""
+    """Tabulate the ledger, titled with the verdict."""
     title = f"Verdict: {diagnosis.verdict}. {verdict_sentence(diagnosis, place='')}"
     unit = diagnosis.model.rig.quantities.force
     head = ("step", f"fit ({unit})", f"held out ({unit})", f"noise ({unit})", "held out / noise")
@@ -93,14 +93,14 @@ def diagnosis_table(diagnosis: Diagnosis) -> str:
 
 
 def model_table(model: Model) -> str:
-    """The law, the effects, the parameters."""
+    """Tabulate the parameters, titled with the law and the effects."""
     said = model.rig.quantities
     rows = parameter_rows(model.law, model.effects, model.parameters, said)
     return table(f"Model: {law_and_effects(model)}", PARAMETER_HEAD, rows)
 
 
 def run_table(run: Run) -> str:
-    """The columns, each with where it goes."""
+    """Tabulate the columns, each with its smallest and largest value."""
     rows = [
         (name, number(float(np.min(values))), number(float(np.max(values))))
         for name, values in run.columns().items()
@@ -111,25 +111,25 @@ def run_table(run: Run) -> str:
 
 
 def planned_table(planned: PlannedPower) -> str:
-    """What planned runs show."""
+    """Tabulate the power of planned runs."""
     rows = power_rows(planned.power, planned.model.law, planned.model.rig.quantities)
     return table(short_power(planned), POWER_HEAD, rows)
 
 
 def plan_table(plan: Plan) -> str:
-    """The runs to record."""
+    """Tabulate the runs to record."""
     rows = [(run.name, words) for run, words in zip(plan.runs, plan.words, strict=True)]
     return table(short_plan(plan), ("run", "motion"), rows)
 
 
 def check_table(found: Check) -> str:
-    """How often a diagnosis is right, in words."""
+    """Tabulate the simulated success rates of the diagnosis."""
     lines = [(line.strip(),) for line in check_report(found).splitlines() if line.strip()]
     return table(lines[0][0] if lines else "Check", ("",), lines[1:])
 
 
 def import_table(found: Import) -> str:
-    """The runs, and what was left out."""
+    """Tabulate the runs and the pieces that were left out."""
     rows = [
         (p.name or f"left out: {p.why}", p.file, f"{p.from_s:.3f}", f"{p.to_s:.3f}")
         for p in found.pieces

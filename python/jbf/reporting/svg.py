@@ -1,4 +1,4 @@
-"""A figure as SVG within a page: its text is text, its colours those of the page, light or dark."""
+"""Figures as inline SVG whose text stays text and whose colours follow the page's theme."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DOTS_PER_INCH = 120
-"""Of what is drawn as dots, where there are too many for lines."""
+"""Resolution of rasterized parts, which replace lines where there are too many points."""
 _NAMED = {INK: "ink", MODEL: "model", BEFORE: "before", NOISE: "noise", MEASURED: "measured",
           OTHER: "other", "#ffffff": "paper"}  # fmt: skip
 _COLOUR = re.compile(r"(?<=: )(" + "|".join(_NAMED) + r")\b")
@@ -26,7 +26,7 @@ _HEAD = re.compile(r"<svg\b[^>]*?viewBox=\"([^\"]*)\"[^>]*>", re.DOTALL)
 
 
 def svg(axes: Sequence[Axes], alt: str) -> Markup:
-    """The figure of some axes, as wide as its place."""
+    """Return the figure of the axes as SVG that scales to the width of its container."""
     from matplotlib import rc_context
 
     buffer = io.StringIO()
@@ -39,7 +39,7 @@ def svg(axes: Sequence[Axes], alt: str) -> Markup:
     text = text[text.index("<svg") :].strip()
     text = _COLOUR.sub(lambda found: f"var(--{_NAMED[found[1]]})", text)
     text = _FACE.sub(r"\1var(--face)", text)
-    # How wide it is, is the page's matter.
+    # The page sets the width.
     names = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
     look = f'class="figure" role="img" aria-label="{escape(alt)}"'
     return Markup(_HEAD.sub(lambda f: f'<svg {names} viewBox="{f[1]}" {look}>', text, count=1))

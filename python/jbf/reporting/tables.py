@@ -1,4 +1,6 @@
-"""Rows of cells that both the text and the page show: parameters, correlations, the ledger."""
+"""Table rows shared by the text and HTML reports: parameters, correlations, the ledger and
+others.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,9 @@ if TYPE_CHECKING:
     from jbf.records.findings.finding import Finding
 
 MOST_RUNS_NAMED = 3
-"""Runs named of each kind of finding."""
+"""Maximum number of runs named per kind of finding."""
 LEAST_CORRELATION = 0.3
-"""Weaker correlations are not worth a line."""
+"""Smallest correlation that is reported, in absolute value."""
 
 
 def parameter_rows(
@@ -33,7 +35,7 @@ def parameter_rows(
     parameters: Mapping[str, ParameterValue],
     quantities: Quantities = OF_BEARING,
 ) -> list[tuple[str, str, str, str, str, str]]:
-    """Name, value, error, percent, unit and note of each parameter, as text."""
+    """Return name, value, standard error, percentage, unit and note of each parameter, as text."""
     names = shown(law, effects, quantities)
     rows = []
     for name, p in parameters.items():
@@ -45,14 +47,14 @@ def parameter_rows(
 
 
 def shown_names(fit: Fit) -> dict[str, str]:
-    """Full names of a fit's parameters to those that are shown."""
+    """Map the full names of a fit's parameters to the displayed names."""
     model = fit.model
     names = shown(model.law, model.effects, model.rig.quantities)
     return {name: names[name][0] if name in names else name for name in fit.parameters}
 
 
 def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
-    """Pairs of parameters correlated above 0.3, strongest first."""
+    """Return pairs of parameters correlated above 0.3 in absolute value, strongest first."""
     names = [name for name, p in fit.parameters.items() if not p.held]
     called = shown_names(fit)
     found = [
@@ -65,12 +67,12 @@ def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
 
 
 def ratio(error_n: float, noise_n: float) -> str:
-    """An error over the noise to two decimals; empty where there is no noise."""
+    """Format the ratio of error to noise with two decimals; empty if the noise is zero."""
     return f"{error_n / noise_n:.2f}" if noise_n > 0.0 else ""
 
 
 def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
-    """What each step brought, its fit and held-out RMS, the noise (N), and their ratio."""
+    """Return step name, fit RMS, held-out RMS, noise (N), and the ratio of the last two."""
     return [
         (
             step_name(diagnosis, i),
@@ -84,14 +86,14 @@ def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
 
 
 def trial_rows(step: Step) -> list[tuple[str, str, str, str, str]]:
-    """Each candidate's effect, RMS (N), evidence, outcome and reason."""
+    """Return effect, RMS (N), evidence, outcome and reason of each candidate."""
     return [
         (t.effect, number(t.rms_n), f"{t.evidence:+.0f}", t.outcome, t.reason) for t in step.trials
     ]
 
 
 def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
-    """Each run's name, samples that count, RMS (N), and RMS over the noise."""
+    """Return name, number of counted samples, RMS (N), and RMS over noise of each run."""
     return [
         (r.name, str(r.samples), number(r.rms_n), ratio(r.rms_n, comparison.noise_n))
         for r in comparison.runs
@@ -99,7 +101,7 @@ def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
 
 
 def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
-    """Each kind of finding, and what it did to which runs; the first few runs are named."""
+    """Return each kind of finding with its description and runs; a long list is truncated."""
     kinds: dict[str, list[Finding]] = {}
     for finding in findings:
         kinds.setdefault(finding.kind, []).append(finding)
@@ -119,8 +121,11 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
 def power_rows(
     power: Iterable[Power], law: str, said: Quantities
 ) -> list[tuple[str, str, str, str, str]]:
-    """Effect, the strength from which it would have been found, that as a share of the friction,
-    the strength from which it would have been named alone, and what could stand in its place."""
+    """Return the detection limits of each effect.
+
+    The columns are the effect, the strength from which it is found, this strength as a share of
+    the friction, the strength from which it is named alone, and the effects confounded with it.
+    """
     rows = []
     for p in power:
         full = f"{p.effect}.{p.parameter}"
@@ -137,7 +142,7 @@ def power_rows(
 
 
 def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
-    """Law, number of parameters, left-out error (N), and how it compares."""
+    """Return law, number of parameters, held-out RMS (N), and outcome of the comparison of laws."""
     return [
         (
             tried.law,
@@ -150,7 +155,7 @@ def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
 
 
 def _named(runs: list[str]) -> str:
-    """Runs by name; the first few of many."""
+    """List runs by name; of a long list only the first few."""
     if len(runs) <= MOST_RUNS_NAMED:
         return ", ".join(runs)
     more = count_of(len(runs) - MOST_RUNS_NAMED, "run")

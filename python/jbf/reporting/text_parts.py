@@ -1,4 +1,4 @@
-"""Lines that several reports in plain text share: parameters, and where a model fails."""
+"""Text lines shared by several plain-text reports: parameters, failures, findings."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def parameter_lines(
     parameters: Mapping[str, ParameterValue],
     quantities: Quantities = OF_BEARING,
 ) -> list[str]:
-    """A line a parameter: value, error, share, unit, note."""
+    """Format one line per parameter: value, standard error, percentage, unit, note."""
     rows = [
         (
             name,
@@ -39,7 +39,7 @@ def parameter_lines(
 
 
 def where_lines(patterns: Iterable[Failure | Remainder]) -> list[str]:
-    """One hanging paragraph for each axis: share of the mean square, axis, words."""
+    """Format one hanging paragraph per axis: axis, share of the mean square, description."""
     patterns = list(patterns)
     widest = max((len(p.axis) for p in patterns), default=0)
     lines = []
@@ -49,7 +49,7 @@ def where_lines(patterns: Iterable[Failure | Remainder]) -> list[str]:
 
 
 def finding_lines(findings: Iterable[Finding]) -> list[str]:
-    """What the recording did, and what was done about it; nothing where it did nothing."""
+    """List the data-quality findings and how each was treated; empty without findings."""
     rows = finding_rows(findings)
     lines = ["", "What the recording did"] if rows else []
     for head, words in rows:
@@ -58,7 +58,7 @@ def finding_lines(findings: Iterable[Finding]) -> list[str]:
 
 
 def recorded(runs: Sequence[Run]) -> str:
-    """How many runs of what duration, in words."""
+    """Describe the number and total duration of the runs."""
     count = count_of(len(runs), "run")
     if any(run.steady for run in runs):
         return f"{count} of steady states"

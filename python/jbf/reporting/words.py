@@ -1,4 +1,4 @@
-"""Sentences and numbers that the text, the page and the command line share."""
+"""Sentences and number formats shared by the text reports, the HTML pages and the command line."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def listed(words: Iterable[str], last: str = "and") -> str:
-    """`a`, `a and b`, `a, b and c`."""
+    """Join words as `a`, `a and b` or `a, b and c`."""
     items = list(words)
     if len(items) < 2:
         return "".join(items)
@@ -29,14 +29,14 @@ def listed(words: Iterable[str], last: str = "and") -> str:
 
 
 def law_words(model: Model, join: str = " (") -> str:
-    """A model's law, with its clock where it has a film for the clock to drive."""
+    """Name a model's law, with its clock if the law has a lubricant film."""
     if not find_law(model.law).has_film:
         return model.law
     return f"{model.law}{join}clock {model.clock}" + (")" if "(" in join else "")
 
 
 def law_and_effects(model: Model) -> str:
-    """A model as a sum: the law, then its effects."""
+    """Write a model as a sum: the law, then its effects."""
     return " + ".join([law_words(model), *model.effects])
 
 
@@ -44,17 +44,20 @@ UNKNOWN = "not known"
 
 
 def noise_words(noise_n: float, unit: str) -> str:
-    """A noise floor with its unit; words where it is not known (zero)."""
+    """Format a noise floor with its unit; `not known` if it is zero."""
     return f"{number(noise_n)} {unit}" if noise_n > 0.0 else UNKNOWN
 
 
 def times(error_n: float, noise_n: float) -> str:
-    """An error as a multiple of the noise: `1.29 times`."""
+    """Format an error as a multiple of the noise: `1.29 times`."""
     return f"{error_n / noise_n:.2f} times" if noise_n > 0.0 else "above"
 
 
 def against_noise(error_n: float, noise_n: float, unit: str = "") -> str:
-    """An error as a multiple of the noise: `1.29 times the noise of 0.5 N`, without a unit less."""
+    """Format an error as a multiple of the noise: `1.29 times the noise of 0.5 N`.
+
+    Without a unit, the size of the noise is omitted.
+    """
     if not noise_n > 0.0:
         return f"where the noise is {UNKNOWN}"
     size = f" of {number(noise_n)} {unit}" if unit else ""
@@ -62,7 +65,7 @@ def against_noise(error_n: float, noise_n: float, unit: str = "") -> str:
 
 
 def comparison_sentence(comparison: Comparison) -> str:
-    """How far a model is from its runs, and how that compares with the noise."""
+    """State the RMS error of a model, and its ratio to the noise."""
     rms, noise = comparison.rms_n, comparison.noise_n
     unit = comparison.model.rig.quantities.force
     if not noise > 0.0:
@@ -74,12 +77,12 @@ def comparison_sentence(comparison: Comparison) -> str:
 
 
 def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
-    """What the diagnosis found, in a few plain sentences.
+    """State the result of the diagnosis in a few plain sentences.
 
     Parameters
     ----------
     place
-        Where the rest of what remains stands.
+        Where further residual structure is listed, relative to this text.
     """
     return (
         _found(diagnosis, place)
@@ -91,7 +94,7 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
 
 
 def headline_and_rest(diagnosis: Diagnosis) -> tuple[str, str]:
-    """The verdict in a sentence, and what else there is to say of it."""
+    """Split the verdict into a headline and the remaining sentences."""
     whole = verdict_sentence(diagnosis)
     if diagnosis.verdict == "unexplained":
         remains = "something remains that no effect in the catalogue explains."
@@ -106,7 +109,10 @@ def headline_and_rest(diagnosis: Diagnosis) -> tuple[str, str]:
 
 
 def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
-    """Effects with evidence that runs left out did not confirm: too weak to be named, and told."""
+    """Name effects that fit better but were not confirmed by held-out runs.
+
+    Such effects are too weak to be part of the verdict.
+    """
     if diagnosis.verdict not in ("adequate", "missing"):
         return ""
     asked = [t for t in diagnosis.steps[-1].trials if t.outcome == "rejected" and t.evidence > 0.0]
@@ -117,7 +123,7 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _offset_sentence(diagnosis: Diagnosis) -> str:
-    """The effects that fit as well as the offset of a drive; empty where none does."""
+    """Name the effects that fit as well as a drive's offset; empty if none does."""
     others = [
         other
         for name in diagnosis.machine
@@ -130,7 +136,7 @@ def _offset_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _law_sentence(diagnosis: Diagnosis) -> str:
-    """Which law the data chose, or that another would do with less."""
+    """Name the law chosen by the data, or a different law that predicts with fewer terms."""
     if diagnosis.laws:
         first, *others = diagnosis.laws
         tied = [other.law for other in others if other.tied]
@@ -151,7 +157,7 @@ def _law_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _weighed(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
-    """Effects that tie, each with its posterior weight."""
+    """Format effects that tie, each with its posterior weight."""
     weights = diagnosis.weights.get(tied[0], {})
     return [f"{e} ({100.0 * weights[e]:.0f} %)" if e in weights else e for e in tied]
 
@@ -195,7 +201,7 @@ def _found(diagnosis: Diagnosis, place: str) -> str:
 
 
 def _worst(remains: Sequence[Remainder], place: str) -> str:
-    """The largest of what remains in its own words, and how much more there is."""
+    """Describe the largest item of residual structure, and count the others."""
     if not remains:
         return ""
     more = f" (and {len(remains) - 1} more{place})" if len(remains) > 1 else ""
@@ -203,7 +209,7 @@ def _worst(remains: Sequence[Remainder], place: str) -> str:
 
 
 def _confounders_sentence(names: tuple[str, ...]) -> str:
-    """Effects that the model has and the verdict does not name, and why; empty of none."""
+    """Name effects in the model that the verdict omits, and the reason; empty for an empty list."""
     if not names:
         return ""
     one = len(names) == 1
@@ -219,12 +225,12 @@ def _it(effects: tuple[str, ...]) -> str:
 
 
 def step_name(diagnosis: Diagnosis, index: int) -> str:
-    """What step `index` of the ledger brought: the bare law, or `+ effect`."""
+    """Name what step `index` of the ledger added: the bare law, or `+ effect`."""
     return step_words([step.effects for step in diagnosis.steps], index)
 
 
 def held_out_sentence(diagnosis: Diagnosis) -> str:
-    """How the held-out error was found."""
+    """Describe how the held-out error was computed."""
     runs = len(diagnosis.before.campaign.prepared)
     if runs == 1:
         return "Held out: alternate parts of the run, predicted by fits to the other parts."
@@ -237,7 +243,9 @@ def held_out_sentence(diagnosis: Diagnosis) -> str:
 
 
 def extrapolation_sentences(diagnosis: Diagnosis) -> list[str]:
-    """Of each run that goes beyond all others: its error, and how it is tested."""
+    """Describe each run that exceeds the range of all others: its extrapolation error, and its
+    test.
+    """
     unit = diagnosis.model.rig.quantities.force
     return [
         f"{e.run} exceeds the range of the other runs ({e.where}). A fit to the others predicts it "

@@ -1,11 +1,12 @@
-"""The command line: one file a command, each with `add(commands)` and `run(arguments) -> int`.
+"""Command line; one module per command, each with `add(commands)` and `run(arguments) -> int`.
 
-Comes in: arguments and files. Goes out: text, files, an exit code. No physics and no statistics.
+Input: arguments and files. Output: text, files, an exit code. The package contains no physics and
+no statistics.
 
-Exit 0: done; 2: the input is wrong, told in one line on stderr with nothing written; 130:
-interrupted.
+Exit codes: 0 on success; 2 if the input is wrong, with a one-line message on stderr and nothing
+written; 130 if interrupted.
 
-May import: every room.
+May import: every package.
 """
 
 from __future__ import annotations
@@ -27,25 +28,27 @@ from jbf.cli.examples import HEAD, Help
 from jbf.errors import InputError, closest, did_you_mean
 
 _MODULES = {"import": "import_files"}
-"""Of a command whose name is a word of Python."""
+"""Modules of commands whose name is a Python keyword."""
 
 FIRST = (
     "jbf demo",
     "jbf diagnose rig.toml runs/ --out model.toml --report report.html",
     'eval "$(jbf --completion bash)"',
 )
-"""Of the help without a command."""
+"""Examples in the help of `jbf` without a command."""
 
 _PIPE_CLOSED = 141
 _INTERRUPTED = 130
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse whose errors are one line, like every other."""
+    """Argument parser that reports errors in one line, like all other errors."""
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As argparse's, with the option that an unknown one is a slip of: that is told before
-        what may be missing besides."""
+        """Parse as `argparse` does, and suggest the intended option for an unknown one.
+
+        Unknown options are reported before missing arguments.
+        """
         words = sys.argv[1:] if args is None else list(args)
         self._find_slips([word for word in self._own_words(words) if word.startswith("--")])
         found, rest = super().parse_known_args(args, namespace)
@@ -53,7 +56,7 @@ class Parser(argparse.ArgumentParser):
         return found, rest
 
     def _own_words(self, words: Sequence[str]) -> Iterator[str]:
-        """The words before those of a further command, and before `--`."""
+        """Yield the words before a subcommand and before `--`."""
         below = [a.choices for a in self._actions if isinstance(a, argparse._SubParsersAction)]
         for word in words:
             if word == "--" or any(word in names for names in below):
@@ -76,7 +79,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def parser(words: Sequence[str] | None = None) -> Parser:
-    """The command line: all of it, or no more than these words need."""
+    """Build the parser, completely or only with the commands that these words need."""
     from jbf._core import __version__
 
     top = Parser(
@@ -107,19 +110,19 @@ def parser(words: Sequence[str] | None = None) -> Parser:
 
 
 def _needed(words: Sequence[str]) -> Collection[str]:
-    """The commands whose own arguments these words may ask for."""
+    """Return the commands whose arguments these words may require."""
     if words and words[0] in COMMANDS:
         return words[:1]
     return () if words and words[0] in ("-h", "--help", "--version") else COMMANDS
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command; returns the exit code.
+    """Run one command and return the exit code.
 
     Parameters
     ----------
     argv
-        Arguments without the program's name; those of the process by default.
+        Arguments without the program name. Default: those of the process.
     """
     if argv is None:
         _own_process()
@@ -128,7 +131,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         code = _dispatch(arguments)
         outputs.flush()
     except BrokenPipeError:
-        # Whoever read the output has had enough (`jbf effects | head`); that is no failure.
+        # The reader has closed the pipe (`jbf effects | head`); this is not an error.
         outputs.drop_stdout()
         return _PIPE_CLOSED
     except KeyboardInterrupt as stop:
@@ -140,11 +143,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _own_process() -> None:
-    """What the environment can break, where the process is a command's and nobody else's."""
-    # Pictures go to files: no window, whatever backend the environment asks for.
+    """Make the process robust against its environment; only called if the process belongs to
+    `jbf`.
+    """
+    # Figures are written to files: use no window, whatever backend the environment requests.
     os.environ["MPLBACKEND"] = "agg"
     for stream in (sys.stdout, sys.stderr):
-        # A name that the terminal's encoding lacks is escaped.
+        # Escape characters that the terminal's encoding lacks.
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
@@ -155,7 +160,7 @@ def _dispatch(arguments: list[str]) -> int:
         chosen = parser(arguments).parse_args(arguments)
         run = chosen.run
         chosen.typed = shlex.join(["jbf", *arguments])
-    except SystemExit as stop:  # argparse has said why
+    except SystemExit as stop:  # argparse has printed the reason
         return stop.code if isinstance(stop.code, int) else 2
     except InputError as error:
         return _refuse(error)
@@ -171,7 +176,10 @@ def _dispatch(arguments: list[str]) -> int:
 
 
 def _show(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
-    """A warning as one line, like an error; what a library deprecates is for authors, not users."""
+    """Print a warning as one line, like an error.
+
+    Deprecation warnings of libraries are suppressed because they concern developers, not users.
+    """
     if not issubclass(category, (DeprecationWarning, PendingDeprecationWarning)):
         outputs.complain(message)
 
@@ -182,7 +190,7 @@ def _refuse(error: InputError) -> int:
 
 
 def _check_command(arguments: list[str]) -> None:
-    """A misspelt command, with the one that was meant."""
+    """Raise an error for a misspelt command, with the closest command as suggestion."""
     first = arguments[0] if arguments else "-"
     if not first.startswith("-") and first not in COMMANDS:
         raise InputError(

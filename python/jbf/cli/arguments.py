@@ -1,4 +1,4 @@
-"""Arguments that several commands share."""
+"""Arguments shared by several commands."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
 def command(
     commands: Commands, name: str, does: str, run: Callable[[argparse.Namespace], int]
 ) -> Parser:
-    """A subcommand with its one line of help."""
+    """Add a subcommand with a one-line help text."""
     added = commands.add_parser(
         name, help=does, description=f"{does[0].upper()}{does[1:]}.", allow_abbrev=False
     )
@@ -29,7 +29,7 @@ def command(
 
 
 def add_runs(parser: Parser, *, needed: bool = True) -> None:
-    """RUN..."""
+    """Add the positional argument `RUN...`."""
     parser.add_argument(
         "runs",
         metavar="RUN",
@@ -39,7 +39,9 @@ def add_runs(parser: Parser, *, needed: bool = True) -> None:
 
 
 def add_law(parser: Parser, also: str = "") -> None:
-    """--law and --clock; `also` says what else may stand for a law."""
+    """Add `--law` and `--clock`; `also` is appended to the help and names further values of
+    `--law`.
+    """
     add_law_name(parser, "journal", f"base law: {', '.join(laws())} (journal){also}")
     parser.add_argument(
         "--clock",
@@ -51,12 +53,12 @@ def add_law(parser: Parser, also: str = "") -> None:
 
 
 def add_law_name(parser: Parser, default: str | None, does: str) -> None:
-    """--law alone."""
+    """Add `--law` without `--clock`."""
     parser.add_argument("--law", metavar="NAME", default=default, help=does)
 
 
 def add_own(parser: Parser) -> None:
-    """--effects-from."""
+    """Add `--effects-from`."""
     parser.add_argument(
         "--effects-from",
         metavar="FILE.py",
@@ -67,12 +69,12 @@ def add_own(parser: Parser) -> None:
 
 
 def add_json(parser: Parser) -> None:
-    """--json."""
+    """Add `--json`."""
     parser.add_argument(
         "--json", metavar="FILE", help="write the result as JSON; - is standard output"
     )
 
 
 def add_report(parser: Parser) -> None:
-    """--report."""
+    """Add `--report`."""
     parser.add_argument("--report", metavar="FILE.html", help="write a page with pictures")

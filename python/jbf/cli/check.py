@@ -1,4 +1,4 @@
-"""`jbf check MODEL RUN...`: how often the diagnosis of campaigns like this one is right."""
+"""`jbf check MODEL RUN...`: estimate how often the diagnosis of such campaigns is right."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "check", COMMANDS["check"], run)
     parser.add_argument("model", metavar="MODEL", help="model of the runs (jbf diagnose --out)")
     add_runs(parser)
@@ -48,7 +48,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     from jbf.diagnosis.check import check, identity
 
     wanted = {"--json": arguments.json, "--resume": arguments.resume}
@@ -84,12 +84,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _known(file: Path, name: str) -> Sequence[Answer]:
-    """The answers that are in a file already.
+    """Read the results that a file already contains.
 
     Raises
     ------
     InputError
-        They are of another model, other runs or another level, or no answers.
+        The results belong to a different model, runs or level, or a line is not a result.
     """
     from jbf.diagnosis.check import answer_of
 
@@ -103,7 +103,8 @@ def _known(file: Path, name: str) -> Sequence[Answer]:
             told = json.loads(line)
             of, answer = told["of"], answer_of(told)
         except (ValueError, KeyError, TypeError, AttributeError):
-            # A line that was cut off while it was written is asked for again.
+            # A last line that was cut off while being written is removed; its result is computed
+            # again.
             if row == len(lines):
                 write_text(file, "".join(f"{kept}\n" for kept in lines[:-1]))
                 break
@@ -119,6 +120,6 @@ def _known(file: Path, name: str) -> Sequence[Answer]:
             )
         found.append(answer)
     if len(found) == len(lines) and lines and not text.endswith("\n"):
-        # Cut off just before the end of its line: the next answer begins a new one.
+        # Only the final newline is missing: append it, so that the next result starts a new line.
         write_text(file, text + "\n")
     return found

@@ -1,6 +1,7 @@
-"""The commands and what each does, in the order in which help lists them.
+"""Commands with their one-line descriptions, in the order of the help.
 
-Here and not in their modules: the help of `jbf` alone then waits for none of them.
+They are defined here and not in the modules of the commands, so that the help of `jbf` imports
+none of them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`jbf compare MODEL RUN...`: how far a model is from measurement, and where it fails."""
+"""`jbf compare MODEL RUN...`: error of a model against measurement, and where it fails."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jbf.reporting.json import json_text
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "compare", COMMANDS["compare"], run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     add_runs(parser)
@@ -25,7 +25,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     wanted = {"--json": arguments.json, "--report": arguments.report}
     outputs.check(wanted, outputs.read_by(arguments))
     model = inputs.model(arguments.model)

@@ -1,4 +1,4 @@
-"""`jbf --completion SHELL`: a script that completes commands, options and the names they take."""
+"""`jbf --completion SHELL`: script that completes commands, options and their values."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ SHELLS = ("bash", "zsh", "fish")
 
 
 class Completion(argparse.Action):
-    """Prints the script for a shell, and ends."""
+    """Action that prints the script for a shell and exits."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: Any, values: Any, option: Any = None
@@ -21,7 +21,7 @@ class Completion(argparse.Action):
 
 
 def script(parser: argparse.ArgumentParser, shell: str) -> str:
-    """The script, from the parser itself: what it knows is what is completed."""
+    """Return the completion script, generated from the parser."""
     known = dict(_commands(parser))
     if shell == "fish":
         return _fish(known)
@@ -32,7 +32,7 @@ def script(parser: argparse.ArgumentParser, shell: str) -> str:
 
 
 class _Words:
-    """What may follow a command: further commands, options, and the names that options take."""
+    """Possible completions of a command: subcommands, options, and the values of options."""
 
     def __init__(self, parser: argparse.ArgumentParser) -> None:
         from jbf.models.catalogue import laws

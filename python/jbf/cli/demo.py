@@ -1,4 +1,4 @@
-"""`jbf demo [DIR]`: the whole story on shipped data with a hidden effect."""
+"""`jbf demo [DIR]`: complete example on shipped data with a hidden effect."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jbf.cli.progress import shown
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "demo", COMMANDS["demo"], run)
     parser.add_argument(
         "directory", metavar="DIR", nargs="?", default="jbf-demo", help="folder for its files"
@@ -24,7 +24,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     from jbf.demo import run as run_demo
 
     directory = Path(arguments.directory)
@@ -35,12 +35,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def called(started: str) -> str:
-    """What to type to start this program again: its name where a shell finds it, or its path.
+    """Return the shell command that starts this program: its name if on the search path, else its
+    path.
 
     Parameters
     ----------
     started
-        The program's path, as the process was given it.
+        Path of the program as passed to the process.
     """
     path = Path(started)
     if path.name == "__main__.py":
@@ -52,7 +53,7 @@ def called(started: str) -> str:
 
 
 def _from_here(path: Path) -> str:
-    """A path as short as it can be said from the working directory."""
+    """Return the shortest form of a path, relative to the working directory where possible."""
     here = Path.cwd()
     whole = Path(os.path.abspath(path))
     return shlex.quote(str(whole.relative_to(here) if whole.is_relative_to(here) else whole))

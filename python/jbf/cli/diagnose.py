@@ -1,4 +1,4 @@
-"""`jbf diagnose RIG RUN...`: which effect is missing, and the error falling as it is added."""
+"""`jbf diagnose RIG RUN...`: find the missing effect, and report the error as effects are added."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "diagnose", COMMANDS["diagnose"], run)
     parser.add_argument(
         "rig", metavar="RIG", nargs="?", help="rig file (TOML), a folder of jbf import, or its map"
@@ -50,7 +50,7 @@ def _add_next_run(parser: Parser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     policy = level.policy(arguments)
     if arguments.many is not None:
         if arguments.hold_out:

@@ -1,4 +1,4 @@
-"""`jbf diagnose --many FOLDER`: every campaign in a folder, side by side."""
+"""`jbf diagnose --many FOLDER`: diagnose every campaign in a folder and tabulate the results."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def add(parser: Parser) -> None:
-    """Its options."""
+    """Add the options."""
     group = parser.add_argument_group("many rigs")
     group.add_argument(
         "--many",
@@ -35,7 +35,7 @@ def add(parser: Parser) -> None:
 
 
 def run(arguments: argparse.Namespace, limits: Limits) -> int:
-    """Do it; a campaign that fails is said, and the rest goes on."""
+    """Run the command; a campaign that fails is reported, and the others continue."""
     from jbf.diagnosis import diagnose_many
 
     if arguments.rig is not None or arguments.next_run:
@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace, limits: Limits) -> int:
 
 
 def _paths(arguments: argparse.Namespace, name: str) -> dict[str, str]:
-    """The files of one campaign, by their options."""
+    """Return the output files of one campaign, by option."""
     found = {}
     if arguments.out:
         found["--out"] = str(Path(arguments.out) / f"{name}.toml")
@@ -107,7 +107,7 @@ def _page(result: Diagnosis | JbfError) -> dict[str, Any]:
 def _table(found: dict[str, Diagnosis | JbfError]) -> list[str]:
     done = [r for r in found.values() if not isinstance(r, Exception)]
     units = {r.model.rig.quantities.force for r in done} or {"N"}
-    # Rigs of several kinds have each number with its own unit.
+    # If the units of the rigs differ, each number carries its own unit.
     head = f" ({units.pop()})" if len(units) == 1 else ""
     rows = [("campaign", "verdict", "effects", f"held out{head}", f"noise{head}")]
     failed = []

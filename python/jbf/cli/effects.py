@@ -1,4 +1,4 @@
-"""`jbf effects [NAME] [--law NAME]`: the catalogue, and what of it goes with a law."""
+"""`jbf effects [NAME] [--law NAME]`: catalogue of effects, and those applicable to a law."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jbf.reporting.json import json_text
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "effects", COMMANDS["effects"], run)
     parser.add_argument("name", metavar="NAME", nargs="?", help="one effect's page")
     add_law_name(parser, None, "say which effects go with this law, and why the others do not")
@@ -23,7 +23,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     from jbf.reporting.catalogue_text import effect_page, effects_page
 
     wanted = {"--json": arguments.json}
@@ -45,6 +45,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _plain(page: Effect) -> dict[str, Any]:
-    """A page as data: of one's own effects without the function."""
+    """Convert a catalogue entry to plain data; the function of a user-defined effect is omitted."""
     kept = {f.name: getattr(page, f.name) for f in fields(Effect)}
     return kept | {"parameters": [asdict(p) for p in page.parameters]}

@@ -1,4 +1,4 @@
-"""What the help of each command ends with: lines that can be typed."""
+"""Examples at the end of each command's help."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "control tune": ("jbf control tune model.toml --out settings.toml",),
     "control robustness": ("jbf control robustness model.toml --json robustness.json",),
 }
-"""By the command's words."""
+"""Examples, keyed by the words of the command."""
 HEAD = "examples:"
 
 
 class Help(argparse.HelpFormatter):
-    """argparse's, which leaves examples on lines of their own."""
+    """Help formatter that keeps each example on its own line."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
         if text.startswith(HEAD):
@@ -58,6 +58,6 @@ class Help(argparse.HelpFormatter):
 
 
 def examples(prog: str) -> str | None:
-    """The end of a command's help."""
+    """Return the examples for the end of a command's help."""
     lines = EXAMPLES.get(prog.removeprefix("jbf "))
     return None if lines is None else "\n".join([HEAD, *(f"  {line}" for line in lines)])

@@ -1,4 +1,4 @@
-"""`jbf export MODEL --rust F / --c F`: the model as source for firmware."""
+"""`jbf export MODEL --rust F / --c F`: the model as source code for firmware."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jbf.export import c, rust
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "export", COMMANDS["export"], run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument("--rust", metavar="FILE.rs", help="a Rust module for jbf-core; - is stdout")
@@ -21,7 +21,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     wanted = {"--rust": arguments.rust, "--c": arguments.c}
     if not any(wanted.values()):
         raise InputError(

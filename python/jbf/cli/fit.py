@@ -1,4 +1,4 @@
-"""`jbf fit RIG RUN... --out MODEL`: fit the base law, with named effects."""
+"""`jbf fit RIG RUN... --out MODEL`: fit the base law with the named effects."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "fit", COMMANDS["fit"], run)
     parser.add_argument(
         "rig", metavar="RIG", help="rig file (TOML), a folder of jbf import, or its map"
@@ -59,7 +59,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     wanted = {"--out": arguments.out}
     if not arguments.runs and not os.path.isdir(arguments.rig):
         raise InputError(
@@ -105,7 +105,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report | None) -> Fit:
-    """The fit with errors from fits again; where these are interrupted, the fit is kept."""
+    """Return the fit with bootstrap standard errors; raise `Stopped` with the fit if
+    interrupted.
+    """
     from jbf.estimation.bootstrap import bootstrap
 
     try:
@@ -115,7 +117,7 @@ def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report | None)
 
 
 def _values(option: str, items: list[str], law: str, effects: tuple[str, ...]) -> dict[str, float]:
-    """`NAME=VALUE` items of an option as full names and numbers."""
+    """Parse the `NAME=VALUE` items of an option into full names and values."""
     known = parameters_of(law, effects)
     found: dict[str, float] = {}
     for item in items:

@@ -1,4 +1,4 @@
-"""`--hold-out PATTERN`: runs that no fit sees, and what the model then leaves on them."""
+"""`--hold-out PATTERN`: runs excluded from every fit, and the error of the model on them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OPTION = "--hold-out"
 
 
 def add(parser: Parser) -> None:
-    """The option."""
+    """Add the option."""
     parser.add_argument(
         OPTION,
         metavar="PATTERN",
@@ -32,12 +32,12 @@ def add(parser: Parser) -> None:
 
 
 def split(runs: Sequence[Run], asked: argparse.Namespace) -> tuple[list[Run], list[Run]]:
-    """The runs to use, and those held out.
+    """Split the runs into those used and those held out.
 
     Raises
     ------
     InputError
-        A pattern fits no run, or the patterns fit all of them.
+        A pattern matches no run, or the patterns match all runs.
     """
     patterns: list[str] = asked.hold_out
     for pattern in patterns:
@@ -62,7 +62,9 @@ def _fits(run: Run, pattern: str) -> bool:
 
 
 def left(model: Model, held: Sequence[Run]) -> dict[str, Any]:
-    """For JSON: what a model leaves on the runs held out; nothing where there are none."""
+    """Return the error of a model on the held-out runs as data for JSON; empty without such
+    runs.
+    """
     if not held:
         return {}
     from jbf.comparison.comparison import compare
@@ -72,7 +74,7 @@ def left(model: Model, held: Sequence[Run]) -> dict[str, Any]:
 
 
 def words(model: Model, told: dict[str, Any]) -> str:
-    """The same for people."""
+    """Format the error on the held-out runs as text."""
     if not told:
         return ""
     from jbf.reporting.words import against_noise

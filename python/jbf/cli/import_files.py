@@ -1,4 +1,4 @@
-"""`jbf import FILE... [--map MAP] [--out FOLDER]`: from recordings to a campaign."""
+"""`jbf import FILE... [--map MAP] [--out FOLDER]`: convert recordings to a campaign."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 EVERY = "all"
-"""What `--joint` takes for every joint."""
+"""Value of `--joint` that selects every joint."""
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "import", COMMANDS["import"], run)
     parser.add_argument(
         "files", metavar="FILE", nargs="+", help="recordings; one map fits all of them"
@@ -60,7 +60,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     outputs.check({"--plot": arguments.plot}, outputs.read_by(arguments))
     if arguments.joint is not None and arguments.map is not None:
         raise InputError(file="--joint", problem="goes without --map", mend="the map names columns")
@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _each_joint(arguments: argparse.Namespace) -> int:
-    """A campaign of each joint, in a folder of its name."""
+    """Import each joint as a campaign into a folder with the joint's name."""
     from jbf.importing.campaign_folder import check_folder
     from jbf.importing.import_files import look
     from jbf.importing.joints import JointNotChosen
@@ -96,7 +96,7 @@ def _each_joint(arguments: argparse.Namespace) -> int:
 
 
 def _import(arguments: argparse.Namespace, joint: str | None, out: str | None) -> int:
-    """One campaign."""
+    """Import one campaign."""
     from jbf.importing.import_files import OpenQuestions, import_files
 
     try:
@@ -125,7 +125,7 @@ def _import(arguments: argparse.Namespace, joint: str | None, out: str | None) -
 
 
 def _look(arguments: argparse.Namespace) -> int:
-    """The guess, and the map to edit."""
+    """Inspect a file, print the guess, and write a map to edit."""
     from jbf.importing.import_files import look
     from jbf.importing.map_text import map_text
     from jbf.reporting.import_text import guess_report
@@ -157,9 +157,10 @@ def _look(arguments: argparse.Namespace) -> int:
 
 
 def _map_beside(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bool]:
-    """Where the map of a file goes, and whether one of it is there and is kept.
+    """Return the path of a file's map, and whether an existing map there is kept.
 
-    `map.toml`, or a name of its own for a joint and where that is the map of another file.
+    The name is `map.toml`. A joint has a name of its own, and so has a file if `map.toml` is the
+    map of another file.
     """
     from jbf.importing.map_text import map_was_written_for
 

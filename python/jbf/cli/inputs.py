@@ -1,4 +1,4 @@
-"""Reading what the command line names, with a hint where the wrong kind of file is given."""
+"""Readers of the files named on the command line, with hints for files of the wrong kind."""
 
 from __future__ import annotations
 
@@ -23,18 +23,23 @@ if TYPE_CHECKING:
 
 _RIG_SECTIONS = {"bearing", "lubricant", "load", "drive"}
 _imports: list[Import] = []
-"""Kept until the command ends: their folders go with them."""
+"""Imports kept until the command ends, because their temporary folders are deleted with them."""
 
 
 def law_for(on: Rig, asked: str | None) -> str:
-    """The law that was asked for; where none was, that of journal bearings, and of a drive the one
-    that the data choose."""
+    """Return the requested law, or the default.
+
+    The default is `journal` for a bearing; for a drive the law is selected from the data.
+    """
     return asked or ("journal" if on.drive is None else AUTO)
 
 
 def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Rig, list[Run]]:
-    """The rig and the runs: of `rig.toml` and CSV files, of a folder that an import wrote, or of a
-    map and recordings as they are."""
+    """Read rig and runs.
+
+    The source is `rig.toml` with CSV files, a folder written by an import, or a map with
+    recordings.
+    """
     if os.path.isdir(rig_or_map):
         found = rig(str(Path(rig_or_map) / "rig.toml"), law)
         return found, runs(items or [rig_or_map], found, first="RIG")
@@ -47,35 +52,37 @@ def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Ri
 
 
 def is_map(path: str) -> bool:
-    """Whether a file is a map of `jbf import`."""
+    """Return whether a file is a map of `jbf import`."""
     return Path(path).suffix.lower() != ".csv" and "columns" in _keys(path)
 
 
 def is_model(path: str) -> bool:
-    """Whether a file is a model's."""
+    """Return whether a file is a model file."""
     return Path(path).suffix.lower() != ".csv" and "law" in _keys(path)
 
 
 def recordings(map_path: str, items: Sequence[str]) -> tuple[Rig, list[Run]]:
-    """Rig and runs of recordings, through a map."""
+    """Import recordings through a map; returns rig and runs."""
     from jbf.importing.import_files import import_files
 
     with shown("importing") as report:
         found = import_files(items, map_path, progress=report)
-    # The report looks for the ledger beside the runs.
+    # The report reads the ledger in the folder of the runs.
     _imports.append(found)
     return found.rig, found.runs
 
 
 def _check(on: Rig, law: str | None) -> None:
-    """An InputError where a rig lacks what a law needs."""
+    """Raise an InputError if the rig lacks data that the law needs."""
     law = law_for(on, law)
     if law != AUTO:
         check_rig(on, law)
 
 
 def rig(path: str, law: str | None) -> Rig:
-    """The rig of a file, complete enough for a law; for any where the data are to choose it."""
+    """Read a rig file and check that it is complete for a law; no check if the data select the
+    law.
+    """
     _refuse_csv(path, "RIG")
     try:
         found = read_rig(path)
@@ -92,7 +99,7 @@ def rig(path: str, law: str | None) -> Rig:
 
 
 def model(path: str) -> Model:
-    """The model of a file."""
+    """Read a model file."""
     _refuse_csv(path, "MODEL")
     try:
         return Model.load(path)
@@ -108,14 +115,16 @@ def model(path: str) -> Model:
 
 
 def runs(items: Sequence[str], on: Rig, *, first: str) -> list[Run]:
-    """The runs, on a rig, of files, folders and patterns; `first` is the argument before them."""
+    """Read the runs on a rig from files, folders and patterns; `first` is the preceding
+    argument.
+    """
     for item in items:
         _refuse_toml(item, first)
     return read_runs(items, on)
 
 
 def motion(item: str, on: Rig) -> Run:
-    """One run, on a rig, that need not hold friction."""
+    """Read one run on a rig; it need not contain friction."""
     _refuse_toml(item, "MODEL")
     return read_run(item, on, need_friction=False)
 

@@ -1,5 +1,7 @@
-"""`--false-alarms P`, `--clean-recording`, `--indifference-n X`: how sure and how large an effect
-must be."""
+"""`--false-alarms P`, `--clean-recording`, `--indifference-n X`: thresholds of a detection.
+
+They set the false-alarm rate, the artefact margin and the minimum effect size.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ FALSE_ALARMS, INDIFFERENCE = "--false-alarms", "--indifference-n"
 
 
 def add(parser: Parser) -> None:
-    """The options."""
+    """Add the options."""
     parser.add_argument(
         FALSE_ALARMS,
         metavar="P",
@@ -41,12 +43,12 @@ def add(parser: Parser) -> None:
 
 
 def policy(arguments: argparse.Namespace) -> Policy:
-    """The numbers of a diagnosis, as the options say.
+    """Return the policy of a diagnosis with the values of the options.
 
     Raises
     ------
     InputError
-        A share that is none, or a force below zero.
+        The false-alarm rate is not between 0 and 1, or the minimum effect size is negative.
     """
     from jbf.diagnosis.policy import DEFAULT
 

@@ -1,4 +1,4 @@
-"""What a rig may be asked to do, as options."""
+"""Operating limits of a rig, as options."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ def add(
     sharpest: str,
     needed: bool = False,
 ) -> None:
-    """The options.
+    """Add the options.
 
     Parameters
     ----------
     otherwise, sharpest
-        What holds for loads and temperatures, and for the acceleration, where nothing is said.
+        Help text for the defaults: of loads and temperatures, and of the acceleration.
     needed
-        Whether the speed must be given.
+        Whether the maximum speed is required.
     """
     usual = "" if needed else f"; {otherwise}"
     group.add_argument(
@@ -55,7 +55,7 @@ def add(
 
 
 def limits(arguments: argparse.Namespace, duration_s: float) -> Limits:
-    """The limits that were given, of runs so long."""
+    """Return the limits given by the options, for runs of the given duration in seconds."""
     from jbf.diagnosis import Limits
 
     loads_n, celsius = arguments.loads_n, arguments.temperatures_c

@@ -1,4 +1,4 @@
-"""Output files: refused before the long work where they cannot be, written together after it."""
+"""Output files, checked before a long computation and written together after it."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _READ = (
     "rig", "model", "runs", "map", "motion", "files", "beside", "cut", "carried", "settings",
     "effects_from", "many",
 )  # fmt: skip
-"""Arguments of all commands that name what is read."""
+"""Arguments of all commands that name input files."""
 
 
 def read_by(arguments: argparse.Namespace) -> Iterator[Path]:
-    """Every file that a command may read: those named, and in folders the rigs and the runs."""
+    """Yield every file that a command may read, including rigs and runs inside named folders."""
     for name in _READ:
         value = getattr(arguments, name, None)
         for item in value if isinstance(value, list) else [value]:
@@ -36,7 +36,7 @@ def _read_in(folder: Path, *, deeper: bool) -> Iterator[Path]:
     try:
         inside = list(folder.iterdir())
     except OSError:
-        return  # told where it is read
+        return  # reported where the folder is read
     for path in inside:
         if path.suffix.lower() == ".csv" or path.name == "rig.toml":
             yield path
@@ -45,12 +45,12 @@ def _read_in(folder: Path, *, deeper: bool) -> Iterator[Path]:
 
 
 def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
-    """Refuse outputs that could not be written, or that would replace one another or an input.
+    """Reject outputs that cannot be written, or that would replace each other or an input.
 
     Parameters
     ----------
     outputs
-        Option, such as `--out`, to the path given with it.
+        Mapping of options, such as `--out`, to the given paths.
     inputs
         Files that the command reads.
 
@@ -89,7 +89,8 @@ def _check_writable(option: str, path: str) -> None:
             return  # a pipe or a device
         if not real_path(target).parent.is_dir():
             raise wrong("its folder does not exist", "make the folder or correct the path")
-        # Permission bits do not tell of read-only disks or of too long names; a try does.
+        # Permission bits do not reveal read-only disks or names that are too long; a test file
+        # does.
         trial = real_path(target).with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
         try:
             trial.touch(exist_ok=False)
@@ -103,12 +104,12 @@ def _check_writable(option: str, path: str) -> None:
 
 
 def check_folder(argument: str, path: Path) -> None:
-    """Make a folder for outputs where there is none.
+    """Create an output folder if it does not exist.
 
     Raises
     ------
     InputError
-        Something else has that name, or the folder cannot be made or written to.
+        The name is that of a file, or the folder cannot be created or written to.
     """
     try:
         path.mkdir(exist_ok=True)
@@ -133,16 +134,16 @@ def check_folder(argument: str, path: Path) -> None:
 
 
 class Kept(KeyboardInterrupt):
-    """An interrupt after which the best so far was written; `str` says so."""
+    """Interrupt after which the best result so far was written; `str` describes it."""
 
 
 def keep(stop: Stopped, out: str | None) -> Kept:
-    """Write the best model so far where the whole would have been, and say it all to people.
+    """Write the best model so far to the path of the complete one, and describe it.
 
     Parameters
     ----------
     out
-        What `--out` names, if anything.
+        Path given with `--out`, if any.
     """
     found = stop.fit
     model = " + ".join([found.model.law, *found.model.effects])
@@ -158,13 +159,14 @@ def keep(stop: Stopped, out: str | None) -> Kept:
 def keep_unfinished(
     end: Unfinished, out: str | None, json: str | None = None, report: str | None = None
 ) -> Unfinished:
-    """Write what is known where the whole would have been; the error that says so.
+    """Write the partial results to the paths of the complete ones, and extend the error
+    accordingly.
 
     Parameters
     ----------
     out, json, report
-        What `--out`, `--json` and `--report` name, if anything: the best model so far, the error
-        and that fit, and its report.
+        Paths given with `--out`, `--json` and `--report`, if any. They receive the best model so
+        far, the error with that fit, and the report of that fit.
     """
     texts = {}
     if json is not None:
@@ -197,24 +199,27 @@ def write(texts: Mapping[str, str]) -> None:
 
 
 def say(text: str, outputs: Mapping[str, str | None]) -> None:
-    """Print for people, unless an output has taken standard output, or it is closed."""
+    """Print a message, unless an output uses standard output or standard output is closed."""
     if STDOUT not in outputs.values() and sys.stdout is not None:
         _put(printable(text) + "\n")
 
 
 def complain(text: object) -> None:
-    """One line on stderr, where that is open."""
+    """Print one line to stderr if it is open."""
     if sys.stderr is not None:
         print(f"jbf: {printable(str(text))}", file=sys.stderr)
 
 
 def flush() -> None:
-    """What was printed goes out; an InputError where it cannot, such as on a full disk."""
+    """Flush standard output; raises an InputError if that fails, for example on a full disk."""
     _put("")
 
 
 def drop_stdout() -> None:
-    """Nothing more comes out: Python would complain again when it closes stdout."""
+    """Redirect standard output to the null device.
+
+    Otherwise Python would report the error again when it closes standard output.
+    """
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
@@ -226,7 +231,7 @@ def _put(text: str, *, data: bool = False) -> None:
         if raw is None:
             sys.stdout.write(text)
         else:
-            # The same bytes as in a file, whatever the terminal's encoding.
+            # Write the same bytes as to a file, whatever the terminal's encoding.
             sys.stdout.flush()
             raw.write(text.encode("utf-8", errors="replace"))
         sys.stdout.flush()

@@ -1,4 +1,4 @@
-"""`jbf plan RIG`: which runs to record."""
+"""`jbf plan RIG`: design the runs to record."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jbf.reporting.json import json_text
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "plan", COMMANDS["plan"], run)
     parser.add_argument(
         "rig", metavar="RIG", help="rig file (TOML), or a model of it (jbf fit --out)"
@@ -41,7 +41,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     from jbf.diagnosis.plan import plan
 
     wanted = {"--json": arguments.json}

@@ -1,4 +1,4 @@
-"""`jbf power RIG RUN...`: what planned runs would show, before anything is recorded."""
+"""`jbf power RIG RUN...`: power of planned runs, before anything is recorded."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "power", COMMANDS["power"], run)
     parser.add_argument(
         "rig", metavar="RIG", help="rig file (TOML), or a model of it (jbf fit --out)"
@@ -35,7 +35,7 @@ def add(commands: Commands) -> None:
 
 
 def add_noise(parser: Parser) -> None:
-    """--noise-n."""
+    """Add `--noise-n`."""
     parser.add_argument(
         "--noise-n",
         metavar="X",
@@ -46,12 +46,12 @@ def add_noise(parser: Parser) -> None:
 
 
 def noise_n(arguments: argparse.Namespace, model: Model) -> float:
-    """The noise that is asked for, or that a fit left.
+    """Return the noise given by `--noise-n`, or the RMS residual of the fitted model.
 
     Raises
     ------
     InputError
-        Neither is there.
+        Neither is available.
     """
     left = model.fit.get("rms_n")  # N
     found = left if arguments.noise_n is None else arguments.noise_n
@@ -61,7 +61,7 @@ def noise_n(arguments: argparse.Namespace, model: Model) -> float:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     from jbf.diagnosis.planned import planned_power
 
     wanted = {"--json": arguments.json}
@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def machine(arguments: argparse.Namespace) -> Model:
-    """A model file, or a rig under a law at the catalogue's usual values."""
+    """Load a model, or build one from a rig and a law with the catalogue's typical values."""
     if inputs.is_model(arguments.rig):
         if arguments.law is not None:
             raise InputError(

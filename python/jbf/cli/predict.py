@@ -1,4 +1,4 @@
-"""`jbf predict MODEL RUN --out CSV`: the model's friction under a run's motion."""
+"""`jbf predict MODEL RUN --out CSV`: friction predicted by the model for a run's motion."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jbf.records.checks import POINT
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "predict", COMMANDS["predict"], run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument("motion", metavar="RUN", help="a CSV file; it need not hold friction_n")
@@ -21,7 +21,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     wanted = {"--out": arguments.out}
     outputs.check(wanted, outputs.read_by(arguments))
     model = inputs.model(arguments.model)
@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise error.within(file=arguments.motion) from None
     instants, clock = (motion.extra[POINT], POINT) if motion.steady else (motion.time_s, "time_s")
     rows = zip(instants.tolist(), friction.tolist(), strict=True)
-    # repr of a float is the shortest text that reads back to the same bits.
+    # The repr of a float is the shortest text that is read back as the same value.
     column = model.rig.quantities.friction_column
     lines = [f"{clock},{column}", *(f"{t!r},{f!r}" for t, f in rows)]
     outputs.write({arguments.out: "\n".join(lines) + "\n"})

@@ -1,4 +1,4 @@
-"""Progress on stderr where that is a terminal; silence elsewhere."""
+"""Progress display on stderr if it is a terminal, otherwise none."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ Report = Callable[[str, int, int], None]
 
 @contextmanager
 def shown(message: str) -> Iterator[Report | None]:
-    """A line that lives as long as the work; yields `report(message, done, total)`, or None."""
+    """Show a progress line during the work.
+
+    Yields `report(message, done, total)`, or None if stderr is not a terminal.
+    """
     if sys.stderr is None or not sys.stderr.isatty():
         yield None
         return
@@ -20,13 +23,13 @@ def shown(message: str) -> Iterator[Report | None]:
 
     with Progress(
         SpinnerColumn(),
-        # Names of runs may hold brackets, which are no markup.
+        # Run names may contain brackets, which are not markup.
         TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),
         TimeElapsedColumn(),
         console=Console(stderr=True),
         transient=True,
-        # rich would send what is printed meanwhile to stderr too, also past a pipe or a file.
+        # Otherwise rich would redirect printed output to stderr, even from a pipe or a file.
         redirect_stdout=sys.stdout.isatty(),
     ) as progress:
         task = progress.add_task(message, total=None)

@@ -1,4 +1,4 @@
-"""`jbf workbench [FOLDER]`: a local page on which runs, models and errors can be seen."""
+"""`jbf workbench [FOLDER]`: local web page that shows runs, models and errors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jbf.cli.commands import COMMANDS
 
 
 def add(commands: Commands) -> None:
-    """Put the command on the command line."""
+    """Add the command to the parser."""
     parser = command(commands, "workbench", COMMANDS["workbench"], run)
     parser.add_argument(
         "folder", metavar="FOLDER", nargs="?", default=".", help="what the page may see (here)"
@@ -26,7 +26,7 @@ def add(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the command."""
     from jbf.workbench.serve import serve
 
     def opened(address: str) -> None:
@@ -42,5 +42,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _has_a_screen() -> bool:
-    """False of a Linux without a display: a browser in the terminal would take the terminal."""
+    """Return whether a graphical browser can be opened.
+
+    False on Linux without a display, where a text browser would take over the terminal.
+    """
     return sys.platform != "linux" or any(os.environ.get(n) for n in ("DISPLAY", "WAYLAND_DISPLAY"))

@@ -1,16 +1,15 @@
-"""Pictures: each function draws one idea on the matplotlib axes it is given, or on a new figure's,
-and returns them.
+"""Plots: each function draws one topic on the given matplotlib axes, or on those of a new figure.
 
 >>> import jbf.plot
 >>> ax = jbf.plot.stribeck(diagnosis.after)       # doctest: +SKIP
 >>> jbf.plot.save(ax, "stribeck.svg")             # doctest: +SKIP
 
-Comes in: comparisons, diagnoses, fits, runs of the loop. Goes out: matplotlib axes, dressed with
-the units and words of the rig; no window opens. One idea a file; matplotlib is imported when
-something is drawn. Colours can be told apart by people who confuse red and green. docs/pictures.md
-shows all.
+Input: comparisons, diagnoses, fits, control-loop runs. Output: matplotlib axes, labelled with the
+quantities and units of the rig. No window is opened. Each module covers one topic; matplotlib is
+imported when something is drawn. The colours are distinguishable with red-green colour blindness.
+docs/pictures.md shows all plots.
 
-May import: every room below but the workbench's and reporting's.
+May import: every package below, except `jbf.workbench` and `jbf.reporting`.
 """
 
 from jbf.plot.control import control_trace

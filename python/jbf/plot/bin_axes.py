@@ -1,4 +1,4 @@
-"""A failure's bins as plot coordinates: positions, series, tick labels, the axis's name."""
+"""Plot coordinates of a failure's bins: positions, series, tick labels, axis label."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ def _names(said: Quantities) -> dict[Axis, str]:
 
 @dataclass(frozen=True)
 class BinAxis:
-    """Where each bin stands on a plot.
+    """Plot coordinates of the bins.
 
     Attributes
     ----------
     name
-        For the axis, with its unit.
+        Axis label, with its unit.
     x
         Position of each bin, shape (b,).
     series
-        Label of the line a bin belongs to: a direction of motion, or empty.
+        Label of the line to which a bin belongs: a direction of motion, or empty.
     ticks
-        Names of the positions 0, 1, ... where the axis holds words, else empty.
+        Labels of the positions 0, 1, ... of a categorical axis, else empty.
     """
 
     name: str
@@ -53,13 +53,15 @@ class BinAxis:
 
 
 def bin_axis(failure: Failure, said: Quantities = OF_BEARING) -> BinAxis:
-    """Where a failure's bins stand: at their numbers, or side by side under their words."""
+    """Return the plot coordinates of a failure's bins: numerical if known, otherwise
+    categorical.
+    """
     name = _names(said)[failure.axis]
     series = tuple(_series(b, failure.axis) for b in failure.bins)
     positions = [b.position for b in failure.bins]
     if all(p is not None for p in positions):
         return BinAxis(name, np.array(positions, dtype=float), series, ())
-    # Both ways of one place stand above one another.
+    # Bins of both directions of motion share one position.
     places = [
         replace(b, direction=0, with_rest=False) if line else b
         for b, line in zip(failure.bins, series, strict=True)
@@ -70,12 +72,17 @@ def bin_axis(failure: Failure, said: Quantities = OF_BEARING) -> BinAxis:
 
 
 def _series(b: Bin, axis: Axis) -> str:
-    """The line that a bin belongs to; along velocity and direction the place tells the way."""
+    """Return the line to which a bin belongs.
+
+    Along velocity and direction the position itself contains the direction of motion.
+    """
     return "" if axis in ("velocity", "direction") else direction_words(b)
 
 
 def _tick(b: Bin, axis: Axis) -> str:
-    """A bin's place in words, on two lines where that helps; the axis's name says the rest."""
+    """Return the tick label of a bin, on two lines where that helps; the unit is in the axis
+    label.
+    """
     if b.span is None:
         return b.name or label(axis, b)
     words = span_words(b)

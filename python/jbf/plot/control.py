@@ -1,4 +1,4 @@
-"""Traces of a run of the loop: response, error, friction, and what was learned."""
+"""Time series of a control-loop run: response, error, friction, and learned quantities."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ _MOST_POINTS = 6000
 def control_trace(
     run: Result, what: Trace = "response", *, ax: Axes | None = None, named: bool = True
 ) -> Axes:
-    """One trace of a run of the loop.
+    """Plot one trace of a control-loop run.
 
     Parameters
     ----------
     run
-        From `jbf.control.run`.
+        Result of `jbf.control.run`.
     what
-        `response` beside its reference, `error`, `loop` (friction against speed), `friction` in
-        time, or what the compensator `learned`.
+        `response` with its reference, `error`, `loop` (friction against speed), `friction` in
+        time, or the quantities that the compensator `learned`.
     named
-        With the name of the upright axis, and a legend.
+        Whether to add the label of the vertical axis and a legend.
     """
     if what not in TRACES:
         raise InputError(problem=f"there is no trace {what}", mend=f"known: {', '.join(TRACES)}")
@@ -73,7 +73,7 @@ def _error(ax: Axes, r: Result, stride: int, named: bool) -> None:
     shown = [r.error[counts]]
     thin: dict[str, Any] = {"linewidth": 0.8, "rasterized": True}
     if not r.task.is_position:
-        # The loop's own estimate is not the shaft.
+        # The loop's own estimate differs from the motion of the shaft.
         ax.plot(t, r.true_error[::stride], color=MEASURED, label="of the shaft", **thin)
         title += f", of the shaft {r.true_rms:.3g}"
         shown.append(r.true_error[counts])
@@ -109,7 +109,7 @@ def _friction(ax: Axes, r: Result, stride: int, named: bool) -> None:
 
 
 def _span(ax: Axes, r: Result) -> None:
-    """An estimate that went astray takes no more room than the friction itself, and half."""
+    """Limit the vertical axis to 2.5 times the true friction, so that a diverging estimate fits."""
     span = 2.5 * float(np.max(np.abs(r.friction_v)))
     ax.set_ylim(-span, span)
 

@@ -1,4 +1,4 @@
-"""The error falling: fit and held-out error of each step, above the noise."""
+"""Error per step of the ledger: fit and held-out error, with the noise floor."""
 
 from __future__ import annotations
 
@@ -30,8 +30,11 @@ if TYPE_CHECKING:
 
 
 def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
-    """Fit and held-out error of each step of the ledger, a row each, on a logarithmic scale: a
-    factor is as long wherever it stands, so that the last steps can be seen beside the first."""
+    """Plot fit and held-out error of each step of the ledger, one row each, on a logarithmic
+    scale.
+
+    Equal factors have equal lengths, so that the last steps remain visible next to the first.
+    """
     steps = diagnosis.steps
     ax = one_axes(ax, (9.0, 1.3 + 0.42 * len(steps)))
     y = np.arange(len(steps))
@@ -67,17 +70,17 @@ def _errors(steps: Sequence[Step]) -> tuple[list[float], list[float]]:
 
 
 def _falls(held: Sequence[float], unit: str) -> list[str]:
-    """Each held-out error, and how much less it is than that of the step before."""
+    """Format each held-out error with its relative change from the previous step."""
     words = [f"{number(held[0])} {unit}"]
     for last, now in pairwise(held):
         change = 100.0 * (now / last - 1.0) if last > 0.0 else 0.0
-        # A true minus is as wide as a plus.
+        # A typographic minus is as wide as a plus.
         words.append(f"{number(now)} {unit}  ({change:+.2g} %)".replace("-", "−"))
     return words
 
 
 def _reach(ax: Axes, values: Sequence[float]) -> None:
-    """From a little below the least to a little beyond the largest; few round ticks."""
+    """Set the limits slightly beyond the values, with few round ticks."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     known = [v for v in values if v > 0.0 and np.isfinite(v)] or [1.0]

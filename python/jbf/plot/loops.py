@@ -1,4 +1,4 @@
-"""Friction against speed along a run: the loops that dynamic friction makes."""
+"""Friction against speed along a run, which shows the hysteresis loops of dynamic friction."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ def loops(
     colour: str = MODEL,
     title: str = "",
 ) -> Axes:
-    """One run: friction against speed, measured as dots and modelled as a line.
+    """Plot friction against speed of one run: measured values as dots, the model as a line.
 
     Parameters
     ----------
     comparison
-        From `jbf.compare`, or `before` and `after` of a diagnosis.
+        Result of `jbf.compare`, or `before` and `after` of a diagnosis.
     run
-        Its index or name; the run with the largest error by default.
+        Index or name of the run. Default: the run with the largest error.
     alone
-        Without what the model knows to be no friction: inertia, weight, zero, cogging.
+        Whether to subtract the model terms that are not friction: inertia, weight, zero, cogging.
     ax
-        Matplotlib axes to draw on; a new figure's by default.
+        Matplotlib axes to draw on. Default: those of a new figure.
     """
     ax = one_axes(ax)
     index = index_of(comparison, run)
@@ -75,10 +75,10 @@ def draw_model(
     colour: str = MODEL,
     label: str = "model",
 ) -> None:
-    """The model's loop of a run, less `rest`, on axes that have the readings."""
+    """Plot the model's loop of a run, less `rest`, on axes that show the measured values."""
     speed = comparison.campaign.prepared[index].motion.velocity_m_s
-    # A line through a reversal, whose instant no sample tells, would show a slope that is not
-    # the model's.
+    # The instant of a reversal lies between samples. A line through it would show a slope that the
+    # model does not have.
     turns = np.append(np.sign(speed[1:]) * np.sign(speed[:-1]) < 0, False)
     shown = comparison.samples.counted[index] & ~turns
     modelled = np.where(shown, comparison.predictions[index] - rest, np.nan)

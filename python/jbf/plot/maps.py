@@ -1,4 +1,4 @@
-"""Maps over all runs: where the friction lies, and where the model leaves something of it."""
+"""Maps over all runs: distribution of the friction, and mean residual."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ CELLS = 120
 ROWS = 40
 MOST_NAMES = 24
 BEYOND = 0.0005
-"""This share of the samples on either side may lie outside a map."""
+"""Share of the samples on either side that may lie outside a map."""
 
 
 def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None = None) -> Axes:
-    """How many samples of all runs lie at each speed and friction; over them the model's means.
+    """Plot the number of samples of all runs per speed and friction, with the model's means.
 
     Parameters
     ----------
     alone
-        Without what the model knows to be no friction: inertia, weight, zero, cogging.
+        Whether to subtract the model terms that are not friction: inertia, weight, zero, cogging.
     """
     from matplotlib.colors import ListedColormap, LogNorm, to_rgb
 
@@ -49,7 +49,7 @@ def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None 
     counts, across, up = np.histogram2d(speed, measured, bins=edges)
     shown = np.where(counts > 0, counts, np.nan).T
     most = max(float(counts.max()), 2.0)
-    # The denser, the less one sees through: light or dark, on any ground.
+    # Opacity grows with the density, so that the map works on light and dark backgrounds.
     veil = ListedColormap([(*to_rgb(MEASURED), a) for a in np.linspace(0.2, 1.0, 64)])
     mesh = ax.pcolormesh(across, up, shown, cmap=veil, norm=LogNorm(1.0, most), rasterized=True)
     named = False
@@ -73,13 +73,13 @@ def residual_map(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """The mean of record minus model in cells, in noises: what remains, where, in which run.
+    """Plot the mean residual (record minus model) per cell, in multiples of the noise.
 
     Parameters
     ----------
     across, up
-        What the cells are over: `time` in the run, `speed`, `place` (position or angle) or `run`;
-        `up` is the run by default, and of a single run its speed.
+        Horizontal and vertical quantity: `time` in the run, `speed`, `place` (position or angle)
+        or `run`. The default of `up` is the run, or the speed if there is only one run.
     """
     from matplotlib.colors import TwoSlopeNorm
 
@@ -141,7 +141,7 @@ def _place(comparison: Comparison, index: int) -> Array:
 
 
 def _edges(values: Array, cells: int = CELLS, runs: int = 0) -> Array:
-    """Of cells from where nearly all values begin to where they end; of runs a cell each."""
+    """Return cell edges that cover nearly all values, or one cell per run."""
     if runs:
         return np.linspace(-0.5, runs - 0.5, runs + 1)
     low, high = map(float, np.quantile(values, [BEYOND, 1.0 - BEYOND]))

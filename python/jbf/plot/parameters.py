@@ -1,4 +1,4 @@
-"""Fitted parameters, each with its interval."""
+"""Fitted parameters with their intervals."""
 
 from __future__ import annotations
 
@@ -23,33 +23,38 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 LINEAR_PERCENT = 1.0
-"""Errors of a few permille and of half the value stand on one axis: linear up to so many percent,
-logarithmic beyond."""
+"""Linear threshold of the error axis, in percent of the value; the axis is logarithmic beyond it.
+
+Errors of a few permille and of half the value then fit on one axis.
+"""
 WIDEST_PERCENT = 300.0
 NONE: Mapping[str, tuple[str, str]] = MappingProxyType({})
 
 
 def height(parameters: Mapping[str, object]) -> float:
-    """Of a picture of so many, inches."""
+    """Return the height of a figure with this number of parameters, in inches."""
     return 1.6 + 0.5 * len(parameters)
 
 
 def parameters(
     fit: Fit, *, ax: Axes | None = None, answers: Mapping[str, Array] | None = None
 ) -> Axes:
-    """The parameters of a fit with their intervals.
+    """Plot the parameters of a fit with their intervals.
 
     Parameters
     ----------
     answers
-        Of repeated fits, by name: drawn behind the intervals.
+        Estimates of repeated fits by parameter name, drawn behind the intervals.
     """
     ax = one_axes(ax, (7.0, height(fit.parameters)))
     return intervals(fit.parameters, answers, called(fit), ax=ax)
 
 
 def called(fit: Fit) -> Mapping[str, tuple[str, str]]:
-    """Names of a drive's parameters and their units; of any other rig the names tell the units."""
+    """Return displayed names and units of a drive's parameters.
+
+    Empty for other rigs, whose parameter names contain the units.
+    """
     model = fit.model
     if model.rig.drive is None:
         return NONE
@@ -63,9 +68,11 @@ def intervals(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """Each parameter's standard error in percent of its value, and answers of repeated fits.
+    """Plot each parameter's standard error in percent of its value, and estimates of repeated
+    fits.
 
-    A parameter without an error, or at zero, is an open mark. `called` has shown names and units.
+    A parameter with value zero or without a standard error is an open marker. `called` contains
+    displayed names and units.
     """
     from matplotlib.ticker import FuncFormatter
 

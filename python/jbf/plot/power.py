@@ -1,4 +1,4 @@
-"""Power curves: how often runs like these would show an effect, over its strength."""
+"""Power curves: probability of detection over the strength of an effect."""
 
 from __future__ import annotations
 
@@ -28,20 +28,21 @@ def power(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """The chance that campaigns like this one show an effect, over how much of the friction it is.
+    """Plot the probability that such runs show an effect, over its share of the friction.
 
-    Each curve goes through the strengths that are found in 80 and in 95 of 100: what an effect is
-    worth grows as the square of its strength, and the chance with it as a normal.
+    Each curve passes through the strengths that are detected in 80 and in 95 of 100 campaigns. The
+    log-likelihood gain of an effect grows as the square of its strength. The probability is a
+    normal distribution function of the strength.
 
     Parameters
     ----------
     effects
-        Those drawn; by default the eight that show at the weakest.
+        Effects to draw. Default: the eight with the smallest detectable strength.
 
     Raises
     ------
     InputError
-        Nothing is known of any of them.
+        No power is known for any of the effects.
     """
     from matplotlib.ticker import LogLocator, NullFormatter
     from scipy.special import ndtr
@@ -80,15 +81,18 @@ def _has_curve(p: Power) -> bool:
 
 
 def deviate(p: Power, share: np.ndarray) -> np.ndarray:
-    """The normal deviate of the chance to be found, at shares of the friction: linear, through
-    those of 80 and 95 of 100."""
+    """Return the normal deviate of the detection probability at shares of the friction.
+
+    It is linear in the share, through the points of 80 and 95 of 100 campaigns.
+    """
     from scipy.special import ndtri
 
     assert p.found_80 is not None
     assert p.found_95 is not None
     assert p.share_80 is not None
     at_80, at_95 = float(ndtri(0.80)), float(ndtri(0.95))
-    # A parameter whose effect saturates is followed in what it changes: nearly in proportion.
+    # For a parameter whose effect saturates, use the change of the friction, which is nearly
+    # proportional to the strength.
     ratio = max(abs(p.found_95 / p.found_80), 1.0 + 1e-6)
     ratio = ratio if ratio < 3.0 else 1.3
     slope = (at_95 - at_80) / (ratio - 1.0)

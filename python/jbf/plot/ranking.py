@@ -1,4 +1,4 @@
-"""The candidates of a round, by their evidence."""
+"""Candidates of one selection step, ranked by evidence."""
 
 from __future__ import annotations
 
@@ -20,27 +20,28 @@ if TYPE_CHECKING:
 MOST = 12
 FEWEST = 3
 LINEAR = 10.0
-"""Evidence up to here is drawn on a linear scale, beyond on a logarithmic one."""
+"""Evidence up to which the axis is linear; it is logarithmic beyond."""
 COLOURS = {"added": MODEL, "ties": NOISE, "rejected": BEFORE}
 
 
 def _shown(trials: Sequence[Trial]) -> Sequence[Trial]:
-    """Those with evidence, and at least a few; the first of very many."""
+    """Return the candidates with evidence, at least `FEWEST` and at most `MOST`."""
     return trials[: min(max(sum(t.evidence > 0.0 for t in trials), FEWEST), MOST)]
 
 
 def ranking_height(step: Step) -> float:
-    """Of the picture of a step's candidates, inches."""
+    """Return the height of the figure of a step's candidates, in inches."""
     return 1.2 + 0.27 * len(_shown(sorted(step.trials, key=lambda t: -t.evidence)))
 
 
 def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> Axes:
-    """The candidates tried at a step of the ledger, strongest first; the first few of many.
+    """Plot the candidates tried at a step of the ledger, strongest first; long lists are
+    truncated.
 
     Parameters
     ----------
     step
-        Index into `diagnosis.steps`; the bare law's by default.
+        Index into `diagnosis.steps`. Default: the step of the bare law.
 
     Raises
     ------

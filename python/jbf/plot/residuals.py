@@ -1,4 +1,4 @@
-"""Record minus model: means along an axis, in time, run after run."""
+"""Residual (record minus model): means along an axis, in time, and over all runs."""
 
 from __future__ import annotations
 
@@ -34,14 +34,17 @@ Array = npt.NDArray[np.float64]
 MOST_TICKS = 16
 MOST_DOTS = 4000
 ONE_PLACE = 0.012
-"""Share of an axis's length below which two marks stand at one place."""
+"""Share of an axis's length below which two marks are merged."""
 NEARLY_ALL = 0.998
-"""Of the samples: so many are seen in a picture in time."""
+"""Share of the samples that a time plot shows."""
 
 
 def means_along(comparison: Comparison, axis: str | None) -> Failure:
-    """Bin means of a comparison's residual along an axis, also where it does not fail; by default
-    along the one where it fails most, or else along velocity."""
+    """Return the bin means of a comparison's residual along an axis.
+
+    The axis need not be one along which the model fails. Default: the axis of the worst failure,
+    or velocity if there are no failures.
+    """
     from jbf.comparison import patterns
     from jbf.comparison.axes import all_axes, force_axis
     from jbf.models.catalogue import transition_speed
@@ -66,13 +69,14 @@ def residual_along(
     colour: str = MODEL,
     label: str = "",
 ) -> Axes:
-    """Means of record minus model in the bins of an axis; by default of the worst.
+    """Plot the mean residual (record minus model) in the bins of an axis.
 
     Parameters
     ----------
     axis
         `velocity`, `direction`, `regime` (`speed range`), `acceleration`, `angle`, `time`, `run`,
-        `time since a rest`, `distance since a reversal` or `force`.
+        `time since a rest`, `distance since a reversal` or `force`. Default: the axis of the worst
+        failure.
     """
     ax = one_axes(ax)
     said = said_by(comparison)
@@ -83,7 +87,7 @@ def residual_along(
 
 
 def draw_means(ax: Axes, failure: Failure, colour: str, said: Quantities, label: str = "") -> None:
-    """Means of record minus model in the bins, a line for each direction of motion."""
+    """Plot the mean residual in the bins, one line per direction of motion."""
     place = bin_axis(failure, said)
     directions = list(dict.fromkeys(place.series))
     for direction, marker in zip(directions, "os", strict=False):
@@ -107,8 +111,10 @@ def draw_means(ax: Axes, failure: Failure, colour: str, said: Quantities, label:
 
 
 def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[Array, Array]:
-    """Bins in order, those that stand at one place on the page as one: of a speed that is held
-    there are many."""
+    """Sort the bins and merge those that coincide on the page.
+
+    A speed that is held contributes many such bins.
+    """
     order = np.argsort(x, kind="stable")
     x, means, counts = x[order], means[order], counts[order]
     groups = np.cumsum(np.diff(x, prepend=x[:1]) > ONE_PLACE * (np.ptp(x) if len(x) else 0.0))
@@ -117,7 +123,7 @@ def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[A
 
 
 def _ticks(ax: Axes, ticks: tuple[str, ...]) -> None:
-    """Names under the bins; of very many every few."""
+    """Label the bins; of many labels only every n-th is shown."""
     every = -(-len(ticks) // MOST_TICKS)
     shown = [plain(shortened(t, 24)) for t in ticks[::every]]
     longest = max(len(line) for tick in shown for line in tick.split("\n"))
@@ -134,7 +140,7 @@ def _ticks(ax: Axes, ticks: tuple[str, ...]) -> None:
 def residual_in_time(
     comparison: Comparison, run: int | str | None = None, *, ax: Axes | None = None
 ) -> Axes:
-    """Record minus model of one run, where the sign of the motion is known."""
+    """Plot the residual of one run in time, where the sign of the motion is known."""
     ax = one_axes(ax, (10.0, 3.0))
     index = index_of(comparison, run)
     p = comparison.campaign.prepared[index]
@@ -150,7 +156,7 @@ def residual_in_time(
         label="record minus model",
         rasterized=True,
     )
-    # A few samples far off would leave no room for the rest.
+    # A few distant samples would compress all others.
     size = np.abs(shown[np.isfinite(shown)])
     reach = max(1.4 * float(np.quantile(size, NEARLY_ALL)), 3.0 * comparison.noise_n)
     if reach > 0.0:
@@ -163,9 +169,9 @@ def residual_in_time(
 
 
 def residuals_in_a_row(fit: Fit, *, ax: Axes | None = None) -> Axes:
-    """Record minus model of a fit, run after run."""
+    """Plot the residual of a fit, one run after another."""
     ax = one_axes(ax)
-    # The samples next to a reversal count for nothing and may be far off.
+    # Samples next to a reversal have no weight and may be far off.
     reach = 5.0 * fit.rms_n
     start = 0
     for i, residual in enumerate(fit.residuals):

@@ -1,4 +1,4 @@
-"""Which run of a comparison to show, and what its axes are called."""
+"""Selection of the run to plot, and axis labels of a comparison."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def most_telling(comparison: Comparison, other: Comparison | None = None) -> int:
-    """The run in which the model fails most, or in which two models differ most."""
+    """Return the run with the largest error, or the run in which two models differ most."""
     if other is None:
         return int(np.argmax([r.rms_n for r in comparison.runs]))
     gaps = [
@@ -27,7 +27,7 @@ def most_telling(comparison: Comparison, other: Comparison | None = None) -> int
 
 
 def index_of(comparison: Comparison, run: int | str | None) -> int:
-    """A run by its index or name; the one with the largest error by default.
+    """Return the index of a run given by index or name; by default that with the largest error.
 
     Raises
     ------
@@ -45,11 +45,11 @@ def index_of(comparison: Comparison, run: int | str | None) -> int:
 
 
 def said_by(comparison: Comparison) -> Quantities:
-    """The words and units of the rig."""
+    """Return the names and units of the rig's quantities."""
     return comparison.model.rig.quantities
 
 
 def axes_words(comparison: Comparison) -> tuple[str, str]:
-    """Names of the axes: speed, friction."""
+    """Return the axis labels of speed and friction."""
     said = said_by(comparison)
     return f"{said.velocity} ({said.speed})", f"{said.friction} ({said.force})"

@@ -1,4 +1,4 @@
-"""Spectra of what remains: a hum, a ripple or a rattle stands out of the noise."""
+"""Spectra of the residual, which reveal hum, ripple or rattle above the noise."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
 
 SEGMENTS = 8
-"""So many stretches of a run are averaged, overlapping by half."""
+"""Number of segments of a run that are averaged, with 50 % overlap."""
 SHORTEST = 64
 
 
@@ -27,13 +27,14 @@ def spectrum(
     colour: str = MODEL,
     label: str = "record minus model",
 ) -> Axes:
-    """The amplitude density of record minus model in one run, and that of white noise of the
-    noise's size. Samples that do not count are taken as zero.
+    """Plot the amplitude density of one run's residual, and that of white noise of equal size.
+
+    The residual is record minus model. Samples that do not count are set to zero.
 
     Parameters
     ----------
     run
-        Its index or name; the run with the largest error by default.
+        Index or name of the run. Default: the run with the largest error.
     """
     from scipy.signal import welch
 

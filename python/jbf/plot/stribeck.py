@@ -1,4 +1,4 @@
-"""Stribeck curves: the mean friction at each speed, both ways, of record, model and law."""
+"""Stribeck curves: mean friction against speed, in both directions, of record, model and law."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ if TYPE_CHECKING:
 
 
 def stribeck(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
-    """Friction without what is none of it, over the speed: means of all runs with the scatter
-    round them, the model's means of the same samples, the law's own steady curve, and where its
-    regimes end."""
+    """Plot friction against speed, without the model terms that are not friction.
+
+    The plot shows the means of all runs with their scatter, and the model's means at the same
+    samples. The steady curve of the law and the limits of its regimes are added.
+    """
     from jbf.comparison.over_speed import friction_over_speed
 
     ax = one_axes(ax)
@@ -50,7 +52,7 @@ def stribeck(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
 
 
 def _steady(ax: Axes, comparison: Comparison, ways: tuple[OverSpeed, ...]) -> None:
-    """The steady curve of the law alone, under the rig's load; none where that needs one."""
+    """Plot the steady curve of the law under the rig's load, if the rig has the required load."""
     for number, own in enumerate(ways):
         most = float(np.abs(own.speed_m_s).max())
         x = own.way * np.geomspace(max(float(np.abs(own.speed_m_s).min()), 1e-4 * most), most, 300)
@@ -63,7 +65,7 @@ def _steady(ax: Axes, comparison: Comparison, ways: tuple[OverSpeed, ...]) -> No
 
 
 def _regimes(ax: Axes, comparison: Comparison) -> None:
-    """Where the law's regimes end, each named above its beginning."""
+    """Mark the limits of the law's regimes, each labelled at its lower limit."""
     from jbf.comparison.over_speed import regimes
 
     left, right = ax.get_xlim()

@@ -1,4 +1,4 @@
-"""What all pictures share: colours, the look of an axes, a figure where none is given, files."""
+"""Common elements of all plots: colours, axes style, new figures, file output."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Okabe and Ito's colours: people who confuse red and green can tell them apart.
+# Colour palette of Okabe and Ito, distinguishable with red-green colour blindness.
 MEASURED, MODEL, BEFORE, NOISE = "#8c8c8c", "#0072b2", "#d55e00", "#009e73"
 OTHER = "#cc79a7"
 INK, SOFT = "#000000", "#5b6470"
 DIVERGING = "PuOr_r"
-"""Of maps of what may be above or below; everybody can tell the two apart."""
+"""Diverging colour map of signed quantities, distinguishable with colour blindness."""
 PIXELS_PER_INCH = 130
 
 
 def plain(words: str) -> str:
-    """Words that matplotlib takes for no formula, whatever a run is called."""
+    """Escape characters that matplotlib would interpret as a formula."""
     return words.replace("$", r"\$")
 
 
 def shortened(words: str, longest: int = 28) -> str:
-    """A name that may be too long for its place, without its middle."""
+    """Shorten a long name by replacing its middle with an ellipsis."""
     if len(words) <= longest:
         return words
     head = (longest - 1) // 2
@@ -38,7 +38,7 @@ def shortened(words: str, longest: int = 28) -> str:
 
 
 def dress(ax: Axes, title: str, x: str, y: str) -> None:
-    """Title, names of the axes, grid."""
+    """Set title, axis labels and grid."""
     from matplotlib.ticker import AutoLocator, MaxNLocator
 
     ax.set_title(plain(title), loc="left", fontsize="medium")
@@ -53,7 +53,7 @@ def dress(ax: Axes, title: str, x: str, y: str) -> None:
 def axes_or_new(
     axes: Sequence[Axes] | None, rows: int, columns: int, size: tuple[float, float]
 ) -> list[Axes]:
-    """The axes given, or those of a new figure."""
+    """Return the given axes, or those of a new figure."""
     wanted = rows * columns
     if axes is None:
         from matplotlib.figure import Figure
@@ -70,26 +70,26 @@ def axes_or_new(
 
 
 def one_axes(ax: Axes | None, size: tuple[float, float] = (6.0, 4.0)) -> Axes:
-    """The axes given, or that of a new figure."""
+    """Return the given axes, or those of a new figure."""
     return axes_or_new(None if ax is None else [ax], 1, 1, size)[0]
 
 
 def noise_band(ax: Axes, noise_n: float, name: str = "noise", unit: str = "N") -> None:
-    """One standard deviation of the noise to either side of zero."""
+    """Shade one standard deviation of the noise on both sides of zero."""
     label = f"{name}, ±{number(noise_n, 2)} {unit}"
     ax.axhspan(-noise_n, noise_n, color=NOISE, alpha=0.15, label=label)
     ax.axhline(0.0, color=INK, linewidth=0.6)
 
 
 def legend_on_top(ax: Axes, columns: int = 2) -> None:
-    """A legend in room made for it above the data."""
+    """Add a legend inside the axes, with space made for it above the data."""
     low, high = ax.get_ylim()
     ax.set_ylim(low, high + 0.28 * (high - low))
     ax.legend(loc="upper left", frameon=False, fontsize="small", ncols=columns)
 
 
 def legend_above(ax: Axes, columns: int = 3) -> None:
-    """A legend above the axes, where no data are; it ends at the right."""
+    """Add a legend above the axes, aligned to the right."""
     ax.legend(
         loc="lower right",
         bbox_to_anchor=(1.0, 0.995),
@@ -103,15 +103,15 @@ def legend_above(ax: Axes, columns: int = 3) -> None:
 
 
 def save(ax: Axes | Sequence[Axes], path: str | os.PathLike[str]) -> None:
-    """Write the figure of some axes: `.svg` and `.pdf` are vectors, `.png` is not.
+    """Save the figure of the axes; `.svg` and `.pdf` are vector formats, `.png` is not.
 
     Raises
     ------
     InputError
-        The file cannot be written, or its end names no kind of picture.
+        The file cannot be written, or its suffix is not that of an image format.
     """
     first = next(iter(ax)) if isinstance(ax, Sequence) else ax
-    # Text stays text, which can be searched and set in another face.
+    # Keep text as text, so that it can be searched and set in another font.
     from matplotlib import rc_context
 
     try:

@@ -1,4 +1,4 @@
-"""A run in time: what was measured, and what the model says."""
+"""Time series of one run: measured and modelled friction."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def record_and_model(
     comparison: Comparison, run: int | str | None = None, *, ax: Axes | None = None
 ) -> Axes:
-    """Friction of one run in time, measured and modelled; by default of the worst."""
+    """Plot measured and modelled friction of one run in time; by default of the worst run."""
     from matplotlib.ticker import MaxNLocator
 
     ax = one_axes(ax, (10.0, 3.0))

@@ -199,7 +199,7 @@ def _before(diagnosis: Diagnosis) -> Markup | str:
     """Plot the bare law and the final model.
 
     Left: the run in which they differ most. Right: the residual along the axis of the worst
-    failure. Empty if the final model has no effect.
+    failure. Without added effects the result is an empty string.
     """
     before, after = diagnosis.before, diagnosis.after
     if not diagnosis.model.effects:

@@ -1,4 +1,6 @@
-"""`jbf control run|tables|tune|robustness`: loops on the simulated bench, one file an action."""
+"""`jbf control run|tables|tune|robustness`: control loops on the simulated bench, one module
+each.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,7 @@ from jbf.cli.control import robustness, run, tables, tune
 
 
 def add(commands: Commands) -> None:
-    """Put the commands on the command line; without an action it is `tables`."""
+    """Add the commands to the parser; without an action, `tables` is run."""
     parser = command(commands, "control", COMMANDS["control"], tables.run)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", parser_class=type(parser))
     tables.add_options(parser)

@@ -1,4 +1,4 @@
-"""Options of `jbf control` that several of its actions share: the bench, the task, the friction."""
+"""Options shared by several actions of `jbf control`: bench, task, friction."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def add_bench(parser: Parser) -> None:
-    """Motor, shaft, encoder, noise."""
+    """Add the options of motor, shaft, encoder and noise."""
     group = parser.add_argument_group("bench")
     numbers = {
         "volts-per-n": "volts for one newton of friction on one bearing",
@@ -31,7 +31,7 @@ def add_bench(parser: Parser) -> None:
 
 
 def bench_of(arguments: argparse.Namespace) -> Bench:
-    """The bench that the options ask for; the thesis's where they ask for nothing."""
+    """Return the bench defined by the options; by default the thesis's bench."""
     from jbf.control.bench import THESIS_BENCH, with_noise
 
     names = ("volts_per_n", "damping_1_s", "input_rad_s2_v", "counts_per_rad", "limit_v", "seed")
@@ -46,7 +46,7 @@ def bench_of(arguments: argparse.Namespace) -> Bench:
 
 
 def add_task(parser: Parser) -> None:
-    """What the loop shall follow."""
+    """Add the options of the reference that the loop follows."""
     group = parser.add_argument_group(
         "task", "a row of the thesis's tables (--task), changed by whatever else is given"
     )
@@ -67,7 +67,7 @@ def add_task(parser: Parser) -> None:
 
 
 def task_of(arguments: argparse.Namespace) -> Task:
-    """The task that the options ask for."""
+    """Return the task defined by the options."""
     from jbf.control.task import TASKS
 
     if arguments.task not in TASKS:
@@ -79,7 +79,7 @@ def task_of(arguments: argparse.Namespace) -> Task:
 
 
 def model_of(path: str | None) -> Model:
-    """The friction of a model file; the thesis's bench's where none is named."""
+    """Load the friction model of a file; without a path, that of the thesis's bench."""
     from jbf.cli import inputs
     from jbf.control import thesis_model
 

@@ -1,4 +1,4 @@
-"""`--plot`: refused before the work where no such picture can be written, written after it."""
+"""Option `--plot`: checked before the computation, written after it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 
 def add_plot(parser: Parser) -> None:
-    """--plot."""
+    """Add `--plot`."""
     parser.add_argument("--plot", metavar="PNG", help="write a picture (png, svg or pdf)")
 
 
 def check_picture(path: str | None) -> None:
-    """Before the work: can such a picture be written?"""
+    """Check, before the computation, that the image format is supported."""
     if path is None:
         return
     from matplotlib.backend_bases import FigureCanvasBase
@@ -29,7 +29,7 @@ def check_picture(path: str | None) -> None:
 
 
 def save_picture(figure: Any, path: str | None) -> None:
-    """Write a figure, where a path was given."""
+    """Save a figure if a path was given."""
     if path is None:
         return
     try:

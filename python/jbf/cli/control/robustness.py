@@ -1,4 +1,4 @@
-"""`jbf control robustness [MODEL]`: does compensation still help when its model is wrong?"""
+"""`jbf control robustness [MODEL]`: effect of compensation when its model is wrong."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jbf.reporting.json import json_text
 
 
 def add(actions: Commands) -> None:
-    """Put the action on the command line."""
+    """Add the action to the parser."""
     does = "does it still help when its model is wrong: every effect hidden, wrong load, more noise"
     parser = command(actions, "robustness", does, run)
     parser.add_argument("model", metavar="MODEL", nargs="?", help="model file; the thesis's")
@@ -23,7 +23,7 @@ def add(actions: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the action."""
     from jbf.control.bench import thesis_model
     from jbf.control.robustness import robustness
     from jbf.reporting.control_json import robustness_dict

@@ -1,4 +1,4 @@
-"""`jbf control run [MODEL]`: loops on the bench, schemes compared."""
+"""`jbf control run [MODEL]`: control loops on the bench, with several schemes compared."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _DEFAULT = "none,learning,coulomb,observed"
 
 
 def add(actions: Commands) -> None:
-    """Put the action on the command line."""
+    """Add the action to the parser."""
     does = "run loops on the bench and compare schemes"
     parser = command(actions, "run", does, run)
     parser.add_argument(
@@ -45,7 +45,7 @@ def add(actions: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the action."""
     from jbf.control.run import run as run_loop
     from jbf.control.settings import Settings
     from jbf.reporting.control_run_text import runs_text
@@ -96,7 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _asked(arguments: argparse.Namespace, truth: Model | None, bench: Bench) -> Motion:
-    """The task, and what else a recorded motion brings."""
+    """Return the task, and the reference and load if a recorded motion is followed."""
     from jbf.control import Motion, follow, thesis_model
     from jbf.records.csv_file import read_run
 

@@ -1,4 +1,4 @@
-"""`jbf control tables`: the thesis's Tables 6.1 and 6.2, fitted, predicted, printed."""
+"""`jbf control tables`: the thesis's Tables 6.1 and 6.2, fitted and predicted."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ if TYPE_CHECKING:
 
 
 def add(actions: Commands) -> None:
-    """Put the action on the command line."""
+    """Add the action to the parser."""
     does = "Tables 6.1 and 6.2: fitted, predicted, printed"
     add_options(command(actions, "tables", does, run))
 
 
 def add_options(parser: Parser) -> None:
-    """--json and --plot."""
+    """Add `--json` and `--plot`."""
     add_json(parser)
     add_plot(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the action."""
     from jbf.control.assumptions import assumptions
     from jbf.control.thesis_tables import fit_friction, tables
     from jbf.reporting.control_json import tables_dict

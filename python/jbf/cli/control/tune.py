@@ -11,7 +11,7 @@ from jbf.cli.progress import shown
 
 
 def add(actions: Commands) -> None:
-    """Put the action on the command line."""
+    """Add the action to the parser."""
     parser = command(actions, "tune", "settings of the compensator from a fitted model", run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument("--out", metavar="TOML", help="write them to a file")
@@ -19,7 +19,7 @@ def add(actions: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do it."""
+    """Run the action."""
     from jbf.control import tune
 
     wanted = {"--out": arguments.out}

@@ -1,7 +1,7 @@
-"""Friction compensation in the loop: a simulated bench, the compensators, and their settings.
+"""Friction compensation in a control loop: a simulated bench, compensators, and their settings.
 
-Comes in: a `Model`, a task, a scheme. Goes out: settings, and what the loop did on the bench.
-Loops, observers and compensators are the core's.
+Input: a `Model`, a task, a scheme. Output: settings, and the signals of the loop on the bench.
+Loops, observers and compensators are implemented in the core.
 
 >>> from jbf import control
 >>> result = control.run(scheme="observed", task=control.TASKS["velocity sine"])

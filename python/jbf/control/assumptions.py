@@ -1,6 +1,6 @@
-"""What the thesis must have done: the tables under other assumptions.
+"""Tables of the thesis under alternative assumptions about details that it does not state.
 
-Each changes one thing of the tables and computes anew only the columns that it touches.
+Each assumption changes one element of the tables; only the affected columns are recomputed.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _COUNT = 9
 
 
 def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[str, Tables]]:
-    """Names and tables, the base first."""
+    """Yield name and tables of each assumption, the base first."""
     done = 0
 
     def told(name: str, changed: Tables | None = None) -> tuple[str, Tables]:
@@ -60,7 +60,9 @@ def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[st
 
 
 def on_the_journal_clock(report: Report | None = None) -> float:
-    """The worst of the cells without compensation, where the bench's film has the journal clock."""
+    """Return the largest deviation of the ratios without compensation, with the film on journal
+    clock.
+    """
     model, bench = fit_friction(clock="journal", report=report)
     schemes = {"none": standard_schemes(model)["none"]}
     cells = tables(model, bench, schemes=schemes, seeds=_SEEDS).column("none")

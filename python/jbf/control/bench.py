@@ -1,4 +1,4 @@
-"""The simulated bench: motor, shaft, encoder, noise. Its friction is a `jbf.Model`."""
+"""Simulated bench: motor, shaft, encoder and noise, with a `jbf.Model` as friction."""
 
 from __future__ import annotations
 
@@ -20,24 +20,25 @@ from jbf.records.rig import Rig
 
 @dataclass(frozen=True)
 class Bench:
-    """`v' = -a v + b (u - F)`, an encoder with a counter that rolls over, and noise.
+    """Plant `v' = -a v + b (u - F)` with an encoder, a counter that rolls over, and noise.
 
     Attributes
     ----------
     damping_1_s, input_rad_s2_v : float
-        The plant's a and b.
+        Parameters a and b of the plant.
     volts_per_n : float
-        What one newton of friction on one bearing is in volts.
+        Voltage equivalent to one newton of friction on one bearing.
     limit_v : float
-        Largest input, V, either way.
+        Largest input in both directions, V.
     counts_per_rad, counter_bits
-        The encoder and its counter.
+        Resolution of the encoder, and width of its counter.
     input_noise_v, encoder_noise_counts : float
-        Standard deviations of white noise, one value a step; the encoder's counting comes on top.
+        Standard deviations of white noise, one value per step. The quantisation of the encoder is
+        added to it.
     seed : int
-        Of the noise.
+        Seed of the noise.
     stood_s : float
-        How long the shaft has stood before the run, s: its film has been squeezed out.
+        Time that the shaft has been at rest before the run, s; its film has been squeezed out.
     dt_s : float
         Step of the loop, s; the plant takes `inner_steps` steps in each.
     """
@@ -69,11 +70,11 @@ class Bench:
             raise _wrong("counter_bits", self.counter_bits, "between 8 and 32")
 
     def drive(self) -> dict[str, float]:
-        """Motor and shaft as the core takes them."""
+        """Return motor and shaft parameters in the form required by the core."""
         return {name: getattr(self, name) for name in DRIVE}
 
     def core(self, model: Model) -> dict[str, Any]:
-        """What the core's bench is built from."""
+        """Return the arguments from which the core builds its bench."""
         names = (
             "counts_per_rad",
             "counter_bits",
@@ -92,12 +93,12 @@ def _wrong(name: str, value: float, rule: str) -> InputError:
 
 
 def core_model(model: Model) -> dict[str, Any]:
-    """A model as the core's bench and compensators take it.
+    """Convert a model to the form required by the core's bench and compensators.
 
     Raises
     ------
     InputError
-        It has an effect of one's own, which is Python and cannot run in a loop.
+        The model has a user-defined law or effect, which is Python code and cannot run in a loop.
     """
     pages = catalogue.effects()
     if isinstance(catalogue.find_law(model.law), OwnLaw):
@@ -130,20 +131,22 @@ def core_model(model: Model) -> dict[str, Any]:
 
 
 THESIS_RIG = Rig.thesis()
-"""The rig of Cohn's thesis."""
+"""Rig of Cohn's thesis."""
 
 THESIS_LOAD_N = core_load_n(THESIS_RIG) or 1.0
-"""Its load on one bearing, N."""
+"""Load on one bearing of the thesis's rig, N."""
 
 THESIS_BENCH = Bench()
-"""The bench whose friction fits the "none" columns of the thesis's Tables 6.1 and 6.2."""
+"""Bench whose friction fits the "none" columns of the thesis's Tables 6.1 and 6.2."""
 
 FITTED = {"U_tr_m_s": 0.05936, "K0": 5.029e6, "gamma": 84.58}
-"""What `jbf control tables` fits to the seven "none" cells, with `Bench.volts_per_n`."""
+"""Parameters that `jbf control tables` fits to the seven "none" cells, with `Bench.volts_per_n`."""
 
 VOLTS_PER_N_M = 0.547
-"""Volts for a newton metre on the shaft: a factor of the thesis's programs, which do not name
-its unit. Four bearings of 12.7 mm at 104 N make it 2.89 V for a friction coefficient of 1."""
+"""Voltage per newton metre on the shaft; a factor of the thesis's programs, which omit its unit.
+
+Four bearings of 12.7 mm at 104 N yield 2.89 V for a friction coefficient of 1.
+"""
 
 ELASTIC: Mapping[str, Mapping[str, float]] = {
     "belt": {
@@ -155,24 +158,24 @@ ELASTIC: Mapping[str, Mapping[str, float]] = {
     "contact": {"presliding.sigma_1_m": 0.26 * COUNTS_PER_RAD / _core.thesis_bearing()["radius_m"]},
     "nothing": {},
 }
-"""What gives way between motor and sliding: the timing belt, the contact, or nothing.
+"""Compliance between motor and sliding contact: the timing belt, the contact, or none.
 
-The belt's inertia is that of a solid shaft of the rig's mass; its stiffness and damping are what
-the Coulomb column of Table 6.2 asks for (docs/control.md).
+The belt's inertia is that of a solid shaft of the rig's mass. Its stiffness and damping are those
+that the Coulomb column of Table 6.2 requires (docs/control.md).
 """
 
 
 def thesis_model(*, elastic: str = "belt", clock: Clock = "thesis", **parameters: float) -> Model:
-    """The friction of the thesis's bench.
+    """Return the friction model of the thesis's bench.
 
     Parameters
     ----------
     elastic
-        A name of `ELASTIC`.
+        Key of `ELASTIC`.
     clock
-        Of the film.
+        Clock of the film.
     parameters
-        Values in place of the fitted ones.
+        Values that replace the fitted ones.
     """
     bend = ELASTIC[elastic]
     return Model(
@@ -184,7 +187,7 @@ def thesis_model(*, elastic: str = "belt", clock: Clock = "thesis", **parameters
 
 
 def with_noise(bench: Bench, times: float) -> Bench:
-    """The bench with all its noise so many times as strong, the encoder's counting included."""
+    """Return the bench with all noise scaled by a factor, including the encoder's quantisation."""
     counting = (1.0 / 12.0) ** 0.5
     total = times * (counting**2 + bench.encoder_noise_counts**2) ** 0.5
     return replace(

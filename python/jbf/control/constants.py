@@ -1,4 +1,4 @@
-"""Numbers that the core keeps: the thesis's bench, and what the flags of a loop are."""
+"""Constants defined by the core: parameters of the thesis's bench, and status flags of a loop."""
 
 from __future__ import annotations
 
@@ -7,17 +7,19 @@ from jbf import _core
 _CORE = _core.control_constants()
 
 DRIVE = _CORE["drive"]
-"""a, b, friction scale and largest input of the thesis's drive, by the names of `Bench`."""
+"""a, b, friction scale and largest input of the thesis's drive, keyed by the attributes of
+`Bench`.
+"""
 
 COUNTS_PER_RAD = _CORE["counts_per_rad"]
 COUNTER_BITS = _CORE["counter_bits"]
-"""The thesis's encoder."""
+"""Encoder of the thesis: counts per radian, and width of the counter."""
 
 OBSERVER_1_S = _CORE["observer_1_s"]
 """Gain of the thesis's velocity observer."""
 
 TABLE_ENTRIES = _CORE["table_entries"]
-"""Levels in a look-up table."""
+"""Number of levels in a look-up table."""
 
 SATURATED = _CORE["flags"]["saturated"]
 FROZEN = _CORE["flags"]["frozen"]

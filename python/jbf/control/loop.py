@@ -1,5 +1,4 @@
-"""What stands round a compensator: the thesis's control law and observer on a drive, and the
-settings that guard the loop."""
+"""Control loop around a compensator: control law and observer of the thesis, and loop guards."""
 
 from __future__ import annotations
 
@@ -12,17 +11,19 @@ from jbf.control.task import Task
 
 
 def gains(task: Task, bench: Bench) -> tuple[float, float]:
-    """Gains of the control law: the thesis's, on another drive those with the same poles.
+    """Return the gains of the control law.
 
-    k1 (V/rad) and k2 (V s/rad) in position control, g and C (V s/rad) in velocity control.
+    They are those of the thesis; on a different drive, those with the same poles. k1 (V/rad) and
+    k2 (V s/rad) in position control, g and C (V s/rad) in velocity control.
     """
     return _core.control_gains(task.is_position, bench.damping_1_s, bench.input_rad_s2_v)
 
 
 def core_loop(task: Task, bench: Bench, guard: Settings | None) -> dict[str, Any]:
-    """What the core builds encoder, velocity observer, control law and limits from.
+    """Return the arguments from which the core builds encoder, velocity observer, control law and
+    limits.
 
-    Without a `guard` nothing but a jump of the counter stops a compensator, as in the thesis.
+    Without a `guard`, a compensator is stopped only by a jump of the counter, as in the thesis.
     """
     return {
         "dt_s": bench.dt_s,

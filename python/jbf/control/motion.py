@@ -1,4 +1,4 @@
-"""A recorded run as the reference of a loop: the motion and the load that a rig once had."""
+"""Recorded run as the reference of a loop: its motion and load."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = npt.NDArray[np.float64]
 
 
 class Motion(NamedTuple):
-    """What `jbf.control.run` takes as `task`, `reference` and `load_n`."""
+    """Arguments `task`, `reference` and `load_n` of `jbf.control.run`."""
 
     task: Task
     reference: tuple[Array, Array] | None
@@ -30,18 +30,18 @@ def follow(
     control: Literal["position", "velocity"] = "velocity",
     bench: Bench = THESIS_BENCH,
 ) -> Motion:
-    """The reference that follows a recorded motion, on straight lines between its samples.
+    """Return the reference that follows a recorded motion, linear between its samples.
 
     Parameters
     ----------
     recorded
-        Its speed is followed, or its angle; its load, where it has one, acts on the bench.
+        Run whose speed or angle is followed. Its load, if recorded, acts on the bench.
     rig
-        Its journal's radius makes rad/s of m/s; without a bearing m count as rad.
+        Rig whose journal radius converts m/s to rad/s. Without a bearing, m are used as rad.
     control
-        What is controlled.
+        Controlled quantity.
     bench
-        Its step is used.
+        Bench whose step is used.
 
     Raises
     ------

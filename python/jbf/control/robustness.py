@@ -1,8 +1,9 @@
-"""Does a compensator still help when its model is wrong?
+"""Robustness of a compensator against errors of its model.
 
 Every effect of the catalogue is hidden in the plant, one at a time, while the compensator carries
-the bare law; an effect of the instrument, which no shaft feels, is hidden in the records that the
-law is fitted to. Then a wrong load, viscosity, friction and motor, and more noise.
+the bare law. An effect of the instrument does not act on the shaft; it is hidden in the records to
+which the law is fitted. Further cases are a wrong load, viscosity, friction and motor, and more
+noise.
 """
 
 from __future__ import annotations
@@ -29,7 +30,10 @@ from jbf.records.run import Run
 Report = Callable[[str, int, int], None]
 
 HELP, HARM = 0.95, 1.02
-"""Below `HELP` times the error without compensation it helps, above `HARM` it harms."""
+"""Thresholds of the ratio of the errors with and without compensation.
+
+Compensation helps below `HELP` and harms above `HARM`.
+"""
 
 STRONG: Mapping[str, Mapping[str, float]] = {
     "drive_compliance": {"k_n_m_rad": 60.0, "c_n_m_s_rad": 0.02, "J_kg_m2": 1e-3},
@@ -47,8 +51,10 @@ STRONG: Mapping[str, Mapping[str, float]] = {
     "inertia_leak": {"m_e_kg": 2.0},
     "sensor_offset": {"b_n": 5.0},
 }
-"""Hidden effects at a strength that changes friction by tens of percent; one that is not named
-here stands at the catalogue's first starting value."""
+"""Parameters of hidden effects that change friction by tens of percent.
+
+Effects that are not listed have the catalogue's first starting value.
+"""
 
 _SECONDS = 27.0
 
@@ -64,12 +70,12 @@ class Case:
     bench: Bench
     load_factor: float = 1.0
     carried: Model | None = None
-    """What the compensator carries, where it is not the model that all cases begin with."""
+    """Model that the compensator carries, if it is not the base model of all cases."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Error with compensation over error without, by task; both of the true response."""
+    """Ratio of the true errors with and without compensation, by task."""
 
     name: str
     ratios: Mapping[str, float]
@@ -86,7 +92,7 @@ class Outcome:
 
 
 def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
-    """Every way in which the model is made wrong."""
+    """Yield every case in which the model is wrong."""
     for name, page in effects().items():
         own = isinstance(page, OwnEffect)
         if own or why_not(page, base.law) is not None or name in base.effects:
@@ -104,7 +110,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
         if page.stage == "instrument":
             yield Case(f"hidden {name}", base, bench, carried=misled(base, plant))
             continue
-        # An effect of the load shows only under another load than the rig's.
+        # An effect of the load appears only under a load that differs from the rig's.
         yield Case(f"hidden {name}", plant, bench, 1.5 if "loads" in page.needs else 1.0)
     yield Case("load doubled", base, bench, 2.0)
     yield Case("load halved", base, bench, 0.5)
@@ -117,7 +123,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
     for word, factor in (("half as large again", 1.5), ("a third smaller", 1.0 / 1.5)):
         stronger = replace(bench, volts_per_n=bench.volts_per_n * factor)
         yield Case(f"friction {word}", base, stronger)
-    # The position law itself is unstable at a gain 17 % above the nominal one.
+    # The position law itself becomes unstable at a gain 17 % above the nominal one.
     for word, factor in (("10 % larger", 1.1), ("10 % smaller", 0.9)):
         motor = replace(bench, input_rad_s2_v=bench.input_rad_s2_v * factor)
         yield Case(f"motor gain {word}", base, motor)
@@ -125,7 +131,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
 
 
 def misled(base: Model, seen: Model) -> Model:
-    """The base fitted to records that show what `seen` predicts, with 2 % of noise."""
+    """Fit the base model to records predicted by `seen`, with 2 % noise."""
     rng = np.random.default_rng(1)
     runs = []
     for i, rate in enumerate((0.25, 1.0)):
@@ -151,10 +157,10 @@ def robustness(
     scheme: Scheme | None = None,
     report: Report | None = None,
 ) -> list[Outcome]:
-    """Ratios of error for every case of `cases`; the compensator carries `base`.
+    """Compute the error ratios for every case of `cases`; the compensator carries `base`.
 
-    `scheme` puts another compensator in place of the observed one. Both it and the control law
-    alone are only told the undisturbed bench.
+    `scheme` replaces the observed compensator. It and the control law know only the undisturbed
+    bench.
     """
     model = thesis_model(elastic="nothing") if base is None else base
     todo = list(cases(model, bench))

@@ -1,4 +1,4 @@
-"""One run of a loop on the bench."""
+"""Simulation of one run of a control loop on the bench."""
 
 from __future__ import annotations
 
@@ -46,22 +46,22 @@ _COLUMNS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(SharedResult):
-    """Arrays of shape (n,), one value a step of the loop.
+    """Signals of a control-loop run: arrays of shape (n,), one value per step of the loop.
 
     Attributes
     ----------
     time_s, reference : ndarray
-        The reference is in rad or rad/s, as `task.control` says.
+        Time, and reference in rad or rad/s, depending on `task.control`.
     angle_rad, velocity_rad_s, friction_v : ndarray
-        What the shaft really did, and its true friction.
+        True motion of the shaft, and its true friction.
     measured_angle_rad, estimated_velocity_rad_s : ndarray
-        What the loop knew.
+        Signals available to the loop.
     error : ndarray
-        Measured angle, or estimated speed, minus reference: what the thesis's tables are of.
+        Measured angle or estimated speed, minus reference; the thesis's tables report this error.
     base_v, compensation_v, output_v : ndarray
-        The control law, the compensator, and what went to the amplifier.
+        Outputs of the control law and the compensator, and the input of the amplifier.
     estimated_friction_v, correction_v, forward_v : ndarray
-        Parts of the compensation.
+        Components of the compensation.
     learned_0, learned_1 : ndarray
         K0 and gamma (learning), the level (Coulomb), level and rest corrections in V (observed).
     status : ndarray of uint8
@@ -95,7 +95,7 @@ class Result(SharedResult):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Task, scheme and errors, for JSON; `columns` has the arrays."""
+        """Return task, scheme and errors for JSON; `columns` contains the arrays."""
         return {
             "task": asdict(self.task),
             "scheme": self.scheme,
@@ -105,18 +105,18 @@ class Result(SharedResult):
         }
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """The arrays by name, in the order in which `to_csv` writes them."""
+        """Return the arrays by name, in the order in which `to_csv` writes them."""
         return {name: getattr(self, name) for name in _COLUMNS}
 
     def to_csv(self) -> str:
-        """The run as the text of a CSV file."""
+        """Return the run as the text of a CSV file."""
         columns = self.columns()
         rows = zip(*(a.tolist() for a in columns.values()), strict=True)
         return "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
     @property
     def response(self) -> Array:
-        """The true angle (rad) or speed (rad/s), whichever is controlled."""
+        """True angle (rad) or speed (rad/s), depending on the controlled quantity."""
         return self.angle_rad if self.task.is_position else self.velocity_rad_s
 
     @property
@@ -129,17 +129,17 @@ class Result(SharedResult):
 
     @property
     def rms(self) -> float:
-        """Root mean square of `error` over the seconds that count."""
+        """Root mean square of `error` after the skipped start."""
         return float(np.sqrt(np.mean(self._counting(self.error) ** 2)))
 
     @property
     def peak(self) -> float:
-        """Largest |error| in the seconds that count."""
+        """Largest absolute `error` after the skipped start."""
         return float(np.max(np.abs(self._counting(self.error))))
 
     @property
     def true_rms(self) -> float:
-        """Root mean square of `true_error` over the seconds that count."""
+        """Root mean square of `true_error` after the skipped start."""
         return float(np.sqrt(np.mean(self._counting(self.true_error) ** 2)))
 
 
@@ -159,42 +159,42 @@ def run(
     jump: tuple[float, int] | None = None,
     precision: str = "f64",
 ) -> Result:
-    """Run a loop on the simulated bench.
+    """Run a control loop on the simulated bench.
 
     Parameters
     ----------
     model
-        The bench's true friction; `thesis_model()` by default.
+        True friction of the bench. Default: `thesis_model()`.
     scheme
-        A name of `SCHEMES`, or a scheme of your own settings.
+        A name of `SCHEMES`, or a scheme with user-defined settings.
     task
-        Reference, control law and length.
+        Reference, control law and duration.
     bench
         Motor, shaft, encoder, noise.
     told
-        The bench that control law, observer and compensator believe in; the true one by default.
+        Bench assumed by control law, observer and compensator. Default: the true one.
     carried
-        The model that the compensator carries; the true one by default.
+        Model that the compensator carries. Default: the true one.
     settings
-        Of the observed compensator; from `tune(carried, told)` by default.
+        Settings of the observed compensator. Default: `tune(carried, told)`.
     guard
-        Settings whose `moving_v` and `patience_s` guard the loop; the observed compensator's own
-        by default, none at all for the thesis's schemes.
+        Settings whose `moving_v` and `patience_s` guard the loop. Default: those of the observed
+        compensator; the thesis's schemes have no guard.
     load_n
-        Load on one bearing, N: a number, or one value a step; the model's own by default.
+        Load on one bearing, N: a number, or one value per step. Default: that of the model.
     reference
-        Values and rates of change, one a step, in place of the task's wave.
+        Values and rates of change, one per step, which replace the task's wave.
     frozen_s
-        From when to when the encoder's counter stands still, s.
+        Start and end of the interval in which the encoder's counter stands still, s.
     jump
-        When (s) the counter jumps, and by how many counts.
+        Time (s) at which the counter jumps, and the number of counts.
     precision
-        `f64`, or `f32` as on a microcontroller; the plant is always `f64`.
+        `f64`, or `f32` as on a microcontroller. The plant is always `f64`.
 
     Raises
     ------
     InputError
-        Something is out of range, or of the wrong length.
+        An argument is out of range or has the wrong length.
     """
     truth = thesis_model() if model is None else the_model(model)
     of_kind(task, Task, "the task", 'name one of control.TASKS: TASKS["velocity sine"]')
@@ -227,7 +227,7 @@ def run(
 
 
 def _mend(problem: str) -> str:
-    """What to do about something that the core's loop refuses."""
+    """Return the advice for an input that the core's loop rejects."""
     if problem.startswith("top_speed_rad_s"):
         return "lower counts_per_rad, or limit_v and input_rad_s2_v, or take a wider counter"
     return "correct it"

@@ -29,7 +29,7 @@ _NOTES = {
 
 @dataclass(frozen=True)
 class Settings:
-    """What `Observed` and the safety of its loop need beside model and bench."""
+    """Parameters of `Observed` and of the loop guard, in addition to model and bench."""
 
     bandwidth_rad_s: float
     learning_1_s: float
@@ -51,7 +51,7 @@ class Settings:
                 )
 
     def to_toml(self) -> str:
-        """The text that `save` writes."""
+        """Return the text that `save` writes."""
         document = tomlkit.document()
         document.add(tomlkit.comment(_HEADER))
         for name, value in asdict(self).items():
@@ -60,7 +60,7 @@ class Settings:
         return tomlkit.dumps(document)
 
     def save(self, path: PathLike) -> None:
-        """Write them as TOML."""
+        """Write the settings as TOML."""
         write_text(path, self.to_toml())
 
     @classmethod
@@ -70,7 +70,7 @@ class Settings:
         Raises
         ------
         InputError
-            Names the file, the key and the mend.
+            Names the file, the key and the correction.
         """
         content = read_toml(path)
         names = [f.name for f in fields(cls)]

@@ -1,4 +1,4 @@
-"""What the loop shall follow, and over which seconds its error counts."""
+"""Reference of a loop, and the interval over which its error is evaluated."""
 
 from __future__ import annotations
 
@@ -10,16 +10,17 @@ from jbf.errors import InputError, did_you_mean
 
 WAVES = ("sine", "triangle", "square")
 RECORDED = "recorded"
-"""The wave of a task whose reference is given sample by sample."""
+"""Wave of a task whose reference is given sample by sample."""
 
 _FARTHEST = 1e6
 
 
 @dataclass(frozen=True)
 class Task:
-    """A periodic reference for position (rad) or velocity (rad/s) control.
+    """Periodic reference for position (rad) or velocity (rad/s) control.
 
-    `low` and `high` are its ends, `seconds` the length of the run; errors count from `skip_s` on.
+    `low` and `high` are its limits, `seconds` is the duration of the run. The error is evaluated
+    from `skip_s` on.
     """
 
     control: Literal["position", "velocity"]
@@ -63,7 +64,7 @@ class Task:
 
     @property
     def period_s(self) -> float:
-        """One period of the reference, s."""
+        """Period of the reference, s."""
         return 2.0 * math.pi / self.frequency_rad_s
 
     @property
@@ -73,7 +74,7 @@ class Task:
 
     @property
     def top_speed_rad_s(self) -> float:
-        """Largest speed that the reference asks for, rad/s; of a square in position none."""
+        """Largest speed of the reference, rad/s; zero for a square wave in position control."""
         if not self.is_position:
             return max(abs(self.low), abs(self.high))
         span = self.high - self.low
@@ -82,8 +83,9 @@ class Task:
         return span * (0.5 if self.wave == "sine" else 1.0 / math.pi) * self.frequency_rad_s
 
 
-# The velocity programs start up to 2 rad/s off their reference, and yet no printed peak holds it:
-# the thesis left the start out there. In position control its peaks are those of the start.
+# The velocity programs start up to 2 rad/s off their reference, but no printed peak contains this
+# error. The thesis therefore excluded the start. In position control its peaks are those of the
+# start.
 _LEFT_OUT_S = 2.0
 
 
@@ -104,4 +106,4 @@ TASKS = {
     "velocity square": _velocity("square", -1.04, 1.04, 0.25),
     "velocity sine 20.8": _velocity("sine", 0.52, 20.8, 0.25),
 }
-"""The seven rows of the thesis's Tables 6.1 and 6.2."""
+"""Seven rows of the thesis's Tables 6.1 and 6.2."""

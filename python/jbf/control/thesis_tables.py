@@ -1,7 +1,7 @@
-"""The thesis's Tables 6.1 and 6.2, fitted in one column and predicted in the other two.
+"""Tables 6.1 and 6.2 of the thesis, with one column fitted and the other two predicted.
 
-Four numbers of the bench's friction are fitted to the seven cells without compensation; the
-thirteen others are predicted.
+Four parameters of the bench's friction are fitted to the seven cells without compensation. The
+other thirteen cells are predicted.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ PRINTED_RMS: dict[str, tuple[float | None, float | None, float | None]] = {
     "velocity square": (0.451, 0.0733, None),
     "velocity sine 20.8": (0.210, 0.025, 0.0162),
 }
-"""RMS errors that the thesis prints, rad or rad/s: none, learning, Coulomb."""
+"""RMS errors printed in the thesis, rad or rad/s: none, learning, Coulomb."""
 
 PRINTED_PEAK: dict[str, tuple[float | None, float | None, float | None]] = {
     "position triangle": (0.474, 0.454, 0.296),
@@ -46,15 +46,17 @@ PRINTED_PEAK: dict[str, tuple[float | None, float | None, float | None]] = {
     "velocity square": (None, None, None),
     "velocity sine 20.8": (0.519, 0.168, 0.0895),
 }
-"""Peak errors, likewise."""
+"""Peak errors printed in the thesis, in the same order and units."""
 
 _FARTHEST = 3.0
-"""A fit stays within a factor of 20 of where it starts."""
+"""Limit of the fit in logarithms: parameters stay within a factor of 20 of their starting
+values.
+"""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell: what the bench gives beside what is printed (None where nothing is)."""
+    """One cell of the tables: errors of the bench, and printed errors (None where not printed)."""
 
     row: str
     column: str
@@ -66,13 +68,13 @@ class Cell:
 
     @property
     def ratio(self) -> float | None:
-        """RMS of the bench over the printed one."""
+        """RMS of the bench over the printed RMS."""
         return None if self.printed_rms is None else self.rms / self.printed_rms
 
 
 @dataclass(frozen=True)
 class Tables:
-    """Cells by row and column, and the friction that they were computed with."""
+    """Cells by row and column, and the friction model and bench used to compute them."""
 
     cells: dict[tuple[str, str], Cell]
     model: Model
@@ -82,15 +84,17 @@ class Tables:
         return self.cells[key]
 
     def column(self, name: str) -> list[Cell]:
-        """The cells of one column, from row to row."""
+        """Return the cells of one column, in row order."""
         return [cell for (_, column), cell in self.cells.items() if column == name]
 
     def replaced(self, other: Tables) -> Tables:
-        """These tables with the cells that `other` has."""
+        """Return these tables, with cells replaced by those of `other`."""
         return replace(other, cells={**self.cells, **other.cells})
 
     def gains(self) -> dict[str, float]:
-        """True error of the better of the thesis's two schemes over that of ours, by row."""
+        """Return, by row, the true RMS of the better of the thesis's schemes over that of
+        `observed`.
+        """
         return {
             row: min(self[row, "learning"].true_rms, self[row, "coulomb"].true_rms)
             / self[row, "observed"].true_rms
@@ -103,13 +107,13 @@ class Tables:
         return [c for c in self.cells.values() if c.column in COLUMNS[1:] and c.ratio is not None]
 
     def within(self, factor: float) -> int:
-        """How many predicted cells lie within a factor of the printed figure."""
+        """Return the number of predicted cells within a factor of the printed value."""
         ratios = [c.ratio for c in self.predicted if c.ratio is not None]
         return sum(abs(math.log(r)) <= math.log(factor) for r in ratios)
 
 
 def _each(work: Callable[[Task], Result], tasks: Mapping[str, Task] = TASKS) -> list[Result]:
-    """`work` on all rows, on all cores: the core runs without the interpreter's lock."""
+    """Run `work` on all rows, on all cores; the core releases the interpreter lock."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(work, tasks.values()))
 
@@ -121,9 +125,10 @@ def fit_friction(
     bench: Bench = THESIS_BENCH,
     report: Report | None = None,
 ) -> tuple[Model, Bench]:
-    """Volts a newton, U_tr, K0 and gamma that meet the seven cells without compensation.
+    """Fit volts per newton, U_tr, K0 and gamma to the seven cells without compensation.
 
-    Least squares of the logarithm of bench over printed, from the numbers that it found before.
+    Nonlinear least squares on the logarithm of bench over printed RMS. It starts from the
+    parameters of an earlier fit.
     """
     from scipy.optimize import least_squares
 
@@ -146,7 +151,7 @@ def fit_friction(
         return np.asarray(np.log(found / printed))
 
     start = [bench.volts_per_n, FITTED["U_tr_m_s"], FITTED["K0"], FITTED["gamma"]]
-    # The cells are noisy at the 1e-3 level: a difference quotient needs a long step.
+    # The cells have noise of order 1e-3: a difference quotient needs a long step.
     best = least_squares(
         misses,
         np.log(start),
@@ -176,10 +181,11 @@ def tables(
     seeds: int = 5,
     report: Report | None = None,
 ) -> Tables:
-    """Both tables on a bench with a friction; `schemes` fill the columns of their names.
+    """Compute both tables on a bench with a friction model; `schemes` fill the columns of their
+    names.
 
-    A cell is the root mean square over several seeds of the noise: where the shaft turns round
-    inside one encoder count, noise decides when, and one run is a throw of dice.
+    A cell is the root mean square over several seeds of the noise. Where the shaft reverses within
+    one encoder count, the noise decides when, and a single run is not representative.
     """
     columns = standard_schemes(model) if schemes is None else schemes
     cells = {}
@@ -203,7 +209,7 @@ def tables(
 
 
 def standard_schemes(model: Model) -> dict[str, Scheme]:
-    """The three columns of the thesis, and our compensator as a fourth."""
+    """Return the three columns of the thesis, and the observed compensator as a fourth."""
     return {
         "none": NoCompensation(),
         "learning": Learning(),

@@ -1,7 +1,7 @@
-"""Settings of a compensator from a fitted model: no trial and error.
+"""Settings of a compensator, computed from a fitted model without trial and error.
 
-Everything follows from four numbers: the step of the loop, the encoder's resolution, and the
-friction at rest and at the start of sliding that the model predicts.
+All settings follow from four quantities: the step of the loop, the encoder's resolution, and the
+model's friction at rest and at the start of sliding.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from jbf.models.model import Model, the_model
 from jbf.records.run import Run
 
 _SHARE_OF_SAMPLING = 0.12
-"""Observer's bandwidth times the step: its delay of half a step then costs 3.4 degrees."""
+"""Bandwidth of the observer times the step; the delay of half a step then costs 3.4 degrees."""
 
 _MOTOR_SHARE = 0.1
-"""Share of the largest voltage by which a motor may be another than it is said to be."""
+"""Tolerance of the motor, as a share of the largest voltage."""
 
 LAW_RAD_S = math.sqrt(200.0)
 """Natural frequency of the position law, whose poles are at -10 +- 10i."""
@@ -29,11 +29,11 @@ LAW_RAD_S = math.sqrt(200.0)
 _MOST_LEVELS = 256
 
 _NOISE_SHARE = 0.01
-"""Share of the friction level that noise may make of the output."""
+"""Share of the friction level that noise may cause in the output."""
 
 
 def friction_level_v(model: Model, bench: Bench = THESIS_BENCH) -> float:
-    """The largest friction (V) that a model has in slow motion, effects included."""
+    """Return the largest friction of a model in slow motion, effects included, in V."""
     values = {n: p.value for n, p in model.parameters.items()}
     key = (model.rig, model.law, model.effects, model.clock, tuple(values.items()))
     if key not in _levels_n:
@@ -44,12 +44,13 @@ def friction_level_v(model: Model, bench: Bench = THESIS_BENCH) -> float:
 
 
 _levels_n: dict[Hashable, float] = {}
-"""What was found before: a prediction costs more than a run of the loop."""
+"""Cache of friction levels, because a prediction costs more than a run of the loop."""
 
 
 def _friction_level_n(model: Model) -> float:
     radius_m = 1.0 if model.rig.bearing is None else model.rig.bearing.radius_m
-    # A little more than once there and back, over 17 mm: of a ripple, what it is there.
+    # Slightly more than one cycle of forward and backward motion over 17 mm. A position ripple is
+    # evaluated within this range.
     time_s = np.arange(0.0, 11.0, 0.02)
     rate, top_m_s = 0.6, 0.005
     velocity = top_m_s * np.sin(rate * time_s)
@@ -66,19 +67,19 @@ def _friction_level_n(model: Model) -> float:
 
 
 def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
-    """Settings of the observed compensator for a model on a drive.
+    """Compute the settings of the observed compensator for a model on a drive.
 
     Parameters
     ----------
     model
         The fitted model.
     bench
-        The drive: its a, b, volts a newton, encoder and step are used.
+        Bench whose a, b, volts per newton, encoder and step are used.
 
     Raises
     ------
     InputError
-        The model's friction is more than the drive's voltage.
+        The model's friction exceeds the drive's voltage.
     """
     level_v = friction_level_v(the_model(model), bench)
     if not 0.0 < level_v < bench.limit_v:
@@ -88,19 +89,20 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
         )
     count_rad = 1.0 / bench.counts_per_rad
     noise_rad = count_rad * math.sqrt(1.0 / 12.0 + bench.encoder_noise_counts**2)
-    # The estimate's noise is noise_rad w sqrt(w dt); a volt a rad/s makes an output of it.
+    # The noise of the estimate is noise_rad w sqrt(w dt). A gain of one V s/rad converts it to the
+    # output.
     quiet = (_NOISE_SHARE * level_v / (noise_rad * math.sqrt(bench.dt_s))) ** (2.0 / 3.0)
     bandwidth = min(_SHARE_OF_SAMPLING / bench.dt_s, quiet)
     speed_noise = noise_rad * bandwidth * math.sqrt(bandwidth * bench.dt_s)
     return Settings(
         bandwidth_rad_s=bandwidth,
         learning_1_s=bandwidth / 30.0,
-        # Friction may be nothing or twice what the model says. Whatever else there is may be as
-        # much, and what a motor lacks or has over that is not the one of the data sheet.
+        # Friction may be zero or twice that of the model. Other disturbances may be of the same
+        # size, and the motor may deviate from its data sheet.
         level_limit_v=level_v,
         rest_limit_v=level_v + _MOTOR_SHARE * bench.limit_v,
         slow_rad_s=max(5.0 * speed_noise, 2.0 * count_rad * bandwidth),
-        # An encoder too coarse for a stiffer loop is no reason for a softer one.
+        # Do not soften the loop if the encoder is too coarse for a stiffer one.
         loop_rad_s=max(bandwidth / 2.0, LAW_RAD_S),
         breakaway=1.0,
         moving_v=min(2.5 * level_v, bench.limit_v),

@@ -1,15 +1,15 @@
-"""A fitted model as source for firmware: Rust for the crate `jbf-core`, C for its C interface.
+"""Fitted model as source code for firmware: Rust for the crate `jbf-core`, C for its C interface.
 
-Comes in: a `Model`. Goes out: text, the constants of exactly the law and the effects of the model,
-and the calls that build it. The physics stays in the core, so that a step on the target has
-the bits of `jbf predict`. In Rust the effects are a typed set: the target keeps memory for those of
-the model and for no others.
+Input: a `Model`. Output: text with the constants of exactly the law and the effects of the model,
+and the calls that build it. The physics stays in the core, so that a step on the target is
+bit-identical to `jbf predict`. In Rust the effects are a typed set: the target reserves memory
+only for those of the model.
 
-- `numbers`: what any language needs of a model.
-- `constants`: the constants, in the words of a language.
-- `rust`, `c`: the languages, and the calls round the constants.
+- `numbers`: language-independent data of a model.
+- `constants`: the constants, in the syntax of a language.
+- `rust`, `c`: the languages, and the calls around the constants.
 
-May import: `jbf.models`; nothing of estimation, diagnosis or reports.
+May import: `jbf.models`; nothing from estimation, diagnosis or reporting.
 """
 
 from jbf.export.c import c

@@ -1,4 +1,4 @@
-"""C for the C interface of `jbf-core`, `jbf.h`."""
+"""Export to C for `jbf.h`, the C interface of `jbf-core`."""
 
 from __future__ import annotations
 
@@ -14,20 +14,21 @@ C = Language(
     scalar="static const double MODEL_LOAD_N = {value};",
     array=Block("static const double {name}[{count}] = {{", "    {value}, /* {parameter} */", "};"),
     about=lambda _text: [],
-    # jbf.h's calls check when they are made.
+    # The functions of jbf.h check the values when they are called.
     check=lambda _group, _name: [],
 )
 
 
 def c(model: Model, source: str = "a model") -> str:
-    """A C header for `jbf.h`: constants, and `model_f32_init`, `model_f64_init` and their steps.
+    """Return a C header for `jbf.h`: constants, and `model_f32_init`, `model_f64_init` and their
+    steps.
 
     Parameters
     ----------
     model
         The model.
     source
-        Where it comes from, for the first line.
+        Origin of the model, for the first line.
     """
     n = Numbers.of(model)
     out = [
@@ -48,7 +49,7 @@ def c(model: Model, source: str = "a model") -> str:
 
 
 def _calls(n: Numbers, kind: str) -> list[str]:
-    """Names of the model in one kind of number, and the call that builds it."""
+    """Return the names of the model in one floating-point type, and the function that builds it."""
     prefix = f"jbf_{n.law.name}_{kind}"
     bearing = "&MODEL_BEARING" if n.bearing else "NULL"
     effects = [

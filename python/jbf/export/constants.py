@@ -1,4 +1,4 @@
-"""A model's constants, in the words of a language."""
+"""Constants of a model, in the syntax of a programming language."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ BEARING_FIELDS = ("radius_m", "length_m", "clearance_m", "mass_kg", "viscosity_p
 
 @dataclass(frozen=True)
 class Block:
-    """A constant of several lines: how it opens, one line of it, how it closes.
+    """Template of a multi-line constant: opening, repeated line, closing.
 
-    A closing `;` ends the last line; anything else has a line of its own.
+    A closing `;` is appended to the last line; any other closing has a line of its own.
     """
 
     opening: str
@@ -23,7 +23,7 @@ class Block:
     closing: str
 
     def lines(self, rows: list[dict[str, str]], **words: str) -> list[str]:
-        """The lines, each row's words put in."""
+        """Format the lines, one per row."""
         body = [self.line.format(**row) for row in rows]
         if self.closing == ";":
             *body, last = body
@@ -33,20 +33,21 @@ class Block:
 
 @dataclass(frozen=True)
 class Language:
-    """How a language writes constants.
+    """Syntax of constants in a programming language.
 
     Attributes
     ----------
     infinity
-        The number above all others; with a sign before it, below.
+        Expression for positive infinity; a leading minus yields negative infinity.
     prefix
-        What every constant's name begins with.
+        Common prefix of all constant names.
     bearing, scalar, array
-        The sizes of a bearing, one number, the values of a law or an effect.
+        Templates of the bearing dimensions, of one number, and of the values of a law or an
+        effect.
     about
-        A comment above a constant, for people; no lines for none.
+        Function that returns the comment lines above a constant; may return an empty list.
     check
-        What asks, while the source is compiled, whether the values are within their bounds.
+        Function that returns compile-time checks of the parameter bounds.
     """
 
     infinity: str
@@ -58,19 +59,22 @@ class Language:
     check: Callable[[Group, str], list[str]]
 
     def number(self, value: float) -> str:
-        """The shortest text that reads back to the same bits."""
+        """Return the shortest text that is read back as the same value."""
         if math.isinf(value):
             return self.infinity if value > 0 else f"-{self.infinity}"
         return repr(float(value))
 
     def name(self, group: Group) -> str:
-        """The constant's name of a law's or an effect's values."""
+        """Return the constant's name for the values of a law or an effect."""
         return self.prefix + group.name.upper()
 
 
 def _held_words(why: str | None) -> str:
-    """What stands beside a held value: firmware needs the number, who reads it must know that it
-    is none. The note may be a user's, so it must neither end a comment nor begin one."""
+    """Return the comment for a held value, including the note of the parameter.
+
+    Firmware needs the number, but readers must know that it was not estimated. The note may come
+    from a user, so comment delimiters are removed.
+    """
     if why is None:
         return ""
     said = " ".join(why.split()).replace("*/", "").replace("/*", "")
@@ -78,7 +82,7 @@ def _held_words(why: str | None) -> str:
 
 
 def constants(numbers: Numbers, language: Language) -> list[str]:
-    """The lines with every constant of a model."""
+    """Return the source lines of all constants of a model."""
     out = []
     if numbers.bearing is not None:
         sizes = {name: language.number(numbers.bearing[name]) for name in BEARING_FIELDS}  # type: ignore[literal-required]

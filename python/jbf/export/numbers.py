@@ -1,4 +1,4 @@
-"""What any language needs of a model: names, numbers, and the core's types."""
+"""Language-independent data of a model: names, values, and types of the core."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from jbf.models.own_laws import OwnLaw
 
 @dataclass(frozen=True)
 class Group:
-    """The law, or one effect: its page, and its values in the page's order.
+    """Law or effect: its catalogue entry, and its values in the order of the entry.
 
-    `held` has for each value why it is held, None where it was determined.
+    `held` contains the reason why each value is held, or None if it was estimated.
     """
 
     page: Law | Effect
@@ -27,18 +27,18 @@ class Group:
 
     @property
     def name(self) -> str:
-        """The fixed name."""
+        """Fixed name of the law or effect."""
         return self.page.name
 
     @property
     def room(self) -> str:
-        """Where the core has it: `law` or `effect`."""
+        """Module of the core: `law` or `effect`."""
         return "law" if isinstance(self.page, Law) else "effect"
 
 
 @dataclass(frozen=True)
 class Numbers:
-    """A model's numbers; the effects in the order of the signal chain."""
+    """Data of a model, with the effects in the order of the signal chain."""
 
     law: Group
     effects: tuple[Group, ...]
@@ -49,12 +49,12 @@ class Numbers:
 
     @classmethod
     def of(cls, model: Model) -> Numbers:
-        """Those of a model; an effect at an infinite null is not in it.
+        """Extract the data of a model; effects with an infinite null value are omitted.
 
         Raises
         ------
         InputError
-            An effect of one's own is written in Python, which no target runs.
+            A law or an effect is user-defined in Python, which does not run on a target.
         """
         law = find_law(model.law)
         if isinstance(law, OwnLaw):
@@ -84,17 +84,17 @@ class Numbers:
 
     @property
     def groups(self) -> tuple[Group, ...]:
-        """The law first, then the effects."""
+        """The law, followed by the effects."""
         return (self.law, *self.effects)
 
     def title(self) -> str:
-        """Law and effects, for people."""
+        """Return law and effects as text."""
         effects = ", ".join(group.name for group in self.effects)
         return f"law {self.law.name}; effects: {effects or 'none'}{self.units}"
 
 
 def _units_note(model: Model) -> str:
-    """What the units in the names mean; empty where they are true."""
+    """Describe the units of names with unit suffixes; empty if the suffixes are true."""
     quantities = model.rig.quantities
     if quantities.force == "N" and quantities.motion != "rotary":
         return ""
@@ -109,5 +109,8 @@ def _group(page: Law | Effect, model: Model, prefix: str = "") -> Group:
 
 
 def _vanishes(page: Parameter, value: float) -> bool:
-    """True at an infinite null: the core leaves such an effect out, and so does what is written."""
+    """Return whether a parameter has its infinite null value.
+
+    The core omits such an effect, and so does the exported source.
+    """
     return page.null is not None and math.isinf(page.null) and value == page.null

@@ -1,4 +1,4 @@
-"""Rust for the crate `jbf-core`."""
+"""Export to Rust for the crate `jbf-core`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ RUST = Language(
     prefix="",
     bearing=Block("pub const BEARING: Bearing = Bearing::new()", "    .with_{field}({value})", ";"),
     scalar="pub const LOAD_N: f64 = {value};",
-    # One value a line, each with its name: rustfmt would put them on one.
+    # One named value per line; rustfmt would join them.
     array=Block(
         "#[rustfmt::skip]\npub const {name}: [f64; {count}] = [",
         "    {value}, // {parameter}",
@@ -36,14 +36,14 @@ RUST = Language(
 
 
 def rust(model: Model, source: str = "a model") -> str:
-    """A Rust module: constants, checked while it is compiled, and `model::<f32 or f64>()`.
+    """Return a Rust module with constants checked at compile time, and `model::<f32 or f64>()`.
 
     Parameters
     ----------
     model
         The model.
     source
-        Where it comes from, for the first line.
+        Origin of the model, for the first line.
     """
     n = Numbers.of(model)
     imports = ["Chain", "Clock", "ParameterError", "Real"]
@@ -92,7 +92,7 @@ def rust(model: Model, source: str = "a model") -> str:
 
 
 def _path(group: Group) -> str:
-    """The type of a law, or of an effect in its place."""
+    """Return the Rust type of a law, or of an effect at its place."""
     if isinstance(group.page, Law):
         return f"jbf_core::law::{group.name}::{group.page.rust_type}<T>"
     effect = f"jbf_core::effect::{group.name}::{group.page.rust_type}<T>"
@@ -100,7 +100,7 @@ def _path(group: Group) -> str:
 
 
 def _nested(items: list[str], indent: str = "") -> str:
-    """Pairs of pairs, one item a line: what a typed set of effects is made of."""
+    """Return nested pairs, one item per line, which form a typed set of effects."""
     if not items:
         return "()"
     first, *more = items

@@ -1,4 +1,4 @@
-"""The compensators that users choose between, each with the numbers that its core part needs."""
+"""Compensation schemes that users can choose, with the parameters of their core implementation."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from jbf.errors import InputError, did_you_mean
 from jbf.models.model import Model
 
 SCHEMES = ("none", "learning", "coulomb", "table", "repetitive", "observed")
-"""Names that `scheme` knows."""
+"""Names accepted by `scheme`."""
 
 
 def scheme(name: str, model: Model | None = None, settings: Settings | None = None) -> Scheme:
-    """The scheme of that name; `model` is what it knows of friction, where it knows any.
+    """Return the scheme of a name; `model` is its friction model, if it uses one.
 
-    Without a model the learning scheme has the thesis's own numbers, a table and the observed
-    compensator the friction that fits the thesis's bench.
+    Without a model, the learning scheme has the parameters of the thesis. A table and the observed
+    compensator then have the friction that fits the thesis's bench.
 
     Raises
     ------
     InputError
-        The name is not known, or the scheme does not go with the model's law.
+        The name is unknown, or the scheme does not support the model's law.
     """
     if name == "table":
         return Table(thesis_model() if model is None else model)

@@ -18,19 +18,20 @@ from jbf.models.model import Model
 
 @dataclass(frozen=True)
 class Table(Unguarded):
-    """A look-up table of the model's steady friction against speed, from zero at rest."""
+    """Look-up table of the model's steady friction against speed, zero at rest."""
 
     model: Model
     name: str = "table"
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """See `Scheme`."""
+        """Return the core's parameters; see `Scheme`."""
         bearing = self.model.rig.bearing
         radius_m = 1.0 if bearing is None else bearing.radius_m
         width = max(task.top_speed_rad_s, 1.0) / (TABLE_ENTRIES - 1)
         speeds = np.maximum(np.arange(TABLE_ENTRIES) * width, 1e-3 * width) * radius_m
         levels = self.model.steady_friction(speeds) * bench.volts_per_n
-        # A ramp through rest: the full level with the sign of an estimate would hunt there.
+        # A ramp through rest. The full level with the sign of an estimated speed would cause
+        # hunting.
         levels[0] = 0.0
         return {
             "kind": "table",
@@ -43,7 +44,7 @@ class Table(Unguarded):
 
 @dataclass(frozen=True)
 class Observed:
-    """A friction model corrected by an observer; settings from `tune` unless given."""
+    """Friction model corrected by an observer; settings from `tune` by default."""
 
     model: Model
     settings: Settings | None = None
@@ -51,11 +52,11 @@ class Observed:
     name: str = "observed"
 
     def guard(self, bench: Bench) -> Settings:
-        """See `Scheme`."""
+        """Return the guard settings; see `Scheme`."""
         return tune(self.model, bench) if self.settings is None else self.settings
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """See `Scheme`."""
+        """Return the core's parameters; see `Scheme`."""
         return {
             "kind": "observed",
             "model": core_model(self.model),

@@ -1,4 +1,4 @@
-"""The thesis's learning compensator."""
+"""Learning compensator of the thesis."""
 
 from __future__ import annotations
 
@@ -15,17 +15,20 @@ from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 
 LISTED_VOLTS = 0.5 * THESIS_LOAD_N * 0.2245 * 4.0 * VOLTS_PER_N_M
-"""What a friction coefficient of 1 is in volts in the thesis's listings: 25.5 V, if radius and
-load are in inches and pounds. Newton metres make 2.89 V of the same factors."""
+"""Voltage for a friction coefficient of 1 in the thesis's listings: 25.5 V.
+
+This assumes that radius and load are in inches and pounds. In newton metres, the same factors
+yield 2.89 V.
+"""
 
 
 @dataclass(frozen=True)
 class Learning(Unguarded):
-    """The thesis's learning compensator with the numbers of its programs.
+    """Learning compensator of the thesis with the parameters of its programs.
 
-    `volts` is what a friction coefficient of 1 is in volts, by default the bench's own scale; the
-    thesis's listings have `LISTED_VOLTS`. Gains are per step of 2 ms; those left None are the
-    listings', in proportion to the parameters that learning starts from.
+    `volts` is the voltage for a friction coefficient of 1, by default the bench's own scale; the
+    thesis's listings use `LISTED_VOLTS`. Gains are per step of 2 ms. Gains that are None are those
+    of the listings, scaled in proportion to the initial parameters.
     """
 
     rig: Rig = THESIS_RIG
@@ -44,12 +47,12 @@ class Learning(Unguarded):
 
     @classmethod
     def of(cls, model: Model) -> Learning:
-        """It starts from a fitted model's parameters, effects left out.
+        """Create a scheme that starts from a fitted model's parameters, without its effects.
 
         Raises
         ------
         InputError
-            The model's law is not the journal's.
+            The model's law is not `journal`.
         """
         if model.law != "journal":
             raise InputError(
@@ -70,7 +73,7 @@ class Learning(Unguarded):
         )
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """See `Scheme`."""
+        """Return the core's parameters; see `Scheme`."""
         load_n = core_load_n(self.rig) or 1.0
         return {
             "kind": "learning",

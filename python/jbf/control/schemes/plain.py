@@ -1,4 +1,4 @@
-"""Schemes that know a few numbers of friction, or none."""
+"""Schemes with few friction parameters or none."""
 
 from __future__ import annotations
 
@@ -14,18 +14,20 @@ from jbf.control.task import Task
 
 @dataclass(frozen=True)
 class NoCompensation(Unguarded):
-    """The control law alone."""
+    """Control law without compensation."""
 
     name: str = "none"
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """See `Scheme`."""
+        """Return the core's parameters; see `Scheme`."""
         return {"kind": "none"}
 
 
 @dataclass(frozen=True)
 class Coulomb(Unguarded):
-    """The Coulomb friction observer, (6.1): gain k_F, exponent p, the most it may learn."""
+    """Coulomb friction observer (6.1) with gain k_F, exponent p, and a limit of the learned
+    level.
+    """
 
     gain: float = 0.01
     exponent: float = 1.0
@@ -34,7 +36,7 @@ class Coulomb(Unguarded):
     name: str = "coulomb"
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """See `Scheme`."""
+        """Return the core's parameters; see `Scheme`."""
         return {
             "kind": "coulomb",
             "gain": self.gain,
@@ -46,7 +48,7 @@ class Coulomb(Unguarded):
 
 @dataclass(frozen=True)
 class Repetitive(Unguarded):
-    """Learning from lap to lap: gain in volts per unit of error, smoothing, lead, limit."""
+    """Repetitive learning with gain in volts per unit of error, smoothing, lead and limit."""
 
     gain: float | None = None
     smooth: float = 0.1
@@ -55,8 +57,8 @@ class Repetitive(Unguarded):
     name: str = "repetitive"
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """See `Scheme`."""
-        # Half of what the loop's stiffness against a steady disturbance would take.
+        """Return the core's parameters; see `Scheme`."""
+        # Half of the gain that corresponds to the loop's stiffness against a steady disturbance.
         g, c = gains(task, bench)
         stuck = bench.input_rad_s2_v / (bench.damping_1_s + OBSERVER_1_S)
         stiffness = g / (1.0 + c * stuck) if task.is_position else g + c

@@ -1,4 +1,4 @@
-"""What every scheme gives to the bench."""
+"""Interface between compensation schemes and the bench."""
 
 from __future__ import annotations
 
@@ -10,25 +10,29 @@ from jbf.control.task import Task
 
 
 class Scheme(Protocol):
-    """Anything that the bench can put into its loop."""
+    """Compensation scheme that the bench can run in its loop."""
 
     @property
     def name(self) -> str:
-        """Its name in options, tables and pictures."""
+        """Name in options, tables and plots."""
         ...
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """What the core's compensator is built from; `kind` says which it is."""
+        """Return the arguments from which the core builds its compensator; `kind` selects its
+        type.
+        """
         ...
 
     def guard(self, bench: Bench) -> Settings | None:
-        """Settings whose `moving_v` and `patience_s` guard the loop; None for no guard."""
+        """Return the settings whose `moving_v` and `patience_s` guard the loop; None for no
+        guard.
+        """
         ...
 
 
 class Unguarded:
-    """Nothing but a jump of the counter stops it, as in the thesis."""
+    """Scheme that only a jump of the counter stops, as in the thesis."""
 
     def guard(self, bench: Bench) -> Settings | None:
-        """See `Scheme`."""
+        """Return no guard; see `Scheme`."""
         return None

@@ -63,7 +63,7 @@ _FIT_SPEED_M_S = 0.1
 
 @dataclass(frozen=True)
 class Case:
-    """A plant that is not what the compensator was told."""
+    """Plant that differs from the model of the compensator."""
 
     name: str
     plant: Model
@@ -82,12 +82,12 @@ class Outcome:
 
     @property
     def worst(self) -> float:
-        """The largest ratio."""
+        """Largest ratio of all tasks."""
         return max(self.ratios.values())
 
     @property
     def verdict(self) -> str:
-        """help, neutral or harm, by the worst row."""
+        """`help`, `neutral` or `harm`, according to the worst row."""
         return "help" if self.worst < HELP else "neutral" if self.worst <= HARM else "harm"
 
 

@@ -185,7 +185,7 @@ def run(
     reference
         Values and rates of change, one per step, which replace the task's wave.
     frozen_s
-        Start and end of the interval in which the encoder's counter stands still, s.
+        Start and end of the interval in which the encoder's counter is frozen, s.
     jump
         Time (s) at which the counter jumps, and the number of counts.
     precision

@@ -59,7 +59,7 @@ class Task:
 
     @property
     def is_position(self) -> bool:
-        """True for position control."""
+        """Whether the position is controlled."""
         return self.control == "position"
 
     @property

@@ -43,8 +43,7 @@ def means_along(comparison: Comparison, axis: str | None) -> Failure:
     """Return the bin means of a comparison's residual along an axis.
 
     The axis need not be one along which the model fails. Default: the axis of the worst failure,
-    or velocity
-    without failures.
+    otherwise velocity.
     """
     from jbf.comparison import patterns
     from jbf.comparison.axes import all_axes, force_axis

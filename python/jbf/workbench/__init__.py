@@ -1,9 +1,10 @@
-"""The workbench: a page on loopback on which runs, models and the error falling can be seen.
+"""Workbench: a local web page on the loopback interface that shows runs, models and errors.
 
-Comes in: a folder. Goes out: what the page asks for. `serve` opens it, `app` and `actions` answer,
-`guard` lets nobody else in, `files` keeps to the folder. `session` holds the `bench` (rig and runs)
-and the tree of `models`; `jobs` runs each fit in a process of its own (`work`). `views`, `series`,
-`thinning`, `plane` and `marks` make pictures small enough to send.
+Input: a folder. Output: the responses to the requests of the page. `serve` starts the server,
+`app` and `actions` handle the requests. `guard` rejects requests of other pages, and `files`
+restricts access to the folder. `session` holds the `bench` (rig and runs) and the tree of
+`models`; `jobs` runs each fit in a process of its own (`work`). `views`, `series`, `thinning`,
+`plane` and `marks` reduce the data of plots to a size suitable for transfer.
 
-May import: every room but `cli`.
+May import: every package except `cli`.
 """

@@ -1,4 +1,4 @@
-"""What each address does: plain functions of a session and what was asked."""
+"""Handlers of the page's requests: plain functions of a session and the request parameters."""
 
 from __future__ import annotations
 
@@ -18,8 +18,11 @@ from jbf.workbench.session import Session
 
 Asked = dict[str, Any]
 DEMO_PLACES = ("hidden", "jbf-demo/hidden", "jbf-demo")
-"""Where `jbf demo` puts its data, seen from its folder and from the one above; last, where a page
-puts them."""
+"""Folders that may contain the data of `jbf demo`, relative to the session's folder.
+
+The first two are seen from the demo's folder and from its parent. The last is where the page
+copies the data.
+"""
 MOST_PIXELS = 4000
 
 
@@ -39,30 +42,30 @@ def _pixels(asked: Asked, key: str = "pixels", usual: int = 1000) -> int:
 
 
 def state(session: Session, asked: Asked) -> Any:
-    """Everything but the pictures."""
+    """Return the complete state, except the plots."""
     return session.told()
 
 
 def listing(session: Session, asked: Asked) -> Any:
-    """What is in the folder."""
+    """List the folder."""
     return session.folder.listing()
 
 
 def series(session: Session, asked: Asked) -> Any:
-    """A stretch of a run."""
+    """Return a section of a run."""
     span = _span(asked)
     return views.series(session, _model(asked), asked["run"], span, _pixels(asked))
 
 
 def signature(session: Session, asked: Asked) -> Any:
-    """What an effect would add to a run."""
+    """Return the signature of an effect in a run."""
     number = _number(asked)
     span, pixels = _span(asked), _pixels(asked)
     return views.signature(session, number, asked["effect"], asked["run"], span, pixels)
 
 
 def map_of_runs(session: Session, asked: Asked) -> Any:
-    """The residual over runs and speeds."""
+    """Return the map of the residual over runs and speeds."""
     return views.map_of_runs(session, _number(asked))
 
 
@@ -74,29 +77,29 @@ def _number(asked: Asked) -> int:
 
 
 def plane(session: Session, asked: Asked) -> Any:
-    """Friction against speed."""
+    """Return the plane of friction against speed."""
     return views.plane(session, _model(asked), *_picture(asked))
 
 
 def brush(session: Session, asked: Asked) -> Any:
-    """A selection everywhere."""
+    """Return a selection in all views."""
     return views.brushed(session, _model(asked), dict(asked["selection"]), *_picture(asked))
 
 
 def _picture(asked: Asked) -> tuple[list[str], tuple[int, int]]:
-    """The runs of a plane, and its size."""
+    """Return the runs and the size in pixels of a plane."""
     size = (_pixels(asked, "columns", 400), _pixels(asked, "rows", 300))
     return [str(name) for name in asked["runs"]], size
 
 
 def open_campaign(session: Session, asked: Asked) -> Any:
-    """A rig and runs onto the bench."""
+    """Open a rig and its runs."""
     session.open(str(asked["rig"]), [str(name) for name in asked["runs"]])
     return {}
 
 
 def demo(session: Session, asked: Asked) -> Any:
-    """The shipped data into the folder, if `jbf demo` has not put them there, onto the bench."""
+    """Open the demo data; copy them into the folder if `jbf demo` has not written them there."""
     with as_file(files("jbf") / "data" / "demo" / "hidden") as shipped:
         there = [name for name in DEMO_PLACES if _holds(session.folder.root / name, shipped)]
         where = there[0] if there else DEMO_PLACES[-1]
@@ -108,26 +111,26 @@ def demo(session: Session, asked: Asked) -> Any:
 
 
 def _holds(folder: Path, shipped: Path) -> bool:
-    """Whether a folder holds the rig and the runs that are shipped."""
+    """Return whether a folder contains the shipped rig and runs."""
     names = ["rig.toml", *(path.name for path in shipped.glob("*.csv"))]
     _, differ, missing = filecmp.cmpfiles(shipped, folder, names, shallow=False)
     return not differ and not missing
 
 
 def look(session: Session, asked: Asked) -> Any:
-    """What a file's columns are."""
+    """Return the guessed assignment of a file's columns."""
     return importer.looked(session.folder, str(asked["file"]))
 
 
 def try_map(session: Session, asked: Asked) -> Any:
-    """What a map makes of files."""
+    """Return the runs that a map yields from files."""
     form = asked.get("form")
     told = None if form is None else dict(form)
     return importer.tried(session.folder, _files(asked), str(asked["map"]), told)
 
 
 def import_files(session: Session, asked: Asked) -> Any:
-    """Files as runs, onto the bench."""
+    """Import files as runs and open them."""
     into = str(asked["into"])
     found = importer.imported(session.folder, _files(asked), str(asked["map"]), into)
     session.open(found["rig"], found["files"])
@@ -139,7 +142,7 @@ def _files(asked: Asked) -> list[str]:
 
 
 def trim(session: Session, asked: Asked) -> Any:
-    """Use a stretch of a run, or all of it."""
+    """Restrict a run to an interval, or restore all of it."""
     first, last = _span(asked)
     span = None if first is None or last is None else (first, last)
     with session.lock:
@@ -149,7 +152,7 @@ def trim(session: Session, asked: Asked) -> Any:
 
 
 def leave_out(session: Session, asked: Asked) -> Any:
-    """Leave a run out of fits, or take it in."""
+    """Exclude a run from fits, or include it again."""
     with session.lock:
         session.on_bench().leave_out(str(asked["run"]), bool(asked["out"]))
     session.changed()
@@ -157,19 +160,19 @@ def leave_out(session: Session, asked: Asked) -> Any:
 
 
 def law(session: Session, asked: Asked) -> Any:
-    """The base law."""
+    """Choose the base law."""
     session.choose_law(str(asked["law"]))
     return {}
 
 
 def fit(session: Session, asked: Asked) -> Any:
-    """Fit a law with effects, and try the others beside it."""
+    """Fit a law with effects, and test all other effects as candidates."""
     session.begin("round", [str(e) for e in asked.get("effects", [])], _parent(asked))
     return {}
 
 
 def diagnose(session: Session, asked: Asked) -> Any:
-    """All rounds."""
+    """Run the complete diagnosis."""
     session.begin("diagnose", (), _parent(asked))
     return {}
 
@@ -179,40 +182,40 @@ def _parent(asked: Asked) -> int | None:
 
 
 def cancel(session: Session, asked: Asked) -> Any:
-    """Stop the fit."""
+    """Cancel the running fit."""
     return {"cancelled": session.jobs.cancel()}
 
 
 def show(session: Session, asked: Asked) -> Any:
-    """Look at a model."""
+    """Select the model to display."""
     session.show(_model(asked))
     return {}
 
 
 def beside(session: Session, asked: Asked) -> Any:
-    """Draw another model beside it."""
+    """Select a second model to draw for comparison."""
     session.models.put_beside(_model(asked))
     session.changed()
     return {}
 
 
 def undo(session: Session, asked: Asked) -> Any:
-    """Back to the parent."""
+    """Return to the parent model."""
     parent = session.models.node()["parent"]
     session.show(parent)
     return {}
 
 
 def keep(session: Session, asked: Asked) -> Any:
-    """Write something into the folder."""
+    """Write a file into the folder."""
     return kept.keep(session, str(asked["what"]))
 
 
 def text(session: Session, asked: Asked) -> Any:
-    """The same, sent."""
+    """Return the content of such a file as a download."""
     name, content = kept.text_of(session, str(asked["what"]))
     said = f"attachment; filename*=UTF-8''{quote(name)}"
-    # Never shown as a page of this server: a report is opened from disk.
+    # Never displayed as a page of this server: a report is opened from disk.
     return Response(content, headers={"content-disposition": said}, media_type="text/plain")
 
 
@@ -224,7 +227,7 @@ ASKED: dict[str, Callable[[Session, Asked], Any]] = {
     "map": map_of_runs,
     "text": text,
 }
-"""What changes nothing, by GET."""
+"""Handlers of GET requests, which change nothing."""
 DONE: dict[str, Callable[[Session, Asked], Any]] = {
     "plane": plane,
     "brush": brush,
@@ -244,4 +247,4 @@ DONE: dict[str, Callable[[Session, Asked], Any]] = {
     "undo": undo,
     "keep": keep,
 }
-"""What may, by POST."""
+"""Handlers of POST requests, which may change the session."""

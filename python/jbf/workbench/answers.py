@@ -1,6 +1,6 @@
-"""What is told of a model, a fit, a round and a diagnosis: plain numbers and words for the page.
+"""Results of a model, a fit, a selection step and a diagnosis as JSON data for the page.
 
-What is as long as a record goes to files.
+Data of the length of a record are written to files.
 """
 
 from __future__ import annotations
@@ -47,7 +47,9 @@ def of_model(comparison: Comparison) -> Answer:
 
 
 def _stribeck(comparison: Comparison) -> Answer:
-    """Friction over the speed: means of record and model each way, the law alone, its regimes."""
+    """Return friction against speed: means of record and model per direction, steady curve,
+    regimes.
+    """
     ways = [
         {name: value.tolist() if name != "way" else value for name, value in vars(own).items()}
         for own in friction_over_speed(comparison)
@@ -57,7 +59,9 @@ def _stribeck(comparison: Comparison) -> Answer:
 
 
 def _steady_curve(comparison: Comparison) -> Answer | None:
-    """The law at steady speeds, over those of the runs; None of a law that has none."""
+    """Return the law at steady speeds in the range of the runs; None if the law has no steady
+    curve.
+    """
     model = comparison.model
     motions = [p.motion.velocity_m_s for p in comparison.campaign.prepared]
     most = max(float(np.nanmax(np.abs(v))) for v in motions)
@@ -70,7 +74,7 @@ def _steady_curve(comparison: Comparison) -> Answer | None:
 
 
 def _parameters(model: Model, values: Mapping[str, ParameterValue]) -> Answer:
-    """Each parameter with the name and the unit that people see."""
+    """Return each parameter with its displayed name and unit."""
     seen = shown(model.law, model.effects, model.rig.quantities)
     return {
         name: {**p.to_dict(), "shown": seen[name][0], "unit": seen[name][1]}
@@ -96,7 +100,7 @@ def of_step(step: Step) -> Answer:
 
 
 def power_told(power: Iterable[Power], model: Model) -> list[Answer]:
-    """How strong each effect must be to be found, in the words of the reports."""
+    """Return the detection limits of each effect, worded as in the reports."""
     found = list(power)
     rows = power_rows(found, model.law, model.rig.quantities)
     names = ("effect", "found", "share", "alone", "like")
@@ -122,7 +126,7 @@ def of_diagnosis(diagnosis: Diagnosis) -> Answer:
 
 
 def kept_records(comparison: Comparison, folder: Path) -> Answer:
-    """Writes time, speed, friction, prediction and which samples count, a file a run."""
+    """Write time, speed, friction, prediction and the flag of counted samples, one file per run."""
     folder.mkdir(parents=True, exist_ok=True)
     rows = zip(
         comparison.campaign.prepared,

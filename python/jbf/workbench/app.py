@@ -1,4 +1,4 @@
-"""The addresses that the page asks, and what answers each."""
+"""Routes of the server and their handlers."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ from jbf.workbench.guard import LARGEST_UPLOAD, Guard
 from jbf.workbench.session import Session
 
 TICK_S = 0.1
-"""How often it is looked whether there is news."""
+"""Interval between checks for changes."""
 PULSE_S = 10.0
-"""A line in silence, by which a closed page is noticed."""
+"""Interval without changes after which a comment line is sent, so that a closed page is noticed."""
 
 Asked = dict[str, Any]
 Action = Callable[[Session, Asked], Any]
 
 
 def create_app(session: Session, token: str, port: int, largest: int = LARGEST_UPLOAD) -> Starlette:
-    """The application.
+    """Create the application.
 
     Parameters
     ----------
     session
-        What it shows.
+        Session that the page displays.
     token
-        The secret that each request under `/api/` must carry.
+        Secret that each request under `/api/` must carry.
     port
-        Where it listens: part of the name that it answers to.
+        Port of the server; part of the accepted host names.
     largest
-        Bytes that an upload may have.
+        Maximum size of an upload in bytes.
     """
 
     def endpoint(action: Action) -> Callable[[Request], Any]:
@@ -125,11 +125,11 @@ async def _vendored(request: Request) -> Response:
 
 
 async def _news(session: Session, request: Request) -> AsyncIterator[str]:
-    """The state whenever it has changed, as server-sent events."""
+    """Yield the state as server-sent events whenever it has changed."""
     told, quiet = -1, 0.0
     while not await request.is_disconnected():
         running = session.jobs.job is not None
-        # While a fit runs its clock goes on, too.
+        # The elapsed time of a running fit changes as well.
         if session.version != told or (running and quiet >= 1.0):
             told, quiet = session.version, 0.0
             state = await run_in_threadpool(session.told)

@@ -1,4 +1,4 @@
-"""What is on the bench: a rig and its runs, each with its trim, or left out."""
+"""Rig and runs of a session, with the trim and exclusion of each run."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ Span = tuple[float, float]
 
 @dataclass
 class Bench:
-    """A rig and its runs.
+    """Rig and its runs.
 
     Attributes
     ----------
     rig_name, run_names
-        The files' names in the folder.
+        Names of the files in the folder.
     trims
-        Run to the instants, s, between which it is used.
+        Used interval of each trimmed run, s.
     imported
-        The recordings in the folder that the runs were imported from, if they were.
+        Recordings in the folder from which the runs were imported; empty otherwise.
     excluded
-        Runs that fits leave out.
+        Runs that are excluded from fits.
     findings
-        Run to what its recording did, as far as it has been looked at.
+        Data-quality findings of each run examined so far.
     """
 
     rig_name: str
@@ -66,12 +66,12 @@ class Bench:
         return cls(rig_name, tuple(run_names), rig, tuple(runs), imported=imported)
 
     def run(self, name: str) -> Run:
-        """A run by its name.
+        """Return a run by its name.
 
         Raises
         ------
         InputError
-            There is none.
+            There is no such run.
         """
         for run in self.runs:
             if run.name == name:
@@ -79,12 +79,12 @@ class Bench:
         raise InputError(file=name, problem="no run on the bench is called so", mend="choose one")
 
     def trim(self, name: str, span: Span | None) -> None:
-        """Use a stretch of a run; None puts all of it back.
+        """Restrict a run to an interval; None restores all of it.
 
         Raises
         ------
         InputError
-            Too little would be left.
+            Too few samples would remain.
         """
         run = self.run(name)
         if span is None:
@@ -100,17 +100,17 @@ class Bench:
         self.trims[name] = (first, last)
 
     def leave_out(self, name: str, out: bool) -> None:
-        """Leave a run out of fits, or take it in again."""
+        """Exclude a run from fits, or include it again."""
         self.run(name)
         (self.excluded.add if out else self.excluded.discard)(name)
 
     def taken(self) -> tuple[Run, ...]:
-        """The runs that fits use.
+        """Return the runs that fits use, trimmed.
 
         Raises
         ------
         InputError
-            None is left.
+            All runs are excluded.
         """
         found = tuple(self._trimmed(run) for run in self.runs if run.name not in self.excluded)
         if not found:
@@ -124,7 +124,7 @@ class Bench:
         return run.select((run.time_s >= first) & (run.time_s <= last))
 
     def steps(self) -> Steps:
-        """What was done to have these runs."""
+        """Return the steps that produce these runs."""
         rows = zip(self.runs, self.run_names, strict=True)
         here = PurePosixPath(self.rig_name).parent
         return Steps(
@@ -137,7 +137,7 @@ class Bench:
         )
 
     def looked_at(self, changed: Any) -> None:
-        """Look, in a thread, at what each recording did; `changed` is called after each run."""
+        """Examine the recordings in a thread; `changed` is called after each run."""
 
         def look() -> None:
             for run in self.runs:
@@ -147,7 +147,7 @@ class Bench:
         threading.Thread(target=look, daemon=True).start()
 
     def told(self) -> list[Mapping[str, Any]]:
-        """The runs, for the page."""
+        """Return the runs as data for the page."""
         return [
             {
                 "name": run.name,
@@ -166,7 +166,7 @@ class Bench:
 
 
 def _imported(folder: Folder, here: PurePosixPath) -> tuple[str, ...]:
-    """The recordings that a campaign was imported from, where they lie beside its folder."""
+    """Return the recordings from which a campaign was imported, if they lie next to its folder."""
     try:
         ledger = json.loads(read_text(folder.path((here / LEDGER).as_posix())))
         names = [(here.parent / str(file["file"])).as_posix() for file in ledger["files"]]

@@ -1,4 +1,4 @@
-"""Where the samples of some runs lie in the friction-speed plane: made once, asked often."""
+"""Density of samples in the friction-speed plane, computed once and cached."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from jbf.workbench.series import Seen
 Mask = npt.NDArray[np.bool_]
 Size = tuple[int, int]
 DENSE = 100_000
-"""Samples from which on the plane is drawn in all its pixels."""
+"""Number of samples from which the plane is drawn at full resolution."""
 LEAST_FINE = 0.35
-"""Share of the pixels, to each side, that is always used."""
+"""Minimum resolution along each axis, as a share of full resolution."""
 
 
 @dataclass(frozen=True, eq=False)
 class Density:
-    """The plane of some runs.
+    """Density of some runs in the friction-speed plane.
 
     Attributes
     ----------
     places
-        The pixel of each sample of each run; that of no pixel is one beyond the last.
+        Pixel index of each sample of each run; one beyond the last index for samples outside.
     measured, model
-        Pictures; None of a model where there is none.
+        Encoded images; `model` is None without a model.
     """
 
     frame: Frame
@@ -39,18 +39,18 @@ class Density:
     model: str | None
 
     def layer_of(self, masks: Mapping[Seen, Mask]) -> str:
-        """The picture of some samples alone."""
+        """Return the image of a subset of the samples."""
         return self.frame.picture([place[masks[run]] for run, place in self.places.items()])
 
     def to_dict(self) -> dict[str, Any]:
-        """For the page."""
+        """Return the data for the page."""
         found: dict[str, Any] = {"frame": self.frame.to_dict(), "measured": self.measured}
         return found if self.model is None else {**found, "model": self.model}
 
 
 @lru_cache(maxsize=8)
 def density(runs: tuple[Seen, ...], size: Size) -> Density:
-    """The plane of runs in no more than so many columns and rows."""
+    """Compute the density of runs with at most the given number of columns and rows."""
     measured = {run: run.friction_n for run in runs if run.friction_n is not None}
     models = [run.model_n for run in measured if run.model_n is not None]
     speeds = [run.velocity_m_s for run in measured]
@@ -65,6 +65,6 @@ def density(runs: tuple[Seen, ...], size: Size) -> Density:
 
 
 def pixels_for(samples: int, size: Size) -> Size:
-    """Fewer and larger pixels for few samples: a single one must be seen."""
+    """Reduce the number of pixels for few samples, so that a single one is visible."""
     share = min(max((samples / DENSE) ** 0.5, LEAST_FINE), 1.0)
     return max(int(size[0] * share), 1), max(int(size[1] * share), 1)

@@ -1,4 +1,4 @@
-"""The folder that the page may see: names in it, and nothing outside it."""
+"""Access to the folder that the page may read, restricted to names inside it."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from jbf.errors import InputError, quoted
 from jbf.records.toml_file import read_toml
 
 MOST_FILES = 2000
-"""So many are listed; who has more names a smaller folder."""
+"""Maximum number of listed files; for more, choose a smaller folder."""
 DEPTH = 4
-"""Folders within folders."""
+"""Maximum depth of nested folders."""
 _LARGEST_TOML = 1 << 20
 _RIG = {"bearing", "lubricant", "load", "drive"}
 _RECORDINGS = {".mat", ".parquet", ".pq", ".tdms", ".mf4", ".mdf", ".mcap", ".bag", ".h5", ".hdf5",
@@ -24,18 +24,18 @@ _UPLOADS = _RECORDINGS | {".csv", ".toml"}
 
 @dataclass(frozen=True)
 class Folder:
-    """A folder; every name is relative to it, with `/` between its parts."""
+    """Folder whose names are relative paths, with `/` between their parts."""
 
     root: Path
 
     @classmethod
     def of(cls, path: str | os.PathLike[str]) -> Folder:
-        """The folder at a path.
+        """Return the folder at a path.
 
         Raises
         ------
         InputError
-            There is none.
+            The folder does not exist.
         """
         root = Path(os.path.realpath(path))
         if not root.is_dir():
@@ -43,12 +43,12 @@ class Folder:
         return cls(root)
 
     def path(self, name: str) -> Path:
-        """The path of a name in the folder, wherever links lead.
+        """Resolve a name to a path in the folder, following links.
 
         Raises
         ------
         InputError
-            It is no name, or leads outside.
+            The name is not valid, or leads outside the folder.
         """
         parts = PurePosixPath(name).parts
         odd = not parts or "\0" in name or "\\" in name or ".." in parts or name.startswith("/")
@@ -61,16 +61,18 @@ class Folder:
         )
 
     def name(self, path: Path) -> str:
-        """The name of a path in the folder."""
+        """Return the name of a path in the folder."""
         return Path(os.path.realpath(path)).relative_to(self.root).as_posix()
 
     def new_file(self, name: str) -> Path:
-        """Where an uploaded file goes: a bare name, of a kind that jbf reads, that is not taken.
+        """Return the path of a new uploaded file.
+
+        The name must be a bare name of a supported kind that is not in use.
 
         Raises
         ------
         InputError
-            It is none.
+            The name does not meet these conditions.
         """
         kind = PurePosixPath(name).suffix.lower()
         if "/" in name or "\\" in name or name.startswith(".") or kind not in _UPLOADS:
@@ -86,8 +88,7 @@ class Folder:
         return path
 
     def listing(self) -> dict[str, Any]:
-        """What is in the folder: campaigns (a rig with runs beside it), rigs, maps, models,
-        recordings."""
+        """List campaigns (a rig and runs in one folder), rigs, maps, models and recordings."""
         found: dict[str, Any] = {"rigs": [], "maps": [], "models": [], "csv": [], "other": []}
         for number, path in enumerate(self._walk()):
             if number == MOST_FILES:
@@ -126,7 +127,7 @@ def _parent(name: str) -> str:
 
 
 def _toml_kind(path: Path) -> str | None:
-    """`rigs`, `maps`, `models`; None of anything else."""
+    """Classify a TOML file as `rigs`, `maps` or `models`; None for any other file."""
     try:
         if path.stat().st_size > _LARGEST_TOML:
             return None

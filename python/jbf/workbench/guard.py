@@ -1,8 +1,8 @@
-"""Who may ask: this machine's own page with its token, and nobody else.
+"""Access control: only the page of this server with its token may send requests.
 
-Loopback is no boundary: any page in the user's browser can send requests there, and one whose name
-is made to point there (DNS rebinding) can read the answers. So the name that was asked for, the
-page that asks and a secret are checked, each for itself.
+The loopback interface alone is no protection: any page in the user's browser can send requests to
+it. A page whose name is made to resolve to it (DNS rebinding) can read the responses. Therefore
+host name, origin and a secret are checked independently.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 TOKEN = "x-jbf-token"
 LARGEST_UPLOAD = 1 << 29
-"""Bytes of a body; half a gigabyte. What is larger is copied into the folder by hand."""
+"""Maximum size of a request body: half a gigabyte. Larger files must be copied manually."""
 POLICY = "; ".join(
     [
         "default-src 'none'",
@@ -29,7 +29,7 @@ POLICY = "; ".join(
         "form-action 'none'",
     ]
 )
-"""Content Security Policy: the page loads what this server sends, and runs nothing else."""
+"""Content Security Policy: the page loads and runs only content of this server."""
 HEADERS = {
     "content-security-policy": POLICY,
     "x-content-type-options": "nosniff",
@@ -41,22 +41,22 @@ HEADERS = {
 
 
 class TooLarge(Exception):
-    """A body longer than it may be."""
+    """Error for a request body that exceeds the limit."""
 
 
 class Guard:
-    """Middleware round the whole application.
+    """Middleware around the whole application.
 
     Parameters
     ----------
     app
-        What answers those that may ask.
+        Application that handles permitted requests.
     token
-        The secret; every path under `/api/` needs it in the header `X-JBF-Token`.
+        Secret; every path under `/api/` requires it in the header `X-JBF-Token`.
     port
-        The port that is listened at.
+        Port of the server.
     largest
-        Bytes that a body may have.
+        Maximum size of a request body in bytes.
     """
 
     def __init__(self, app: ASGIApp, token: str, port: int, largest: int = LARGEST_UPLOAD) -> None:
@@ -64,11 +64,11 @@ class Guard:
         self.hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer, or refuse."""
+        """Handle or reject a request."""
         if scope["type"] == "lifespan":
             await self.app(scope, receive, send)
             return
-        if scope["type"] != "http":  # no web sockets: nothing here speaks by one
+        if scope["type"] != "http":  # no web sockets: nothing here uses one
             await send({"type": "websocket.close", "code": 1008})
             return
         headers = {k.decode("latin-1"): v.decode("latin-1") for k, v in scope["headers"]}
@@ -104,7 +104,7 @@ class Guard:
                 await PlainTextResponse(self._too_large(), 413)(scope, receive, with_headers)
 
     def refusal(self, path: str, headers: dict[str, str]) -> tuple[int, str] | None:
-        """A code and why; None for who may ask."""
+        """Return status code and reason of a rejection; None for a permitted request."""
         if headers.get("host", "") not in self.hosts:
             return 400, "this server answers to 127.0.0.1 and localhost alone"
         origin = headers.get("origin")

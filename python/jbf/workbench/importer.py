@@ -1,4 +1,4 @@
-"""A stranger's file through the page: its columns, what a map makes of them, its runs."""
+"""Import of a recording through the page: its columns, the result of a map, its runs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ SI_OF = {
 
 
 def looked(folder: Folder, name: str) -> dict[str, Any]:
-    """A guess at a file: the text of its map, what is open, and a name for what it becomes."""
+    """Guess the map of a file; returns its text, open questions, and a name for the new
+    campaign.
+    """
     stem = PurePosixPath(name).stem
     names = chain([stem], (f"{stem}_{k}" for k in count(2)))
     path = folder.path(name)
@@ -56,7 +58,10 @@ def looked(folder: Folder, name: str) -> dict[str, Any]:
 
 
 def _first_joint(path: Path) -> tuple[Guess, list[str]]:
-    """A guess at a file, of its first joint where it holds several, and a word on the others."""
+    """Guess the map of a file.
+
+    If the file contains several joints, the guess is that of the first, with a note on the others.
+    """
     try:
         return look(path), []
     except JointNotChosen as several:
@@ -68,10 +73,10 @@ def _first_joint(path: Path) -> tuple[Guess, list[str]]:
 def tried(
     folder: Folder, names: Sequence[str], text: str, form: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
-    """What a map makes of files: each run's columns in SI, least, median and largest.
+    """Try a map on files: smallest, median and largest value of each run's columns in SI units.
 
-    Where a form was filled in, it changes the map first. What is wrong or still open is told in
-    words beside the map as it stands.
+    If a form is given, it changes the map first. Errors and open questions are reported as text,
+    together with the current map.
     """
     if form is not None:
         text = changed_by(text, list(form["rows"]), dict(form["rig"]))
@@ -87,7 +92,7 @@ def tried(
 
 
 def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict[str, Any]:
-    """Import for good, into a new folder of that name; its rig and its runs."""
+    """Import into a new folder of the given name; returns its rig and its runs."""
     out = folder.path(into)
     if out.exists():
         raise InputError(file=into, problem="is there already", mend="name another folder")
@@ -114,13 +119,13 @@ def _paths(folder: Folder, names: Sequence[str]) -> list[Path]:
 
 
 def _cut_file(folder: Folder, text: str) -> Path | None:
-    """The trims that a map names: of the folder, as every other file that a page names."""
+    """Return the trim file named by a map; like all names from a page, it must be in the folder."""
     name = cut_name(text)
     return None if name is None else folder.path(name)
 
 
 def _beside(folder: Folder, text: str) -> list[Path] | None:
-    """The further files that a map names: of the folder, as every other file."""
+    """Return the additional files named by a map; they must be in the folder, too."""
     return [folder.path(name) for name in beside_names(text)] or None
 
 

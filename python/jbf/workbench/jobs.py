@@ -1,4 +1,4 @@
-"""One job at a time, in a process of its own: it can be stopped, and a closed page does not."""
+"""One job at a time in a process of its own, which can be stopped and outlives a closed page."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ Ending = Literal["done", "error", "stopped"]
 Ended = Callable[[Ending, Any], None]
 Part = Callable[[Any], None]
 PATIENCE_S = 20.0
-"""A process that was asked to stop, and has not sent its best so far by then, is killed."""
+"""Time after which a process is killed that was requested to stop and has not sent its best
+result.
+"""
 
 
 @dataclass
@@ -33,7 +35,7 @@ class Job:
     total: int = 0
 
     def to_dict(self) -> dict[str, Any]:
-        """For the page."""
+        """Return the data for the page."""
         return {
             "words": self.words,
             "message": self.message,
@@ -44,12 +46,12 @@ class Job:
 
 
 class Jobs:
-    """The one job, if there is one.
+    """Manager of the single job.
 
     Parameters
     ----------
     changed
-        Called, from another thread, whenever there is news.
+        Callback for changes; called from another thread.
     """
 
     def __init__(self, changed: Callable[[], None]) -> None:
@@ -61,18 +63,20 @@ class Jobs:
         self._lock = threading.Lock()
 
     def start(self, words: str, order: Order, ended: Ended, part: Part | None = None) -> None:
-        """Begin; `ended` is called once, with how it ended and the answer or the reason, `part`
-        before with what is there already.
+        """Start a job.
+
+        `ended` is called once, with the kind of ending and the result or the reason. `part` is
+        called earlier with a partial result.
 
         Raises
         ------
         InputError
-            A job runs already.
+            A job is already running.
         """
         with self._lock:
             if self.job is not None:
                 raise InputError(problem="a fit is running", mend="wait for it, or cancel it")
-            # Not forked: the server has threads.
+            # Not forked because the server has threads.
             context = multiprocessing.get_context("spawn")
             mine, theirs = context.Pipe()
             process = context.Process(target=main, args=(theirs, order), daemon=True)
@@ -85,9 +89,10 @@ class Jobs:
         ).start()
 
     def cancel(self, at_once: bool = False) -> bool:
-        """Stop it; False where nothing runs.
+        """Stop the job; returns False if no job is running.
 
-        It ends with its best so far; asked again, after `PATIENCE_S` or `at_once`, with nothing.
+        The job ends with its best result so far. On a second call, after `PATIENCE_S`, or with
+        `at_once`, it is killed without a result.
         """
         with self._lock:
             process = self._process
@@ -130,7 +135,7 @@ class Jobs:
             if self._cancelled:
                 ending, answer = "stopped", {}
         process.join()
-        # Whoever waits for the end of the job finds what came of it.
+        # Clear the job last: those who wait for its end then find the result.
         try:
             ended(ending, answer)
         finally:

@@ -1,5 +1,4 @@
-"""What is kept of a model: its file, its report, constants for firmware, the next run, the runs as
-they were trimmed."""
+"""Files saved from a model: model, report, firmware constants, next run, trimmed runs."""
 
 from __future__ import annotations
 
@@ -16,12 +15,12 @@ from jbf.workbench.session_file import FILE, save
 
 
 def model_text(session: Session) -> str:
-    """The model file."""
+    """Return the text of the model file."""
     return str(session.models.node()["model"])
 
 
 def report_text(session: Session) -> str:
-    """The page: of a diagnosis its own, of a fit the comparison with the runs."""
+    """Return the report: of a diagnosis its page, of a fit its comparison with the runs."""
     node = session.models.node()
     if "report" in node:
         return str(node["report"])
@@ -30,17 +29,17 @@ def report_text(session: Session) -> str:
 
 
 def rust_text(session: Session) -> str:
-    """Constants for a controller in Rust."""
+    """Return the model as Rust source for a controller."""
     return rust(session.model(int(session.models.node()["id"])), "model.toml")
 
 
 def c_text(session: Session) -> str:
-    """The same in C."""
+    """Return the model as a C header for a controller."""
     return c(session.model(int(session.models.node()["id"])), "model.toml")
 
 
 def next_run_text(session: Session) -> str:
-    """The motion of the next experiment."""
+    """Return the motion of the next experiment as CSV."""
     diagnosis = session.models.node().get("diagnosis") or {}
     if not diagnosis.get("next_run"):
         raise InputError(problem="no next run was proposed", mend="diagnose; a tie proposes one")
@@ -54,16 +53,16 @@ TEXTS: dict[str, tuple[str, Callable[[Session], str]]] = {
     "c": ("model.h", c_text),
     "next_run": ("next_run.csv", next_run_text),
 }
-"""What to the file's name and what makes it."""
+"""File name and text function of each kind of file."""
 
 
 def text_of(session: Session, what: str) -> tuple[str, str]:
-    """Name and text of what is asked for.
+    """Return name and text of a file.
 
     Raises
     ------
     InputError
-        There is no such thing, or none of this model.
+        The kind is unknown, or not available for this model.
     """
     if what not in TEXTS:
         raise InputError(problem=f"nothing is called {what!r}", mend=f"one of {', '.join(TEXTS)}")
@@ -72,7 +71,7 @@ def text_of(session: Session, what: str) -> tuple[str, str]:
 
 
 def keep(session: Session, what: str) -> dict[str, list[str]]:
-    """Write it into the folder: names of what was written, and of what was replaced by it."""
+    """Write a file into the folder; returns the names of written files, and of replaced ones."""
     if what == "session":
         name = FILE
         before = session.folder.path(name).exists()
@@ -85,7 +84,7 @@ def keep(session: Session, what: str) -> dict[str, list[str]]:
     else:
         name, text = text_of(session, what)
         texts = {name: text}
-    # Where a name is a link that leads outside, nothing is written.
+    # If a name is a link that leads outside, nothing is written.
     paths = {name: session.folder.path(name) for name in texts}
     replaced = [name for name, path in paths.items() if path.exists()]
     write_texts({paths[name]: text for name, text in texts.items()})

@@ -1,7 +1,7 @@
-"""The map as a form: which column of the file is what, read in which unit, turned or not.
+"""Form view of a map: assignment, unit and sign of each column of the file.
 
-The text of the map stays what counts. The form is read from it and writes into it; what a form
-cannot say (a formula, a cut, a clock) stays as it was written.
+The text of the map is authoritative. The form is derived from it and changes it. Elements that the
+form cannot represent (a formula, a cut, a clock) remain unchanged.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from jbf.importing.targets import KNOWN, wanted_unit
 from jbf.units.unit import parse_unit
 
 FIRST = 3
-"""Values of a column that are shown as the file has them."""
+"""Number of a column's values that are shown as in the file."""
 _PLAIN = re.compile(r"\s*(?P<sign>-?)\s*`(?P<column>[^`]+)`\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
 _ANSWERED = re.compile(r"^# Open:\n(?:#   .*\n)+\n?", re.MULTILINE)
-"""What a guess asked; the form shows what is still open."""
+"""Questions of the guess in a map; removed because the form shows those still open."""
 _LINE = re.compile(r"\w+\s*=")
 WORDS = {
     "time_s": "time",
@@ -51,17 +51,17 @@ WORDS = {
     "motor_velocity_rad_s": "speed of the motor, as an angle",
     "motor_speed_rpm": "speed of the motor, in turns",
 }
-"""What a column of a run is, for whoever does not know its name."""
+"""Plain description of each column of a run."""
 SUGGESTED = (
     "s", "ms", "us", "min", "m", "cm", "mm", "um", "in", "rad", "deg", "rev", "m/s", "mm/s", "um/s",
     "m/min", "mm/min", "rad/s", "deg/s", "rpm", "N", "mN", "kN", "lbf", "N m", "mN m", "N cm", "A",
     "mA", "%", "Pa", "kPa", "MPa", "bar", "mbar", "psi", "°C", "K",
 )  # fmt: skip
-"""Units that are offered; any other may be written."""
+"""Units offered in the form; any other unit may be entered."""
 
 
 def file_columns(path: Path) -> list[dict[str, Any]]:
-    """The columns of a file: name, unit, first values as they stand."""
+    """Return the columns of a file: name, unit, first values as in the file."""
     found = []
     with open_source(path) as source:
         for table in source.tables:
@@ -83,7 +83,7 @@ def _shown(value: Any) -> str:
 
 
 def quantities() -> list[dict[str, Any]]:
-    """What a column can be: key, words, the units offered for it."""
+    """Return the possible assignments of a column: key, description, offered units."""
     found = []
     for key in (*WORDS, *(k for k in KNOWN if k not in WORDS)):
         wanted = wanted_unit(key)
@@ -93,12 +93,12 @@ def quantities() -> list[dict[str, Any]]:
 
 
 def form_of(text: str) -> dict[str, Any]:
-    """The map of a text as the form shows it.
+    """Return the form of a map's text.
 
     Raises
     ------
     InputError
-        The text is no map.
+        The text is not a map.
     """
     made = _map_of(text)
     rows = []
@@ -116,15 +116,15 @@ def form_of(text: str) -> dict[str, Any]:
 
 
 def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> str:
-    """The text with other columns, and with other values of the rig (`drive.pitch_m` to a number).
+    """Return the text with other columns and rig values (such as `drive.pitch_m` to a number).
 
-    Where the columns speak of another machine its sections are guessed anew; what was filled in
-    stays.
+    If the columns imply a different machine, its sections are guessed again; values already filled
+    in are kept.
 
     Raises
     ------
     InputError
-        The text is no map.
+        The text is not a map.
     """
     before = _map_of(text)
     document: Any = _parsed(_ANSWERED.sub("", text))
@@ -141,7 +141,7 @@ def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> 
 
 
 def _with_lines(text: str, new: Sequence[str]) -> str:
-    """The text with lines behind the last one of its columns."""
+    """Insert lines after the last line of the section of columns."""
     lines = text.split("\n")
     if not new:
         return text
@@ -180,7 +180,7 @@ def _sections(
 
 
 def _put(section: Any, content: Mapping[str, Any]) -> None:
-    """Make a section hold this; what stays keeps its comments."""
+    """Set the content of a section; unchanged items keep their comments."""
     for key in [key for key in section if key not in content]:
         del section[key]
     for key, value in content.items():
@@ -189,19 +189,19 @@ def _put(section: Any, content: Mapping[str, Any]) -> None:
 
 
 def expression_of(row: Mapping[str, Any]) -> str:
-    """A row of the form as an expression."""
+    """Return a row of the form as an expression."""
     column = str(row["column"]).replace("`", "")
     unit = str(row.get("unit") or "").strip()
     return f"{'-' if row.get('turned') else ''}`{column}`{f' [{unit}]' if unit else ''}"
 
 
 def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, Any]) -> str:
-    """The text as a form changed it.
+    """Return the text as changed by a form.
 
     Raises
     ------
     InputError
-        Two columns are said to be the same, or the text is no map.
+        Two columns have the same assignment, or the text is not a map.
     """
     formulas = {row["key"]: row["expression"] for row in form_of(text)["rows"]
                 if "column" not in row}  # fmt: skip
@@ -225,12 +225,12 @@ def _number(value: Any) -> Any:
 
 
 def cut_name(text: str) -> str | None:
-    """The file of trims that a map names, as it is written there.
+    """Return the trim file named by a map, as written in it.
 
     Raises
     ------
     InputError
-        The text is no map.
+        The text is not a map.
     """
     if _map_of(text).cut.file is None:
         return None
@@ -238,12 +238,12 @@ def cut_name(text: str) -> str | None:
 
 
 def beside_names(text: str) -> list[str]:
-    """The further files that a map names, as they are written there.
+    """Return the additional files named by a map, as written in it.
 
     Raises
     ------
     InputError
-        The text is no map.
+        The text is not a map.
     """
     if not _map_of(text).beside:
         return []
@@ -268,7 +268,7 @@ def _map_of(text: str) -> Map:
 
 
 def unplaced(error: InputError) -> InputError:
-    """The error without the temporary file that the map stood in."""
+    """Return the error without the path of the temporary map file."""
     fields = error._fields()
     if str(fields.get("file") or "").endswith("map.toml"):
         fields["file"] = "the map"

@@ -1,4 +1,4 @@
-"""Where a model fails, as marks on the plots: for each pattern of the residual its worst bin."""
+"""Marks on the plots where a model fails: the worst bin of each residual pattern."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ from jbf.workbench.thinning import ranges_of
 
 
 def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
-    """Each pattern in words, with its usual causes, what to do, and the stretches of each run that
-    lie in its worst bin.
+    """Return each pattern with description, causes, advice, and the intervals in its worst bin.
 
     `ranges_s` maps the number of a run to pairs of instants, s.
     """
@@ -42,5 +41,5 @@ def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def worst_bin(failure: Failure) -> int:
-    """The bin whose mean explains most of the residual's square."""
+    """Return the index of the bin whose mean explains most of the residual's mean square."""
     return int(np.argmax(failure.counts * failure.means_n**2))

@@ -1,4 +1,4 @@
-"""Models on the bench: a tree, each with its parent, and the one that is looked at."""
+"""Tree of models in a session, and the model that is displayed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from jbf.errors import InputError
 
 LARGE = ("model", "report")
-"""What the page does not need until it asks."""
+"""Large content that the page requests separately."""
 
 
 @dataclass
@@ -31,19 +31,19 @@ class Models:
     beside: int | None = None
 
     def add(self, parent: int | None, words: str, content: Mapping[str, Any]) -> int:
-        """A new model, which becomes the current one."""
+        """Add a model, which becomes the current one; returns its number."""
         number = max(self.nodes, default=0) + 1
         self.nodes[number] = {"id": number, "parent": parent, "words": words, **content}
         self.current = number
         return number
 
     def node(self, number: int | None = None) -> dict[str, Any]:
-        """A model; the current one by default.
+        """Return the data of a model; by default of the current one.
 
         Raises
         ------
         InputError
-            There is none.
+            There is no such model.
         """
         at = self.current if number is None else number
         if at is None or at not in self.nodes:
@@ -51,19 +51,19 @@ class Models:
         return self.nodes[at]
 
     def choose(self, number: int | None) -> None:
-        """Look at a model, or at the records alone."""
+        """Display a model, or only the records."""
         self.current = None if number is None else int(self.node(number)["id"])
 
     def put_beside(self, number: int | None) -> None:
-        """Draw another beside the current one."""
+        """Draw a second model for comparison with the current one."""
         self.beside = None if number is None else int(self.node(number)["id"])
 
     def undo(self) -> None:
-        """Back to where the current model came from; it stays in the tree."""
+        """Return to the parent of the current model, which stays in the tree."""
         self.current = self.node()["parent"]
 
     def ledger(self) -> list[dict[str, Any]]:
-        """The errors from the first model to the current one."""
+        """Return the errors of the models from the first one to the current one."""
         line, at = [], self.current
         while at is not None:
             node = self.nodes[at]
@@ -73,7 +73,7 @@ class Models:
         return [{key: node.get(key) for key in keys} for node in reversed(line)]
 
     def told(self) -> dict[str, Any]:
-        """For the page."""
+        """Return the data for the page."""
         return {
             "current": self.current,
             "beside": self.beside,

@@ -1,4 +1,4 @@
-"""The friction-speed plane: how many samples lie where, as a picture of so many pixels."""
+"""Friction-speed plane: number of samples per pixel, encoded as an image."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ MARGIN = 0.04
 
 @dataclass(frozen=True)
 class Frame:
-    """A rectangle of the plane in pixels: `x` is the speed, `y` the force, row 0 at the bottom."""
+    """Pixel grid over a rectangle of the plane: `x` is speed, `y` is force, row 0 is at the
+    bottom.
+    """
 
     left: float
     right: float
@@ -31,7 +33,7 @@ class Frame:
 
     @classmethod
     def around(cls, x: Sequence[Array], y: Sequence[Array], columns: int, rows: int) -> Frame:
-        """The rectangle that holds all points, with a margin."""
+        """Return the rectangle that contains all points, with a margin."""
 
         def ends(parts: Sequence[Array]) -> tuple[float, float]:
             low = min((float(np.nanmin(p)) for p in parts if np.any(np.isfinite(p))), default=0.0)
@@ -42,10 +44,13 @@ class Frame:
         return cls(*ends(x), *ends(y), columns, rows)
 
     def places(self, x: Array, y: Array) -> Places:
-        """The pixel of each sample, row by row; one beyond the last for what lies in none."""
+        """Return the pixel index of each sample in row-major order.
+
+        Samples outside the rectangle have an index one beyond the last.
+        """
         across = (x - self.left) * (self.columns / (self.right - self.left))
         up = (y - self.low) * (self.rows / (self.high - self.low))
-        # Not-a-number compares false.
+        # NaN compares false.
         inside = (across >= 0) & (across < self.columns) & (up >= 0) & (up < self.rows)
         with np.errstate(invalid="ignore"):
             place = up.astype(np.int32) * np.int32(self.columns) + across.astype(np.int32)
@@ -53,7 +58,7 @@ class Frame:
         return found
 
     def counts(self, places: Sequence[Places]) -> Counts:
-        """Samples in each pixel, shape (rows, columns)."""
+        """Return the number of samples in each pixel, shape (rows, columns)."""
         pixels = self.rows * self.columns
         found = np.zeros(pixels + 1, dtype=np.int64)
         for part in places:
@@ -61,16 +66,19 @@ class Frame:
         return found[:pixels].reshape(self.rows, self.columns)
 
     def picture(self, places: Sequence[Places]) -> str:
-        """The same as `shade` draws it."""
+        """Return the number of samples in each pixel as encoded by `shade`."""
         return shade(self.counts(places))
 
     def to_dict(self) -> dict[str, Any]:
-        """For the page."""
+        """Return the data for the page."""
         return dict(vars(self))
 
 
 def shade(counts: Counts) -> str:
-    """Counts as bytes from 0 (none) to 255 on a logarithmic scale, row by row, in base64."""
+    """Encode counts as bytes from 0 (no samples) to 255.
+
+    The scale is logarithmic, the order row by row, the encoding base64.
+    """
     most = max(int(counts.max(initial=0)), 1)
     level = np.log1p(counts) / np.log1p(most)
     shown = np.where(counts > 0, np.maximum(np.round(255 * level), 40), 0).astype(np.uint8)
@@ -78,7 +86,10 @@ def shade(counts: Counts) -> str:
 
 
 def within(x: Array, y: Array, box: tuple[float, float, float, float]) -> Mask:
-    """Samples in a rectangle: least and largest speed, least and largest force."""
+    """Return the mask of samples in a rectangle.
+
+    `box` contains smallest and largest speed, smallest and largest force.
+    """
     left, right, low, high = box
     inside: Mask = (x >= left) & (x <= right) & (y >= low) & (y <= high)
     return inside

@@ -1,4 +1,4 @@
-"""Each step as the commands and the lines of Python that do the same."""
+"""Equivalent commands and Python code of the steps in a session."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ WIDTH = 88
 
 @dataclass(frozen=True)
 class Steps:
-    """What was done on the bench before any model.
+    """Steps in the session before any model was made.
 
     Attributes
     ----------
     rig, runs
-        Names of the files whose runs are used.
+        Names of the rig file and of the files of the used runs.
     imported
-        The recordings that they were imported from; none where they were opened as they are.
+        Recordings from which the runs were imported; empty if they were opened directly.
     map
-        The map of that import, and `out` the folder that it filled.
+        Map of that import. `out` is the folder that it filled.
     trims
-        Run to the instants, s, between which it is used.
+        Used interval of each trimmed run, s.
     """
 
     rig: str
@@ -37,7 +37,7 @@ class Steps:
 
 
 def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
-    """The `jbf` commands up to a model; of the bench alone where there is none."""
+    """Return the `jbf` commands that lead to a model; without a model, those for the runs alone."""
     lines = []
     if steps.imported:
         files = shlex.join(steps.imported)
@@ -58,7 +58,7 @@ def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
 
 
 def python(node: Mapping[str, Any] | None, steps: Steps) -> str:
-    """The same in Python."""
+    """Return the equivalent Python code."""
     lines = ["import jbf", ""]
     if steps.imported:
         into = f", {steps.map!r}, {steps.out!r}, replace_folder=True)"

@@ -1,4 +1,4 @@
-"""What the plots show of a run: the record as it was read, or as a model saw it."""
+"""Time series of a run for the plots: the record as read, or with a model's prediction."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from jbf.workbench.thinning import Stretch, thinned
 Array = npt.NDArray[np.float64]
 DIGITS = 6
 TIME_DIGITS = 11
-"""A day in microseconds."""
+"""Significant digits of times: one day in microseconds."""
 
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """One run, equal to itself alone; `model_n` and `counted` are there where a model saw it."""
+    """Data of one run, compared by identity; `model_n` and `counted` exist only with a model."""
 
     time_s: Array
     velocity_m_s: Array
@@ -32,13 +32,13 @@ class Seen:
 
     @cached_property
     def residual_n(self) -> Array | None:
-        """Record minus prediction, N; nan where the sample does not count."""
+        """Record minus prediction, N; NaN where the sample does not count."""
         if self.model_n is None or self.friction_n is None or self.counted is None:
             return None
         return np.where(self.counted > 0, self.friction_n - self.model_n, np.nan)
 
     def columns(self) -> dict[str, Array]:
-        """What there is, by name."""
+        """Return the available columns by name."""
         found: Mapping[str, Array | None] = {
             "velocity_m_s": self.velocity_m_s,
             "friction_n": self.friction_n,
@@ -50,7 +50,7 @@ class Seen:
 
 @lru_cache(maxsize=512)
 def as_read(run: Run) -> Seen:
-    """A run as its file has it."""
+    """Return the data of a run as in its file."""
     speed = run.velocity_m_s
     if not np.any(np.isfinite(speed)):
         path = run.position_m if run.position_m is not None else run.angle_rad
@@ -60,13 +60,13 @@ def as_read(run: Run) -> Seen:
 
 @lru_cache(maxsize=512)
 def as_modelled(file: Path) -> Seen:
-    """A run as a model saw it, from the file that the fit left."""
+    """Return the data of a run with a model's prediction, from the file written by the fit."""
     time, speed, friction, model, counted = map(np.asarray, np.load(file, mmap_mode="r"))
     return Seen(time, speed, friction, model, counted)
 
 
 def drawn(seen: Seen, from_s: float | None, to_s: float | None, pixels: int) -> dict[str, Any]:
-    """A stretch of a run in as many points as its pixels can show."""
+    """Return an interval of a run, reduced to the resolution of the plot."""
     begin = seen.time_s[0] if from_s is None else from_s
     end = seen.time_s[-1] if to_s is None else to_s
     stretch = Stretch.between(seen.time_s, float(begin), float(end), pixels)
@@ -82,12 +82,14 @@ def drawn(seen: Seen, from_s: float | None, to_s: float | None, pixels: int) -> 
 
 
 def listed(values: Sequence[float] | Array, digits: int = DIGITS) -> list[float | None]:
-    """Numbers for JSON, rounded to what a screen shows; None where there is none."""
+    """Convert values for JSON: round to the displayed precision, replace non-finite values by
+    None.
+    """
     array = np.asarray(values, dtype=float)
     finite = np.isfinite(array)
     scale = float(np.max(np.abs(array[finite]), initial=0.0)) or 1.0
     decimals = digits - 1 - int(np.floor(np.log10(scale)))
-    # Beyond, the factor that numpy rounds by is no number.
+    # Beyond this range numpy's rounding factor is not finite.
     rounded = np.round(array, decimals) if abs(decimals) < 200 else array
     if finite.all():
         return rounded.tolist()  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""Opening the workbench: a port on loopback, a token, the server."""
+"""Start of the workbench: port on the loopback interface, token, server."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ HOST = "127.0.0.1"
 
 
 def listening(port: int) -> socket.socket:
-    """A socket on loopback; port 0 takes a free one.
+    """Return a socket on the loopback interface; port 0 selects a free port.
 
     Raises
     ------
     InputError
-        The port is taken.
+        The port is in use.
     """
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -35,12 +35,12 @@ def listening(port: int) -> socket.socket:
 
 
 def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool = False) -> None:
-    """Serve the page over a folder until Ctrl-C; `opened` is called with its address.
+    """Serve the page for a folder until Ctrl-C; `opened` is called with its address.
 
     Raises
     ------
     InputError
-        There is no such folder, the port is taken, or what the page draws with is not installed.
+        The folder does not exist, the port is in use, or a required package is not installed.
     """
     try:
         import uvicorn
@@ -68,7 +68,7 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
             lifespan="off",
             timeout_graceful_shutdown=1,
         )
-        # In the fragment it is sent to no server and stands in no log.
+        # The fragment of an address is sent to no server and appears in no log.
         opened(f"http://{HOST}:{at}/#token={token}")
         uvicorn.Server(config).run(sockets=[listener])
     finally:

@@ -1,4 +1,4 @@
-"""A session: the bench, the models made on it, and the fit that runs."""
+"""Session: the rig and runs, the models, and the running fit."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from jbf.workbench.work import Kind, Order
 
 
 class Session:
-    """What a page shows of a folder.
+    """State of the page for one folder.
 
     Attributes
     ----------
     version
-        Grows with every change; whoever looks on asks again then.
+        Counter of changes; clients reload the state when it increases.
     lock
-        Held while the bench or the models change.
+        Lock held while the rig, the runs or the models change.
     """
 
     def __init__(self, folder: Folder) -> None:
@@ -51,7 +51,10 @@ class Session:
         self._loaded: dict[int, Model] = {}
 
     def changed(self) -> None:
-        """There is news."""
+        """Register a change.
+
+        A comparison that was postponed during another job is started.
+        """
         self.version += 1
         if self._owed and self.jobs.job is None:
             self._owed = False
@@ -61,35 +64,35 @@ class Session:
                     self._compare(current)
 
     def say(self, kind: str, words: str) -> None:
-        """A line for whoever looks on; `kind` is `done` or `error`."""
+        """Set the message for clients; `kind` is `done` or `error`."""
         self.message = {"kind": kind, "words": words}
         self.changed()
 
     def on_bench(self) -> Bench:
-        """The bench.
+        """Return the rig and runs.
 
         Raises
         ------
         InputError
-            Nothing is on it.
+            No rig is open.
         """
         if self.bench is None:
             raise InputError(problem="nothing is on the bench", mend="open a rig and its runs")
         return self.bench
 
     def open(self, rig_name: str, run_names: Sequence[str]) -> None:
-        """Put a rig and runs on the bench, in the place of what was there.
+        """Open a rig and runs, which replace the present ones.
 
         Raises
         ------
         InputError
-            A file is wrong, or a fit is running; what was there stays.
+            A file is wrong, or a fit is running; the present rig and runs are kept.
         """
         self.put(Bench.read(self.folder, rig_name, run_names), Models())
         self.say("done", f"{rig_name} is open, with {count_of(len(run_names), 'run')}")
 
     def put(self, bench: Bench, models: Models, law: str | None = None) -> None:
-        """Take this bench, and models that were made on it."""
+        """Replace rig, runs and models."""
         with self.lock:
             if self.jobs.job is not None:
                 raise InputError(problem="a fit is running", mend="wait for it, or cancel it")
@@ -99,7 +102,7 @@ class Session:
         bench.looked_at(self.changed)
 
     def choose_law(self, law: str) -> None:
-        """The base law of models that have no parent."""
+        """Choose the base law of models without a parent."""
         if law != AUTO:
             find_law(law)
             check_rig(self.on_bench().rig, law)
@@ -112,7 +115,7 @@ class Session:
         Raises
         ------
         InputError
-            Nothing is on the bench, a fit is running, or the law does not go with it.
+            No rig is open, a fit is running, or the law does not go with the rig.
         """
         with self.lock:
             bench = self.on_bench()
@@ -142,12 +145,15 @@ class Session:
         self.changed()
 
     def show(self, number: int | None) -> None:
-        """Look at a model, or (None) at the records alone; compares it with the runs where that
-        has not been done, as after a session was opened."""
+        """Display a model, or only the records if None.
+
+        The model is compared with the runs if that has not been done, for example after a session
+        was loaded.
+        """
         with self.lock:
             self.models.choose(number)
             if number is not None and self.records(number) is None:
-                # While another job runs the model waits for its turn.
+                # If another job is running, the comparison is postponed.
                 self._owed = self.jobs.job is not None
                 if not self._owed:
                     self._compare(number)
@@ -173,14 +179,16 @@ class Session:
         return Path(self._kept.name) / str(self._places)
 
     def _added(self, answer: Any, parent: int | None, how: str, law: str, place: Path) -> int:
-        """A new model in the tree; `law` is what was asked for, `how` stands before its words."""
+        """Add a model to the tree; `law` is the requested law, `how` the prefix of the model's
+        label.
+        """
         named = " + ".join([answer["law"], *answer["effects"]])
         with self.lock:
             content = {**answer, "asked_law": law, "records": place.name}
             return self.models.add(parent, f"{how}{named}", content)
 
     def _ranked(self, ending: Ending, answer: Any, number: int) -> None:
-        """What else there is to say of a model that was added when it had been fitted."""
+        """Add the ranking of the candidates to a model that was added when its fit was done."""
         node = self.models.node(number)
         unit = self.on_bench().rig.quantities.force
         if ending == "done":
@@ -210,7 +218,7 @@ class Session:
             self.say("error", f"{words}: {answer}")
 
     def records(self, number: int) -> dict[str, Path] | None:
-        """Run to the file of what a model saw of it; None where it has not been compared."""
+        """Return the record file of each run; None if the model has not been compared."""
         node = self.models.node(number)
         place = Path(self._kept.name) / str(node.get("records", ""))
         if not node.get("records") or not place.is_dir():
@@ -219,7 +227,7 @@ class Session:
         return {name: place / f"{index}.npy" for index, name in enumerate(names)}
 
     def model(self, number: int) -> Model:
-        """A model of the tree."""
+        """Return a model of the tree."""
         text = str(self.models.node(number)["model"])
         if number not in self._loaded:
             file = Path(self._kept.name) / f"model-{number}.toml"
@@ -228,7 +236,7 @@ class Session:
         return self._loaded[number]
 
     def told(self) -> dict[str, Any]:
-        """Everything, for the page."""
+        """Return the complete state for the page."""
         with self.lock:
             job, bench = self.jobs.job, self.bench
             told: dict[str, Any] = {
@@ -263,13 +271,15 @@ class Session:
         ]
 
     def close(self) -> None:
-        """Stop what runs, and leave nothing behind."""
+        """Stop the running job and delete the temporary files."""
         self.jobs.cancel(at_once=True)
         self._kept.cleanup()
 
 
 def first_law(rig: Rig) -> str:
-    """The law that a rig is met with: a bearing's where all is known of it."""
+    """Return the initial law of a rig: `auto` for a drive, `journal` if the bearing data are
+    complete.
+    """
     if rig.drive is not None:
         return AUTO
     try:

@@ -1,4 +1,4 @@
-"""The session's file: what was on the bench and every model, to go on another day."""
+"""File of a session with rig, runs and models, for later continuation."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ FORMAT = "jbf workbench 1"
 
 
 def save(session: Session) -> Path:
-    """Write the file into the session's folder; gives its path.
+    """Write the file into the session's folder and return its path.
 
     Raises
     ------
     InputError
-        Nothing is on the bench, or the file cannot be written.
+        No rig is open, or the file cannot be written.
     """
     with session.lock:
         bench, models = session.on_bench(), session.models
@@ -44,12 +44,12 @@ def save(session: Session) -> Path:
 
 
 def load(session: Session) -> bool:
-    """Go on where the folder's file left off; False where there is none.
+    """Restore the session from the file in the folder; returns False if there is no file.
 
     Raises
     ------
     InputError
-        It is broken, of another format, or names files that are not there any more.
+        The file is broken, has another format, or names files that no longer exist.
     """
     path = session.folder.path(FILE)
     if not path.exists():
@@ -83,7 +83,7 @@ def load(session: Session) -> bool:
 
 
 def _node(node: dict[str, Any]) -> dict[str, Any]:
-    """A model's entry with all that the page counts on; the rest is as it was written."""
+    """Check that a model's entry has all keys that the page requires, and return it unchanged."""
     for key in ("id", "words", "law", "effects", "model", "rms_n"):
         node[key]
     return node

@@ -1,6 +1,6 @@
-"""A record in as many points as a screen can show: the least and the largest of each pixel.
+"""Reduction of a record to the resolution of a screen: smallest and largest value per pixel.
 
-No excursion is lost, however short: what is drawn covers what was measured.
+No excursion is lost, however short, because the drawn range covers all measured values.
 """
 
 from __future__ import annotations
@@ -24,32 +24,34 @@ class Stretch:
 
     @property
     def stride(self) -> int:
-        """Samples a pixel; one where each can be shown."""
+        """Number of samples per pixel; one if each sample can be shown."""
         return max(-(-(self.end - self.first) // self.pixels), 1)
 
     @classmethod
     def between(cls, time_s: Array, from_s: float, to_s: float, pixels: int) -> Stretch:
-        """The samples between two instants, with one more at either end so that lines go on."""
+        """Return the samples between two instants, with one more at each end for continuous
+        lines.
+        """
         first = max(int(np.searchsorted(time_s, from_s)) - 1, 0)
         end = min(int(np.searchsorted(time_s, to_s, side="right")) + 1, len(time_s))
         return cls(first, max(end, first), max(pixels, 1))
 
 
 def thinned(time_s: Array, columns: Mapping[str, Array], stretch: Stretch) -> dict[str, Array]:
-    """Time and columns in two points a pixel, or as they are where they are few.
+    """Reduce time and columns to two points per pixel, unless there are few samples.
 
     Returns
     -------
     dict
-        `time_s`, and each column with its least and its largest value of each group in turn; nan
-        where a group has no number.
+        `time_s`, and each column with the smallest and the largest value of each group in turn;
+        NaN where a group has no finite value.
     """
     part = slice(stretch.first, stretch.end)
     stride = stretch.stride
     if stride <= 2:
         return {"time_s": time_s[part], **{k: v[part] for k, v in columns.items()}}
     starts = np.arange(stretch.first, stretch.end, stride)
-    # Both points of a pixel stand in its middle half, least first: a line through them is a bar.
+    # Both points of a pixel lie in its middle half, smallest first: a line through them is a bar.
     last = np.minimum(starts + stride, stretch.end) - 1
     begin, close = time_s[starts], time_s[last]
     quarter = 0.25 * (close - begin)
@@ -62,9 +64,9 @@ def thinned(time_s: Array, columns: Mapping[str, Array], stretch: Stretch) -> di
 
 
 def ranges_of(mask: npt.NDArray[np.bool_], most: int = 400) -> list[tuple[int, int]]:
-    """Where a mask is true: first sample and the one after the last, of each stretch.
+    """Return first sample and end (exclusive) of each interval in which a mask is true.
 
-    Stretches with the least between them are joined until there are no more than `most`.
+    Intervals with the smallest gaps are merged until at most `most` remain.
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
     first, end = edges[::2], edges[1::2]

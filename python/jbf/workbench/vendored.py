@@ -1,6 +1,6 @@
-"""uPlot, which draws the curves: not part of this repository, fetched once by version and hash.
+"""Plot library uPlot, which is not part of the repository; fetched once by version and hash.
 
-`python -m jbf.workbench.vendored` puts it beside this file; wheels bring it along.
+`python -m jbf.workbench.vendored` stores it next to this file; wheels include it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 NAME, VERSION = "uPlot", "1.6.32"
 ADDRESS = f"https://registry.npmjs.org/uplot/-/uplot-{VERSION}.tgz"
 SHA512 = "KIMVnG68zvu5XXUbC4LQEPnhwOxBuLyW1AHtpm6IKTXImkbLgkMy+jabjLgSLMasNuGGzQm/ep3tOkyTxpiQIw=="
-"""Of the archive, as the registry states it for this version."""
+"""SHA-512 hash of the archive, as stated by the registry for this version."""
 FILES = {
     "package/dist/uPlot.iife.min.js": "uPlot.iife.min.js",
     "package/dist/uPlot.min.css": "uPlot.min.css",
@@ -27,23 +27,25 @@ HERE = Path(__file__).resolve().parent / "vendored_files"
 
 
 def file(name: str) -> Path | None:
-    """One of the files; None where it is none of them, or was not fetched."""
+    """Return the path of one of the files; None if the name is unknown or the file was not
+    fetched.
+    """
     path = HERE / name
     return path if name in FILES.values() and path.is_file() else None
 
 
 def is_there() -> bool:
-    """Whether all files were fetched."""
+    """Return whether all files were fetched."""
     return all(file(name) for name in FILES.values())
 
 
 def unpacked(archive: bytes) -> dict[str, bytes]:
-    """The files in the archive.
+    """Return the required files of the archive.
 
     Raises
     ------
     ValueError
-        It is not the archive that was reviewed.
+        The archive is not the one that was reviewed.
     """
     found = base64.b64encode(hashlib.sha512(archive).digest()).decode("ascii")
     if found != SHA512:
@@ -58,7 +60,7 @@ def unpacked(archive: bytes) -> dict[str, bytes]:
 
 
 def fetch() -> None:
-    """Fetch the archive from the registry, check it, and keep what is needed."""
+    """Fetch the archive from the registry, check it, and store the required files."""
     with urllib.request.urlopen(ADDRESS, timeout=60) as answer:
         contents = unpacked(answer.read())
     HERE.mkdir(exist_ok=True)

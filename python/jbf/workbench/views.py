@@ -1,4 +1,4 @@
-"""What the plots ask for: stretches of runs, the plane, maps over all runs, a signature."""
+"""Data of the plots: sections of runs, plane, map over all runs, signature of an effect."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MAP_SPEEDS = 24
 
 
 def seen(session: Session, number: int | None) -> dict[str, Seen]:
-    """Every run by name: as a model saw it, or as it was read."""
+    """Return every run by name: with a model's prediction if available, otherwise as read."""
     found = {run.name: as_read(run) for run in session.on_bench().runs}
     files = None if number is None else session.records(number)
     for name, file in (files or {}).items():
@@ -33,7 +33,7 @@ def seen(session: Session, number: int | None) -> dict[str, Seen]:
 
 
 def one(session: Session, number: int | None, name: str) -> Seen:
-    """One run of them."""
+    """Return one of these runs."""
     session.on_bench().run(name)
     return seen(session, number)[name]
 
@@ -42,7 +42,7 @@ def series(
     session: Session, number: int | None, name: str, span: tuple[float | None, float | None],
     pixels: int,
 ) -> dict[str, Any]:  # fmt: skip
-    """A stretch of a run; where another model is put beside, its prediction, too."""
+    """Return a section of a run, with the prediction of the second model if one is selected."""
     whole = one(session, number, name)
     found = drawn(whole, *span, pixels)
     beside = session.models.beside
@@ -62,7 +62,7 @@ def series(
 
 
 def plane(session: Session, number: int | None, names: list[str], size: Size) -> dict[str, Any]:
-    """Friction against speed of some runs: where samples lie, and what the model says."""
+    """Return friction against speed of some runs: density of the samples and of the model."""
     return _density(session, number, names, size).to_dict()
 
 
@@ -73,11 +73,11 @@ def _density(session: Session, number: int | None, names: list[str], size: Size)
 def masks_of(
     session: Session, number: int | None, selection: Mapping[str, Any], runs: Mapping[str, Seen]
 ) -> dict[str, Mask]:
-    """The samples of each run that a selection holds.
+    """Return the mask of selected samples of each run.
 
-    A selection is a stretch of a run (`run`, `from_s`, `to_s`), a `box` of the plane (least and
-    largest speed and force, None where it is open) in all runs or in one `run`, or the `mark` of a
-    model's failure by its place in the list.
+    A selection is one of three kinds: an interval of a run (`run`, `from_s`, `to_s`); a `box` of
+    the plane in all runs or in one `run`; or the `mark` of a model's failure by its index. The box
+    contains smallest and largest speed and force, with None for an open end.
     """
     if "mark" in selection:
         return _marked(session, number, int(selection["mark"]), runs)
@@ -112,7 +112,7 @@ def _marked(
             continue
         time = runs[name].time_s
         for first, last in stretches:
-            # The ends are samples of the record, written and read back exactly.
+            # The ends are samples of the record, which are written and read exactly.
             begin, end = np.searchsorted(time, first), np.searchsorted(time, last, side="right")
             found[name][begin:end] = True
     return found
@@ -122,8 +122,11 @@ def brushed(
     session: Session, number: int | None, selection: Mapping[str, Any], names: list[str],
     size: Size,
 ) -> dict[str, Any]:  # fmt: skip
-    """A selection everywhere: its stretches of each run, how the residual is there, the speeds it
-    holds, its cells of the map over runs, and where its samples lie in the plane of some runs."""
+    """Return the statistics and positions of a selection for all views.
+
+    They are its intervals and residual per run, its speed range, its cells in the map over runs,
+    and its density in the plane of some runs.
+    """
     runs = seen(session, number)
     masks = masks_of(session, number, selection, runs)
     edges = speed_edges(tuple(runs.values()))
@@ -164,7 +167,10 @@ def _rms(values: Array) -> float | None:
 
 @lru_cache(maxsize=8)
 def speed_edges(runs: tuple[Seen, ...]) -> Array:
-    """Edges of the map's columns, m/s: finer round standstill, where friction changes most."""
+    """Return the edges of the map's columns, m/s.
+
+    They are closer near standstill, where friction changes most.
+    """
     most = max((float(np.nanmax(np.abs(s.velocity_m_s))) for s in runs), default=0.0) or 1.0
     half = most * np.linspace(0.0, 1.0, MAP_SPEEDS // 2 + 1) ** 2
     return np.concatenate([-half[:0:-1], half])
@@ -175,7 +181,7 @@ def _column(speed: Array, edges: Array) -> Array:
 
 
 def map_of_runs(session: Session, number: int) -> dict[str, Any]:
-    """The mean of record minus prediction over runs and speeds: a row a run, a column a speed."""
+    """Return the mean of record minus prediction, one row per run, one column per speed range."""
     runs = seen(session, number)
     if all(run.residual_n is None for run in runs.values()):
         raise InputError(problem="this model has not been compared yet", mend="wait a moment")
@@ -184,7 +190,7 @@ def map_of_runs(session: Session, number: int) -> dict[str, Any]:
     for run in runs.values():
         residual = run.residual_n
         if residual is None:
-            # Left out of the fit: a row without cells, so that rows are the runs everywhere.
+            # Excluded from the fit: an empty row, so that the rows match the runs everywhere.
             rows.append([None] * (len(edges) - 1))
             continue
         ok = np.isfinite(residual)
@@ -199,8 +205,10 @@ def signature(
     session: Session, number: int, effect: str, name: str,
     span: tuple[float | None, float | None], pixels: int,
 ) -> dict[str, Any]:  # fmt: skip
-    """What an effect at the catalogue's usual strength would add to a run, scaled so that it comes
-    nearest to the residual."""
+    """Return the contribution of an effect at its typical strength to a run.
+
+    It is scaled by least squares to the residual.
+    """
     run = session.on_bench().run(name)
     known = one(session, number, name)
     base = session.model(number)

@@ -1,6 +1,6 @@
-"""What a fit's own process does: one order, messages on the way, one answer.
+"""Process of a fit: executes one order, sends progress messages and one result.
 
-An answer is plain numbers and words; what is as long as a record goes to files.
+A result is JSON data; data of the length of a record are written to files.
 """
 
 from __future__ import annotations
@@ -37,22 +37,22 @@ from jbf.workbench.answers import (
 
 Kind = Literal["round", "diagnose", "compare"]
 STOP = "stop"
-"""What the server sends to a process whose fit is to end."""
+"""Message of the server that stops the fit of a process."""
 
 
 @dataclass(frozen=True)
 class Order:
-    """What is to be done.
+    """Work to be done by a process.
 
     Attributes
     ----------
     kind
-        `round`: fit these effects and try every other; `diagnose`: all rounds; `compare`: a model
-        as it is.
+        `round` fits the given effects and tests every other; `diagnose` runs all rounds; `compare`
+        compares an unchanged model.
     folder
-        Where the records as the model saw them go, one file a run.
+        Folder for the records with the model's prediction, one file per run.
     model
-        Path of the model file that is compared.
+        Path of the model file to compare.
     """
 
     kind: Kind
@@ -66,9 +66,12 @@ class Order:
 
 
 def main(connection: Connection, order: Order) -> None:
-    """The process: sends `("progress", message, done, total)`, of a round `("part", answer)` when
-    the model is there and its rivals are not, and, last, `("done", answer)`, `("error", words)`
-    or, when `STOP` came, `("stopped", answer)` of the best so far, if any."""
+    """Execute an order and send messages to the server.
+
+    The messages are `("progress", message, done, total)` and, last, `("done", answer)`, `("error",
+    words)`, or after `STOP` `("stopped", answer)` with the best result so far, if any. A round
+    also sends `("part", answer)` when the model is fitted and its candidates are not yet tested.
+    """
 
     def progress(message: str, done: int, total: int) -> None:
         connection.send(("progress", message, done, total))
@@ -107,7 +110,7 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
             if connection.recv() == STOP:
                 asked.set()
                 _thread.interrupt_main()
-        except (EOFError, OSError):  # the server has gone, or all is done
+        except (EOFError, OSError):  # the server has ended, or the work is done
             pass
 
     signal.signal(signal.SIGINT, interrupt)
@@ -119,13 +122,13 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
 
 
 def best_so_far(fit: Fit, order: Order) -> Answer:
-    """What a stopped fit had come to."""
+    """Return the result of a stopped fit."""
     compared = compare(fit.model, order.runs)
     return {**of_model(compared), **of_fit(fit), **kept_records(compared, order.folder)}
 
 
 def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
-    """The answer to an order; of a round what its part has not told."""
+    """Return the result of an order; for a round, only the content that `part` has not received."""
     if order.kind == "compare":
         assert order.model is not None
         compared = compare(Model.load(order.model), order.runs)

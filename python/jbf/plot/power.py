@@ -31,8 +31,8 @@ def power(
     """Plot the probability that such runs show an effect, over its share of the friction.
 
     Each curve passes through the strengths that are detected in 80 and in 95 of 100 campaigns. The
-    log-likelihood gain of an effect grows as the square of its strength. The probability is a
-    normal distribution function of the strength.
+    log-likelihood gain of an effect grows as the square of its strength. The probability is the
+    normal distribution function of a deviate that is linear in the strength.
 
     Parameters
     ----------

@@ -229,7 +229,10 @@ def _last(diagnosis: Diagnosis) -> Markup:
 
 
 def _friction(diagnosis: Diagnosis) -> Markup:
-    """Plot the friction loops of the most informative run, and the mean friction of all runs."""
+    """Plot the friction loops of one run, and the mean friction of all runs.
+
+    The run is the one in which the bare law and the final model differ most.
+    """
     left, right = axes_or_new(None, 1, 2, (WIDTH, 4.0))
     index = most_telling(diagnosis.before, diagnosis.after)
     loops(diagnosis.after, index, alone=True, ax=left)

@@ -1,6 +1,6 @@
 """Access control: only the page of this server with its token may send requests.
 
-The loopback interface alone is no protection: any page in the user's browser can send requests to
+The loopback interface alone does not protect: any page in the user's browser can send requests to
 it. A page whose name is made to resolve to it (DNS rebinding) can read the responses. Therefore
 host name, origin and a secret are checked independently.
 """

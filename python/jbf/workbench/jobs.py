@@ -26,7 +26,7 @@ result.
 
 @dataclass
 class Job:
-    """What runs now."""
+    """Progress of the running job."""
 
     words: str
     begun: float = field(default_factory=time.monotonic)

@@ -14,16 +14,16 @@ LARGE = ("model", "report")
 
 @dataclass
 class Models:
-    """The history of models.
+    """History of models.
 
     Attributes
     ----------
     nodes
-        Number to what is known of a model; `parent` is the one it came from.
+        Data of each model by number; `parent` is the number of the model it was derived from.
     current
-        The one that the plots show.
+        Number of the model that the plots show.
     beside
-        Another that is drawn beside it.
+        Number of a second model that is drawn for comparison.
     """
 
     nodes: dict[int, dict[str, Any]] = field(default_factory=dict)

@@ -84,6 +84,6 @@ def python(node: Mapping[str, Any] | None, steps: Steps) -> str:
 
 
 def _call(head: str, files: Sequence[str], tail: str) -> str:
-    """A call with a list of files, a line each where they are many."""
+    """Format a call with a list of files, one line per file if the list is long."""
     shown = pformat(list(files), width=WIDTH - len(head))
     return head + shown.replace("\n", "\n" + " " * len(head)) + tail

@@ -110,7 +110,7 @@ class Session:
         self.changed()
 
     def begin(self, kind: Kind, effects: Sequence[str], parent: int | None) -> None:
-        """Start a fit (`round`), a diagnosis, or the comparison of a model that has no records.
+        """Start a fit (`round`), a diagnosis, or the comparison of a model without records.
 
         Raises
         ------

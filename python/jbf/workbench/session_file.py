@@ -44,7 +44,7 @@ def save(session: Session) -> Path:
 
 
 def load(session: Session) -> bool:
-    """Restore the session from the file in the folder; returns False if there is no file.
+    """Restore the session from the file in the folder; returns False without a file.
 
     Raises
     ------

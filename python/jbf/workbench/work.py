@@ -68,9 +68,10 @@ class Order:
 def main(connection: Connection, order: Order) -> None:
     """Execute an order and send messages to the server.
 
-    The messages are `("progress", message, done, total)` and, last, `("done", answer)`, `("error",
-    words)`, or after `STOP` `("stopped", answer)` with the best result so far, if any. A round
-    also sends `("part", answer)` when the model is fitted and its candidates are not yet tested.
+    Progress messages are `("progress", message, done, total)`. The last message is
+    `("done", result)`, `("error", words)`, or after `STOP` `("stopped", result)` with the best
+    result so far, if any. A round also sends `("part", result)` when the model is fitted and its
+    candidates are not yet tested.
     """
 
     def progress(message: str, done: int, total: int) -> None:
@@ -96,8 +97,10 @@ def main(connection: Connection, order: Order) -> None:
 
 @contextmanager
 def _interrupted_by(connection: Connection) -> Iterator[None]:
-    """Raises `KeyboardInterrupt`, once, when `STOP` is received; a Ctrl-C in the terminal is the
-    server's, which stops what it started."""
+    """Raise `KeyboardInterrupt` once when `STOP` is received.
+
+    Ctrl-C in the terminal is handled by the server, which stops its processes.
+    """
     asked = threading.Event()
 
     def interrupt(*_: object) -> None:

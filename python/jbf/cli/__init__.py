@@ -143,8 +143,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _own_process() -> None:
-    """Make the process robust against its environment; only called if the process belongs to
-    `jbf`.
+    """Make the process robust against its environment.
+
+    Only called if the process belongs to `jbf`.
     """
     # Figures are written to files: use no window, whatever backend the environment requests.
     os.environ["MPLBACKEND"] = "agg"

@@ -39,8 +39,9 @@ def add_runs(parser: Parser, *, needed: bool = True) -> None:
 
 
 def add_law(parser: Parser, also: str = "") -> None:
-    """Add `--law` and `--clock`; `also` is appended to the help and names further values of
-    `--law`.
+    """Add `--law` and `--clock`.
+
+    `also` is appended to the help and names further values of `--law`.
     """
     add_law_name(parser, "journal", f"base law: {', '.join(laws())} (journal){also}")
     parser.add_argument(

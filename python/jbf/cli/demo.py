@@ -35,8 +35,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def called(started: str) -> str:
-    """Return the shell command that starts this program: its name if on the search path, else its
-    path.
+    """Return the shell command that starts this program.
+
+    It is the name if the shell finds it, otherwise the path.
 
     Parameters
     ----------

@@ -105,8 +105,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report | None) -> Fit:
-    """Return the fit with bootstrap standard errors; raise `Stopped` with the fit if
-    interrupted.
+    """Return the fit with bootstrap standard errors.
+
+    Raise `Stopped` with the fit if interrupted.
     """
     from jbf.estimation.bootstrap import bootstrap
 

@@ -62,8 +62,9 @@ def _fits(run: Run, pattern: str) -> bool:
 
 
 def left(model: Model, held: Sequence[Run]) -> dict[str, Any]:
-    """Return the error of a model on the held-out runs as data for JSON; empty without such
-    runs.
+    """Return the error of a model on the held-out runs as data for JSON.
+
+    Empty without such runs.
     """
     if not held:
         return {}

@@ -80,8 +80,9 @@ def _check(on: Rig, law: str | None) -> None:
 
 
 def rig(path: str, law: str | None) -> Rig:
-    """Read a rig file and check that it is complete for a law; no check if the data select the
-    law.
+    """Read a rig file and check that it is complete for a law.
+
+    No check if the data select the law.
     """
     _refuse_csv(path, "RIG")
     try:
@@ -115,8 +116,9 @@ def model(path: str) -> Model:
 
 
 def runs(items: Sequence[str], on: Rig, *, first: str) -> list[Run]:
-    """Read the runs on a rig from files, folders and patterns; `first` is the preceding
-    argument.
+    """Read the runs on a rig from files, folders and patterns.
+
+    `first` is the preceding argument.
     """
     for item in items:
         _refuse_toml(item, first)

@@ -159,8 +159,7 @@ def keep(stop: Stopped, out: str | None) -> Kept:
 def keep_unfinished(
     end: Unfinished, out: str | None, json: str | None = None, report: str | None = None
 ) -> Unfinished:
-    """Write the partial results to the paths of the complete ones, and extend the error
-    accordingly.
+    """Write the partial results to the paths of the complete ones, and add that to the error.
 
     Parameters
     ----------

@@ -7,9 +7,7 @@ from jbf import _core
 _CORE = _core.control_constants()
 
 DRIVE = _CORE["drive"]
-"""a, b, friction scale and largest input of the thesis's drive, keyed by the attributes of
-`Bench`.
-"""
+"""a, b, friction scale and largest input of the thesis's drive, with the names of `Bench`."""
 
 COUNTS_PER_RAD = _CORE["counts_per_rad"]
 COUNTER_BITS = _CORE["counter_bits"]

@@ -20,8 +20,7 @@ def gains(task: Task, bench: Bench) -> tuple[float, float]:
 
 
 def core_loop(task: Task, bench: Bench, guard: Settings | None) -> dict[str, Any]:
-    """Return the arguments from which the core builds encoder, velocity observer, control law and
-    limits.
+    """Return the core's arguments for encoder, velocity observer, control law and limits.
 
     Without a `guard`, a compensator is stopped only by a jump of the counter, as in the thesis.
     """

@@ -49,9 +49,7 @@ PRINTED_PEAK: dict[str, tuple[float | None, float | None, float | None]] = {
 """Peak errors printed in the thesis, in the same order and units."""
 
 _FARTHEST = 3.0
-"""Limit of the fit in logarithms: parameters stay within a factor of 20 of their starting
-values.
-"""
+"""Largest change of a fitted parameter's logarithm, a factor of 20."""
 
 
 @dataclass(frozen=True)
@@ -92,8 +90,9 @@ class Tables:
         return replace(other, cells={**self.cells, **other.cells})
 
     def gains(self) -> dict[str, float]:
-        """Return, by row, the true RMS of the better of the thesis's schemes over that of
-        `observed`.
+        """Return the improvement over the thesis's schemes, by row.
+
+        It is the true RMS of the better of the two schemes over that of `observed`.
         """
         return {
             row: min(self[row, "learning"].true_rms, self[row, "coulomb"].true_rms)
@@ -181,8 +180,9 @@ def tables(
     seeds: int = 5,
     report: Report | None = None,
 ) -> Tables:
-    """Compute both tables on a bench with a friction model; `schemes` fill the columns of their
-    names.
+    """Compute both tables on a bench with a friction model.
+
+    `schemes` fill the columns of their names.
 
     A cell is the root mean square over several seeds of the noise. Where the shaft reverses within
     one encoder count, the noise decides when, and a single run is not representative.

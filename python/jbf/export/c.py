@@ -20,8 +20,9 @@ C = Language(
 
 
 def c(model: Model, source: str = "a model") -> str:
-    """Return a C header for `jbf.h`: constants, and `model_f32_init`, `model_f64_init` and their
-    steps.
+    """Return a C header for `jbf.h`.
+
+    It contains constants, `model_f32_init`, `model_f64_init` and their steps.
 
     Parameters
     ----------

@@ -53,8 +53,9 @@ class BinAxis:
 
 
 def bin_axis(failure: Failure, said: Quantities = OF_BEARING) -> BinAxis:
-    """Return the plot coordinates of a failure's bins: numerical if known, otherwise
-    categorical.
+    """Return the plot coordinates of a failure's bins.
+
+    They are numerical if known, otherwise categorical.
     """
     name = _names(said)[failure.axis]
     series = tuple(_series(b, failure.axis) for b in failure.bins)
@@ -80,8 +81,9 @@ def _series(b: Bin, axis: Axis) -> str:
 
 
 def _tick(b: Bin, axis: Axis) -> str:
-    """Return the tick label of a bin, on two lines where that helps; the unit is in the axis
-    label.
+    """Return the tick label of a bin, on two lines where that helps.
+
+    The unit is in the axis label.
     """
     if b.span is None:
         return b.name or label(axis, b)

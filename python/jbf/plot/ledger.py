@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 
 
 def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
-    """Plot fit and held-out error of each step of the ledger, one row each, on a logarithmic
-    scale.
+    """Plot fit and held-out error of each step of the ledger, one row each.
 
-    Equal factors have equal lengths, so that the last steps remain visible next to the first.
+    On the logarithmic scale equal factors have equal lengths, so that the last steps
+    remain visible next to the first.
     """
     steps = diagnosis.steps
     ax = one_axes(ax, (9.0, 1.3 + 0.42 * len(steps)))

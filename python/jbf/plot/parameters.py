@@ -68,8 +68,7 @@ def intervals(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """Plot each parameter's standard error in percent of its value, and estimates of repeated
-    fits.
+    """Plot each parameter's standard error (percent of its value), and repeated estimates.
 
     A parameter with value zero or without a standard error is an open marker. `called` contains
     displayed names and units.

@@ -35,8 +35,9 @@ def ranking_height(step: Step) -> float:
 
 
 def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> Axes:
-    """Plot the candidates tried at a step of the ledger, strongest first; long lists are
-    truncated.
+    """Plot the candidates tried at a step of the ledger, strongest first.
+
+    Long lists are truncated.
 
     Parameters
     ----------

@@ -102,7 +102,5 @@ ADVICE = {
 
 
 def advice_on(axis: str) -> Advice:
-    """Return the advice for a residual pattern along an axis, or for residual structure of that
-    kind.
-    """
+    """Return the advice for residual structure along an axis, or of the kind of that name."""
     return ADVICE.get(axis, NONE)

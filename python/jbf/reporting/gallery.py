@@ -38,8 +38,7 @@ LEAST_SHARE = 0.08
 UNCONFIRMED = "predicts runs left out no better"
 """Wording of the reason for a candidate that fits better but is rejected."""
 CONFIRMED = 0.6
-"""Total share of a pattern from which the effects are named as its full cause, not as part of it.
-"""
+"""Total share of a pattern from which the effects are named as its full cause, not a part."""
 SEEN_ALONG = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
 
 TITLES = {

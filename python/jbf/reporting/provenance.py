@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from jbf.records.run import Run
 
 SHOWN = 16
-"""Number of hexadecimal digits shown of a file's hash; the hash over all samples is shown in
-full.
+"""Number of hexadecimal digits shown of a file's hash.
+
+The hash over all samples is shown in full.
 """
 
 

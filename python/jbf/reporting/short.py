@@ -16,8 +16,9 @@ from jbf.reporting.tables import shown_names
 from jbf.reporting.words import against_noise, number, value_and_error
 
 LONGEST = 120
-"""Maximum length in characters of a list that grows with the model; a line has at most two of
-them.
+"""Maximum length in characters of a list that grows with the model.
+
+A line has at most two of them.
 """
 
 

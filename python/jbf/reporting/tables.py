@@ -1,6 +1,4 @@
-"""Table rows shared by the text and HTML reports: parameters, correlations, the ledger and
-others.
-"""
+"""Table rows shared by the text and HTML reports: parameters, correlations, ledger, power."""
 
 from __future__ import annotations
 

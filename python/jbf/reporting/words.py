@@ -243,8 +243,9 @@ def held_out_sentence(diagnosis: Diagnosis) -> str:
 
 
 def extrapolation_sentences(diagnosis: Diagnosis) -> list[str]:
-    """Describe each run that exceeds the range of all others: its extrapolation error, and its
-    test.
+    """Describe each run that exceeds the range of all others.
+
+    The text states its extrapolation error, and how it is tested.
     """
     unit = diagnosis.model.rig.quantities.force
     return [

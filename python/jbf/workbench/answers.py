@@ -47,8 +47,9 @@ def of_model(comparison: Comparison) -> Answer:
 
 
 def _stribeck(comparison: Comparison) -> Answer:
-    """Return friction against speed: means of record and model per direction, steady curve,
-    regimes.
+    """Return friction against speed.
+
+    The data are the means of record and model per direction, the steady curve, and the regimes.
     """
     ways = [
         {name: value.tolist() if name != "way" else value for name, value in vars(own).items()}
@@ -59,8 +60,9 @@ def _stribeck(comparison: Comparison) -> Answer:
 
 
 def _steady_curve(comparison: Comparison) -> Answer | None:
-    """Return the law at steady speeds in the range of the runs; None if the law has no steady
-    curve.
+    """Return the law at steady speeds in the range of the runs.
+
+    None if the law has no steady curve.
     """
     model = comparison.model
     motions = [p.motion.velocity_m_s for p in comparison.campaign.prepared]

@@ -37,8 +37,9 @@ SI_OF = {
 
 
 def looked(folder: Folder, name: str) -> dict[str, Any]:
-    """Guess the map of a file; returns its text, open questions, and a name for the new
-    campaign.
+    """Guess the map of a file.
+
+    Returns its text, open questions, and a name for the new campaign.
     """
     stem = PurePosixPath(name).stem
     names = chain([stem], (f"{stem}_{k}" for k in count(2)))

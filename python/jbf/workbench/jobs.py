@@ -19,9 +19,7 @@ Ending = Literal["done", "error", "stopped"]
 Ended = Callable[[Ending, Any], None]
 Part = Callable[[Any], None]
 PATIENCE_S = 20.0
-"""Time after which a process is killed that was requested to stop and has not sent its best
-result.
-"""
+"""Time in seconds between the request to stop and the kill of a process without a result."""
 
 
 @dataclass

@@ -116,7 +116,9 @@ def form_of(text: str) -> dict[str, Any]:
 
 
 def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> str:
-    """Return the text with other columns and rig values (such as `drive.pitch_m` to a number).
+    """Return the text with other columns and rig values.
+
+    `rig` maps names such as `drive.pitch_m` to numbers.
 
     If the columns imply a different machine, its sections are guessed again; values already filled
     in are kept.

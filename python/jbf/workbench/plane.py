@@ -20,8 +20,9 @@ MARGIN = 0.04
 
 @dataclass(frozen=True)
 class Frame:
-    """Pixel grid over a rectangle of the plane: `x` is speed, `y` is force, row 0 is at the
-    bottom.
+    """Pixel grid over a rectangle of the plane.
+
+    `x` is the speed, `y` is the force; row 0 is at the bottom.
     """
 
     left: float

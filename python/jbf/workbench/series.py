@@ -82,8 +82,9 @@ def drawn(seen: Seen, from_s: float | None, to_s: float | None, pixels: int) -> 
 
 
 def listed(values: Sequence[float] | Array, digits: int = DIGITS) -> list[float | None]:
-    """Convert values for JSON: round to the displayed precision, replace non-finite values by
-    None.
+    """Convert values for JSON.
+
+    They are rounded to the displayed precision; non-finite values become None.
     """
     array = np.asarray(values, dtype=float)
     finite = np.isfinite(array)

@@ -179,8 +179,9 @@ class Session:
         return Path(self._kept.name) / str(self._places)
 
     def _added(self, answer: Any, parent: int | None, how: str, law: str, place: Path) -> int:
-        """Add a model to the tree; `law` is the requested law, `how` the prefix of the model's
-        label.
+        """Add a model to the tree.
+
+        `law` is the requested law, `how` the prefix of the model's label.
         """
         named = " + ".join([answer["law"], *answer["effects"]])
         with self.lock:
@@ -277,8 +278,9 @@ class Session:
 
 
 def first_law(rig: Rig) -> str:
-    """Return the initial law of a rig: `auto` for a drive, `journal` if the bearing data are
-    complete.
+    """Return the initial law of a rig.
+
+    It is `auto` for a drive, `journal` if the bearing data are complete, otherwise `stribeck`.
     """
     if rig.drive is not None:
         return AUTO

@@ -29,8 +29,9 @@ class Stretch:
 
     @classmethod
     def between(cls, time_s: Array, from_s: float, to_s: float, pixels: int) -> Stretch:
-        """Return the samples between two instants, with one more at each end for continuous
-        lines.
+        """Return the samples between two instants.
+
+        One more sample at each end makes lines continuous.
         """
         first = max(int(np.searchsorted(time_s, from_s)) - 1, 0)
         end = min(int(np.searchsorted(time_s, to_s, side="right")) + 1, len(time_s))

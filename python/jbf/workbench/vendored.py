@@ -27,8 +27,9 @@ HERE = Path(__file__).resolve().parent / "vendored_files"
 
 
 def file(name: str) -> Path | None:
-    """Return the path of one of the files; None if the name is unknown or the file was not
-    fetched.
+    """Return the path of one of the files.
+
+    None if the name is unknown or the file was not fetched.
     """
     path = HERE / name
     return path if name in FILES.values() and path.is_file() else None

@@ -1,6 +1,4 @@
-"""`jbf control run|tables|tune|robustness`: control loops on the simulated bench, one module
-each.
-"""
+"""`jbf control run|tables|tune|robustness`: control loops on the simulated bench."""
 
 from __future__ import annotations
 
@@ -10,7 +8,7 @@ from jbf.cli.control import robustness, run, tables, tune
 
 
 def add(commands: Commands) -> None:
-    """Add the commands to the parser; without an action, `tables` is run."""
+    """Add the actions to the parser, one module each; without an action, `tables` is run."""
     parser = command(commands, "control", COMMANDS["control"], tables.run)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", parser_class=type(parser))
     tables.add_options(parser)

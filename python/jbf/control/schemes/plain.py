@@ -25,9 +25,7 @@ class NoCompensation(Unguarded):
 
 @dataclass(frozen=True)
 class Coulomb(Unguarded):
-    """Coulomb friction observer (6.1) with gain k_F, exponent p, and a limit of the learned
-    level.
-    """
+    """Coulomb friction observer (6.1): gain k_F, exponent p, limit of the learned level."""
 
     gain: float = 0.01
     exponent: float = 1.0

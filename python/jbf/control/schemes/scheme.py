@@ -18,14 +18,16 @@ class Scheme(Protocol):
         ...
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """Return the arguments from which the core builds its compensator; `kind` selects its
-        type.
+        """Return the arguments from which the core builds its compensator.
+
+        `kind` selects its type.
         """
         ...
 
     def guard(self, bench: Bench) -> Settings | None:
-        """Return the settings whose `moving_v` and `patience_s` guard the loop; None for no
-        guard.
+        """Return the settings whose `moving_v` and `patience_s` guard the loop.
+
+        None for no guard.
         """
         ...
 

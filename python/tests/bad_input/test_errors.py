@@ -37,7 +37,7 @@ def test_suggestion_ignores_case_and_lists_the_known_words_if_none_is_similar() 
     assert did_you_mean("xyz", ["coulomb", "stribeck"]) == "known: coulomb, stribeck"
 
 
-def test_quoted_text_has_escaped_control_characters_and_at_most_40_characters() -> None:
+def test_quoted_text_escapes_control_characters_and_is_truncated_to_40_characters() -> None:
     assert quoted("a\x1b[31m") == '"a\\x1b[31m"'
     assert quoted("x" * 40) == f'"{"x" * 40}"'
     assert quoted("x" * 41) == f'"{"x" * 37}..."'

@@ -42,7 +42,7 @@ def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys
     assert level["chance"] <= 0.01 / level["candidates"]
 
 
-def test_diagnosis_that_exceeds_its_budget_writes_what_is_known(
+def test_diagnosis_beyond_the_work_limit_writes_the_partial_result_and_exits_with_2(
     slide: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(work, "ANY_STEPS", 1e6)

@@ -66,7 +66,7 @@ def test_inertia_adds_mass_times_acceleration(runs: list[Run]) -> None:
         assert added[5:-5] == pytest.approx(mass_force[5:-5], abs=1e-3)
 
 
-def test_friction_alone_is_the_record_minus_sensor_offset_and_drift(full: Comparison) -> None:
+def test_isolated_friction_is_the_record_minus_sensor_offset_and_drift(full: Comparison) -> None:
     assert beside_friction(full) == ("sensor_offset", "sensor_drift")
     for found, p in zip(friction_alone(full), full.campaign.prepared, strict=True):
         v = p.motion.velocity_m_s
@@ -75,7 +75,7 @@ def test_friction_alone_is_the_record_minus_sensor_offset_and_drift(full: Compar
         assert found == pytest.approx(5.0 * np.sign(v) + 20.0 * v, abs=2e-3)
 
 
-def test_friction_alone_excludes_offset_inertia_and_drift_but_not_lag() -> None:
+def test_isolated_friction_excludes_offset_inertia_and_drift_but_not_lag() -> None:
     effects = ["sensor_offset", "inertia_leak", "sensor_lag", "sensor_drift"]
     found = compare(Model(Rig(), "coulomb", effects), there_and_back(coulomb))
     assert set(beside_friction(found)) == {"sensor_offset", "inertia_leak", "sensor_drift"}

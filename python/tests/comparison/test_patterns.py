@@ -44,7 +44,7 @@ def test_bin_means_use_only_counted_samples_that_have_a_bin() -> None:
     assert means.tolist() == [3.0, 0.0, -4.5]
 
 
-def test_pattern_share_is_the_explained_square_less_one_variance_per_bin() -> None:
+def test_pattern_share_is_the_explained_square_minus_one_variance_per_bin() -> None:
     """Of a sum of squares of 95 N^2, three bins of ten samples explain 50 N^2."""
     axis = binned(RUNS[:4], [0] * 10 + [1] * 10 + [2] * 10 + [-1] * 5)
     residuals = np.repeat([2.0, -1.0, 0.0, 3.0], [10, 10, 10, 5])

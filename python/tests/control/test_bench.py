@@ -61,7 +61,7 @@ def test_velocity_loop_without_friction_has_the_analytical_transfer_function() -
     assert abs(response - closed_loop) < 0.01
 
 
-def test_shaft_under_less_than_breakaway_voltage_rests_for_ten_minutes() -> None:
+def test_shaft_below_the_breakaway_voltage_stays_at_rest_for_ten_minutes() -> None:
     """An error of 0.1 rad gives 0.19 V; the bearings hold 0.76 V."""
     task = replace(TASKS["position sine"], seconds=600.0)
     held = (np.full(300_000, 0.1), np.zeros(300_000))
@@ -82,7 +82,7 @@ def test_friction_of_a_sliding_shaft_equals_the_coulomb_law_in_volts() -> None:
     assert r.friction_v[1:][sliding] == pytest.approx(expected[sliding], abs=0.01)
 
 
-def test_measured_angle_is_a_whole_number_of_encoder_counts() -> None:
+def test_measured_angle_is_an_integer_number_of_encoder_counts() -> None:
     r = run(None, "observed", SHORT)
     counts = r.measured_angle_rad * THESIS_BENCH.counts_per_rad
     assert counts == pytest.approx(np.round(counts), abs=1e-6)

@@ -62,7 +62,7 @@ def test_result_of_a_run_has_errors_in_json_and_all_samples_in_csv() -> None:
 
 
 @pytest.mark.parametrize(("seconds", "steps"), [(1.0, 500), (0.0031, 2), (1e-4, 1)])
-def test_run_has_one_sample_per_step_and_at_least_one(seconds: float, steps: int) -> None:
+def test_run_has_one_sample_per_step_and_a_run_shorter_than_a_step_has_one(seconds: float, steps: int) -> None:
     r = run(None, "none", replace(SHORT, seconds=seconds, skip_s=0.0))
     assert r.time_s == pytest.approx(0.002 * np.arange(steps))
     assert len(r.output_v) == len(r.reference) == steps
@@ -77,7 +77,7 @@ def test_given_reference_replaces_the_wave_of_a_task_and_sets_its_length() -> No
     assert np.array_equal(run(None, "none", GIVEN, reference=(VALUE, RATE)).reference, VALUE)
 
 
-def test_observed_compensator_has_less_error_if_the_reference_rate_is_given() -> None:
+def test_observed_compensator_error_is_smaller_if_the_reference_rate_is_given() -> None:
     with_rate, without_rate = (
         run(None, "observed", GIVEN, reference=(VALUE, rate)) for rate in (RATE, 0.0 * RATE)
     )

@@ -147,7 +147,7 @@ def test_observed_compensator_with_a_coarse_encoder_reduces_the_error(
         assert ours < none, row
 
 
-def test_observed_compensator_has_less_error_if_it_starts_from_the_learned_level() -> None:
+def test_observed_compensator_error_is_smaller_if_started_from_the_learned_level() -> None:
     halved = thesis_model(f_m=0.13)
     level = float(run(None, Observed(halved), SHORT).learned_0[-1])
     assert level > 0.1

@@ -151,7 +151,7 @@ def test_fit_of_the_uncompensated_cells_recovers_the_friction_of_the_bench() -> 
 
 
 @pytest.mark.extended
-def test_journal_clock_fits_the_uncompensated_cells_slightly_worse() -> None:
+def test_largest_error_of_the_uncompensated_cells_is_19_percent_on_the_journal_clock() -> None:
     """The documentation states 19 % for the worst cell on the journal clock."""
     on_the_thesis_clock = max(abs(c.ratio - 1.0) for c in simulated_tables().column("none"))
     assert on_the_thesis_clock < on_the_journal_clock() == pytest.approx(0.19, abs=0.01)

@@ -24,7 +24,7 @@ def test_friction_level_is_the_friction_at_five_millimetres_per_second() -> None
 
 
 @pytest.mark.parametrize("asymmetry", [-0.4, 0.4])
-def test_friction_level_is_that_of_the_direction_with_more_friction(asymmetry: float) -> None:
+def test_friction_level_is_that_of_the_direction_with_larger_friction(asymmetry: float) -> None:
     values = {n: p.value for n, p in DRY.parameters.items()}
     uneven = Model(Rig(), "coulomb", ["dry_asymmetry"], values | {"dry_asymmetry.a": asymmetry})
     assert friction_level_v(uneven, VOLT) == pytest.approx(7.1 / 5.1, rel=1e-3)

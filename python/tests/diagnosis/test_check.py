@@ -26,7 +26,7 @@ def _model() -> Model:
 
 
 @pytest.mark.parametrize("campaigns", [1, pytest.param(8, marks=pytest.mark.extended)])
-def test_strong_effect_is_named_in_each_campaign_that_simulates_it_only(campaigns: int) -> None:
+def test_strong_effect_is_named_in_all_and_only_the_campaigns_that_simulate_it(campaigns: int) -> None:
     with ThreadPoolExecutor(1) as executor:
         checked = check(_model(), RUNS, campaigns=campaigns, executor=executor)
     hidden = [answer.hidden for answer in checked.answers]
@@ -72,7 +72,7 @@ def test_answer_of_a_check_is_unchanged_after_writing_and_reading_json() -> None
     assert answer_of(json.loads(json.dumps(answer.to_dict()))) == answer
 
 
-def test_failed_diagnosis_is_not_right_even_if_no_effect_is_simulated() -> None:
+def test_failed_diagnosis_counts_as_wrong_even_if_no_effect_is_simulated() -> None:
     assert not Answer((), 0, "failed", (), {}).right
     assert Answer((), 0, "adequate", (), {}).right
 
@@ -155,7 +155,7 @@ def test_interrupted_check_continues_from_its_answers(command: list[str], tmp_pa
     assert len(kept.read_text().splitlines()) == 2
 
 
-def test_machine_of_a_drive_counts_as_found() -> None:
+def test_machine_terms_of_a_drive_count_as_identified_effects_in_a_check() -> None:
     """A model with inertia and weight, on the runs of a joint that is driven to and fro."""
     rig = Rig(drive=Drive("rotary", "torque"))
     time = np.arange(0.0, 12.0, 0.02)

@@ -23,7 +23,7 @@ def candidates(runs: int, offset_n: float, seconds: float = 6.0) -> Candidates:
     return Candidates(Campaign.prepare(Rig(), recorded), "coulomb", "journal")
 
 
-def test_chance_is_that_of_a_t_test_over_runs() -> None:
+def test_p_value_of_a_confirmation_is_that_of_a_one_sided_t_test_over_runs() -> None:
     tried = candidates(8, 0.03)
     found = tried.confirmation((), OFFSET)
     without, with_it = (
@@ -36,18 +36,18 @@ def test_chance_is_that_of_a_t_test_over_runs() -> None:
     assert found.chance == pytest.approx(expected, rel=1e-6)
 
 
-def test_strokes_are_the_units_of_few_runs() -> None:
+def test_strokes_are_the_independent_units_if_there_are_few_runs() -> None:
     """Three runs of six seconds at 2, 2.2 and 2.4 rad/s have four or five strokes each."""
     found = candidates(3, 0.3).confirmation((), OFFSET)
     assert 12 <= found.units <= 15
     assert found.units_confirm(1e-3)
 
 
-def test_effect_that_is_absent_is_not_confirmed() -> None:
+def test_absent_effect_is_not_confirmed() -> None:
     assert not candidates(12, 0.0).confirmation((), OFFSET).units_confirm(1e-3)
 
 
-def test_fewer_than_six_units_confirm_nothing() -> None:
+def test_effect_is_not_confirmed_by_fewer_than_six_units() -> None:
     """Two runs of less than two strokes each."""
     found = candidates(2, 1.0, seconds=1.5).confirmation((), OFFSET)
     assert found.units < 6

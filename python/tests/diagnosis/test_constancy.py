@@ -250,7 +250,7 @@ def test_parameters_agree_in_runs_of_one_bearing(effects: tuple[str, ...], colou
     assert find_disagreement(problem, solution, DEFAULT) == []
 
 
-def test_run_with_eight_percent_more_force_is_reported_as_deviating() -> None:
+def test_run_with_an_eight_percent_larger_force_is_reported_as_deviating() -> None:
     rig, runs, _ = simulated(11)
     changed = replace(runs[2], friction_n=1.08 * np.asarray(runs[2].friction_n))
     (found,) = find_disagreement(*fitted(rig, [*runs[:2], changed, *runs[3:]]), DEFAULT)

@@ -30,7 +30,7 @@ def trial(found: Diagnosis, effect: str, step: int = 0) -> Trial:
     return next(t for t in found.steps[step].trials if t.effect == effect)
 
 
-def test_evidence_is_twice_the_log_likelihood_gain_less_the_threshold() -> None:
+def test_evidence_is_twice_the_log_likelihood_gain_minus_the_threshold() -> None:
     found, book = linear_diagnosis("weak mass"), Textbook(linear_runs("weak mass"))
     assert len(found.steps[0].trials) == CANDIDATES
     assert 35.0 < book.gain() < 80.0
@@ -39,7 +39,7 @@ def test_evidence_is_twice_the_log_likelihood_gain_less_the_threshold() -> None:
     assert (found.verdict, found.effects) == ("missing", ("inertia_leak",))
 
 
-def test_effect_that_gains_nothing_has_minus_its_threshold_as_evidence() -> None:
+def test_evidence_of_an_effect_without_gain_is_minus_its_threshold() -> None:
     found, samples = linear_diagnosis("nothing"), Textbook(linear_runs("nothing")).samples
     thresholds = {round(threshold(k, samples), 2) for k in range(4)}
     for each in found.steps[0].trials:
@@ -126,7 +126,7 @@ def _offset_runs(offset_n: float) -> list[Run]:
     return four_runs(lambda t, v, a: coulomb(t, v, a) + offset_n, noise_n=0.1)
 
 
-def test_evidence_is_likelihood_gain_times_independent_share_less_threshold() -> None:
+def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -> None:
     """A mass that only one run has: its score varies far more than in white noise."""
     candidates = coulomb_candidates(linear_runs("mass in one run"))
     simple, rich = candidates.converge(()), candidates.converge(("inertia_leak",))

@@ -53,12 +53,12 @@ def test_proposed_sines_have_two_periods_and_respect_the_acceleration_limit() ->
             assert found[sine(speed, w)].velocity_m_s == pytest.approx(speed * np.sin(w * time_s()))
 
 
-def test_sine_may_exceed_the_acceleration_limit_by_at_most_one_percent() -> None:
+def test_sine_exceeds_the_acceleration_limit_by_no_more_than_one_percent() -> None:
     assert sine(0.1, 2.0) not in motions(sharp=0.1975)
     assert sine(0.1, 2.0) in motions(sharp=0.1985)
 
 
-def test_one_way_motions_start_with_half_the_acceleration_limit() -> None:
+def test_unidirectional_motions_start_with_half_the_acceleration_limit() -> None:
     """From rest to 0.1 m/s in one second."""
     found, t = motions(), time_s()
     start = np.minimum(t, 1.0)
@@ -97,7 +97,7 @@ def test_mixed_motion_is_stop_and_go_then_a_fast_and_a_short_sine() -> None:
     assert sum(", then " in words for words in found) == 6
 
 
-def test_mixed_motion_requires_a_least_duration_and_acceleration() -> None:
+def test_mixed_motion_requires_a_minimum_duration_and_acceleration() -> None:
     # 26 s of stop and go, a whole wave of 3.14 s, and as much again.
     assert not any(", then " in words for words in motions(duration_s=32.2))
     assert any(", then " in words for words in motions(duration_s=32.4))

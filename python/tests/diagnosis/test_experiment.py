@@ -71,7 +71,7 @@ def residual_square_after_fit(
 
 
 @pytest.mark.parametrize("pairs", [1, 2])
-def test_proposed_run_maximises_the_least_separation_of_the_rivals(pairs: int) -> None:
+def test_proposed_run_maximises_the_smallest_separation_between_rivals(pairs: int) -> None:
     """Each model of a pair may be the truth; models of different pairs are not compared."""
     tried, groups = four_effects(), (PAIR, OTHER)[:pairs]
     limits, step_s = filled_limits(tried, LIMITS)
@@ -99,7 +99,7 @@ def test_separation_of_a_proposed_run_is_the_root_mean_square_difference() -> No
     assert found.separation_n == pytest.approx(found.separation_sigma * noise_n)
 
 
-def test_run_that_separates_less_than_the_policy_requires_is_not_proposed() -> None:
+def test_run_with_a_separation_below_the_policy_limit_is_not_proposed() -> None:
     evidence = proposed(1).evidence
     enough, too_little = (
         propose(four_effects(replace(DEFAULT, least_separation=part * evidence)), [PAIR], LIMITS)
@@ -214,7 +214,7 @@ def test_probability_to_name_an_effect_is_the_mean_over_three_strengths(evidence
     assert chance_to_name(evidence, 32.0) == pytest.approx(float(expected), abs=1e-6)
 
 
-def test_proposed_run_has_the_largest_expected_number_of_effects_found() -> None:
+def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> None:
     names = ("inertia_leak", "presliding", "sensor_nonlinearity")
     tried = no_effect()
     limits, step_s = filled_limits(tried, LIMITS)
@@ -294,7 +294,7 @@ def candidates_of(*steps_s: float, position: bool = False) -> Candidates:
     return coulomb_candidates(records)
 
 
-def test_planned_run_has_the_median_step_of_the_runs_and_6000_samples_at_most() -> None:
+def test_planned_run_has_the_median_step_of_the_runs_and_up_to_6000_samples() -> None:
     tried = candidates_of(0.01, 0.02, 0.05)
     limits, step_s = filled_limits(tried, None)
     assert step_s == pytest.approx(0.02)

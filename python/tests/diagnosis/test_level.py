@@ -108,7 +108,7 @@ def test_direction_of_an_effect_is_of_unit_length_and_orthogonal_to_the_law() ->
     assert Directions.of(noise, LAW[:, :1], LAW, SAMPLES, 1.0).ways.shape[1] == 0
 
 
-def test_score_counts_less_if_the_noise_is_larger_where_the_effect_acts() -> None:
+def test_weight_of_a_score_is_reduced_if_the_noise_is_larger_where_the_effect_acts() -> None:
     """The effect shows only in a tenth of the samples, where the noise is five times as large."""
     here = np.arange(RUNS * N) % 400 < 40
     noise: Array = np.where(here, 5.0, 1.0) * _white(np.random.default_rng(2))
@@ -126,7 +126,7 @@ def _level(false_alarms: float = 0.01) -> Level:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("noise", NOISES)
-def test_false_alarm_rate_is_at_most_nominal_in_four_kinds_of_noise(noise: str) -> None:
+def test_false_alarm_rate_does_not_exceed_the_nominal_rate_in_four_kinds_of_noise(noise: str) -> None:
     campaigns, false = 120, 0
     for seed in range(campaigns):
         directions = _directions(NOISES[noise](np.random.default_rng(seed)))
@@ -301,7 +301,7 @@ def test_search_reports_a_further_effect_beyond_the_largest_number() -> None:
 
 
 @pytest.mark.extended
-def test_alternative_below_the_least_weight_of_the_policy_is_not_reported() -> None:
+def test_alternative_below_the_minimum_weight_of_the_policy_is_not_reported() -> None:
     tied = linear_diagnosis("lag")
     (effect,) = tied.effects
     (other,) = tied.alternatives[effect]

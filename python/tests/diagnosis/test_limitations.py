@@ -23,7 +23,7 @@ def to_and_fro(low: float, high: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("sign", "expected"), [(1.0, True), (-1.0, True), (0.0, False)])
-def test_one_direction_is_reported(sign: float, expected: bool) -> None:
+def test_motion_in_one_direction_is_reported_as_a_limitation(sign: float, expected: bool) -> None:
     speed = to_and_fro(0.001, 0.2)
     speed = sign * np.abs(speed) if sign else speed
     assert ("one direction" in said(speed)) == expected
@@ -32,14 +32,14 @@ def test_one_direction_is_reported(sign: float, expected: bool) -> None:
 @pytest.mark.parametrize(
     ("high", "expected"), [(0.0011, "hardly changes"), (0.005, "less than a decade"), (0.2, "")]
 )
-def test_narrow_range_of_speeds_is_reported(high: float, expected: str) -> None:
+def test_narrow_range_of_speeds_is_reported_as_a_limitation(high: float, expected: str) -> None:
     found = said(to_and_fro(0.001, high))
     assert expected in found
     assert bool(found) == bool(expected)
 
 
 @pytest.mark.parametrize(("stiffness", "expected"), [(1.0e2, True), (1.0e6, False)])
-def test_strokes_within_the_presliding_displacement_are_reported(
+def test_strokes_within_the_presliding_displacement_are_reported_as_a_limitation(
     stiffness: float, expected: bool
 ) -> None:
     found = said(to_and_fro(0.001, 0.2), F_c_n=3.0, sigma_0_n_m=stiffness)

@@ -52,7 +52,7 @@ def test_weight_and_inertia_of_a_drive_are_its_machine_and_no_missing_effects() 
     assert_machine_is_found(found)
 
 
-def test_weight_and_inertia_without_a_drive_are_found_together() -> None:
+def test_weight_and_inertia_of_a_rig_without_a_drive_are_both_named_as_effects() -> None:
     """Neither of them alone has evidence; without [drive] they are named."""
     found = diagnose(Rig(), RUNS, law="coulomb")
     assert set(found.effects) == {"inertia_leak", "gravity"}
@@ -72,7 +72,7 @@ def test_effect_is_named_next_to_the_machine_of_a_drive() -> None:
     assert_machine_is_found(found)
 
 
-def test_machine_terms_that_the_runs_do_not_need_are_left_out() -> None:
+def test_machine_terms_without_influence_on_the_runs_are_omitted() -> None:
     rng = np.random.default_rng(3)
     runs = []
     for k in range(3):
@@ -98,7 +98,7 @@ def swept(size: float, hertz: float, rng: np.random.Generator) -> Run:
     return replace(made, quantities=DRIVE.quantities)
 
 
-def test_weight_is_found_next_to_a_large_inertia() -> None:
+def test_weight_is_identified_in_the_presence_of_a_large_inertia() -> None:
     """A search for all terms at once from their starting values ends at a weight of zero."""
     rng = np.random.default_rng(5)
     plan = ((0.6, 0.3), (0.4, 0.6), (0.8, 0.25), (0.5, 0.5), (0.3, 0.8), (0.7, 0.35))

@@ -226,7 +226,7 @@ def test_weight_of_an_outlier_is_that_of_huber(unit: float) -> None:
         (round(1.1 * 20.0 * special.ndtr(-4.0) * 50_000), 50_000, 10.0, True),
     ],
 )
-def test_heavy_tails_require_a_least_number_and_share_of_outliers(
+def test_heavy_tails_require_a_minimum_number_and_share_of_outliers(
     outliers: int, samples: int, heavy: float, found: bool
 ) -> None:
     _, sizes = _weights_of([_outliers(outliers, samples)], heavy)

@@ -127,7 +127,7 @@ def test_plan_reports_the_power_of_its_runs() -> None:
     assert table["power"] == [p.to_dict() for p in power]
 
 
-def test_plan_does_not_rely_on_exact_instants_of_reversals() -> None:
+def test_planned_power_allows_for_uncertain_instants_of_reversals() -> None:
     """A jump of 10 N in a noise of 0.2 N would show on which side of a reversal a sample lies."""
     found: dict[str, Any] = {p.effect: p.found_80 for p in planned().planned.power}
     assert found["backlash"] > 0.1 * 0.5 * SHARP_M_S2 * STEP_S**2

@@ -4,7 +4,7 @@ from jbf import Rig, diagnose
 from point_to_point import TRUTH, point_to_point
 
 
-def test_force_held_between_moves_makes_no_effect_and_no_residual_structure() -> None:
+def test_holding_force_between_moves_causes_neither_an_effect_nor_residual_structure() -> None:
     runs = point_to_point([6, 7], duration_s=12.0)
     found = diagnose(Rig(), runs, law="coulomb")
     assert (found.verdict, found.effects) == ("missing", ("inertia_leak",)), found.summary()

@@ -185,7 +185,7 @@ def test_diagnosis_reports_power_only_if_no_structure_is_unexplained() -> None:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("effect", ["inertia_leak", "sensor_drift"])
-def test_effect_of_detectable_strength_is_found_in_eighty_percent_of_campaigns(effect: str) -> None:
+def test_effect_of_detectable_strength_is_detected_in_eighty_percent_of_campaigns(effect: str) -> None:
     value: float = powers()[effect].found_80
 
     def friction(t: Array, v: Array, a: Array) -> Array:
@@ -246,7 +246,7 @@ def test_large_distinguishable_strength_depends_on_the_rival_only() -> None:
     assert times_alone(PRICE, 1, SQUARE, rivals, CHANCE) == pytest.approx(0.5 * NEVER, rel=0.01)
 
 
-def test_worth_of_a_change_counts_each_sample_with_at_most_three_sigma() -> None:
+def test_square_of_a_change_is_clipped_at_three_sigma_per_sample() -> None:
     assert worth(np.array([1.0, -2.0, 100.0])) == pytest.approx(1.0 + 4.0 + 9.0)
 
 

@@ -48,7 +48,7 @@ def axes_of(residuals: list[Array]) -> dict[str, float]:
 
 @pytest.mark.parametrize("noise", [WHITE, Noise(0.2, 0.5)])
 @pytest.mark.parametrize("seed", range(5))
-def test_no_structure_is_found_in_noise_that_the_model_describes(seed: int, noise: Noise) -> None:
+def test_no_structure_is_reported_in_noise_that_the_noise_model_describes(seed: int, noise: Noise) -> None:
     residuals = [noise.coloured(e, 0.02) for e in white_noise(sines(), seed)]
     assert find_remainder(*solution_with(sines(), residuals, noise=noise)) == ()
 
@@ -67,7 +67,7 @@ def test_no_structure_is_found_in_noise_that_the_model_describes(seed: int, nois
         ("stroke", stroke_levels()),
     ],
 )
-def test_each_kind_of_structure_is_found_in_white_noise(axis: str, structure: list[Array]) -> None:
+def test_each_kind_of_structure_is_detected_in_white_noise(axis: str, structure: list[Array]) -> None:
     first, second = white_noise(sines(), 3)
     assert axis in axes_of([first + structure[0], second + structure[1]])
 
@@ -110,7 +110,7 @@ def test_size_of_a_pattern_is_that_of_the_residual_and_not_of_the_innovations() 
     assert size == pytest.approx(2.0, abs=0.15)
 
 
-def test_burst_is_found_even_if_robust_weights_reduce_it() -> None:
+def test_burst_is_detected_even_if_robust_weights_reduce_it() -> None:
     residuals = white_noise(sines(), 4)
     inside = np.abs(TIME_S - 11.0) < 0.1
     residuals[0] = residuals[0] + 9.0 * inside

@@ -57,7 +57,7 @@ def runs_named(found: Remainder) -> list[str]:
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_error_that_recurs_with_the_motion_is_found_with_its_share(unit: float) -> None:
+def test_error_that_recurs_with_the_motion_is_reported_with_its_share(unit: float) -> None:
     """1.44 of a mean square of 2.44 recurs: 77 % of the RMS."""
     residual = unit * (1.2 * wave(N) + not_recurring(N))
     (found,) = recurring_in(residual)
@@ -77,7 +77,7 @@ def test_significance_of_a_recurring_error_is_the_root_of_the_pairs(unit: float)
         assert bool(recurring_in(unit * wave(N), replicate_sigma=sigma)) == found
 
 
-def test_recurring_error_in_part_of_the_record_is_less_significant() -> None:
+def test_significance_of_a_recurring_error_is_lower_if_it_covers_part_of_the_record() -> None:
     """The products then have a long-run variance above that of white noise."""
     residual = wave(9 * PERIOD) * np.repeat([1.0] * 6 + [0.0] * 3, PERIOD)
     (found,) = recurring_in(residual, replicate_sigma=1.0)

@@ -70,7 +70,7 @@ def pitch_and_size(found: Remainder) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_ripple_is_found_with_its_pitch_median_size_and_share(unit: float) -> None:
+def test_ripple_is_reported_with_its_pitch_median_size_and_share(unit: float) -> None:
     campaign, sizes = reversing(), [0.8, 0.9, 1.0, 1.1, 1.2]
     signals = [unit * x for x in waves(campaign, sizes)]
     (found,) = ripples_in(campaign, signals)
@@ -100,7 +100,7 @@ def test_only_the_larger_of_two_ripples_is_reported(friction_n: float) -> None:
     assert found.where.startswith("friction" if friction_n > 1.0 else "a force")
 
 
-def test_no_ripple_is_found_in_white_noise() -> None:
+def test_no_ripple_is_reported_in_white_noise() -> None:
     campaign = reversing()
     for seed in range(10):
         assert ripples_in(campaign, waves(campaign, [0.0] * 5, seed=seed)) == []

@@ -93,7 +93,7 @@ def test_offsets_of_runs_are_recovered_as_conditional_means_of_a_random_effect()
     np.testing.assert_allclose(estimates, offsets_n, atol=0.03)
 
 
-def test_random_offset_and_gain_are_found_in_successive_searches() -> None:
+def test_random_offset_and_gain_are_estimated_in_successive_searches() -> None:
     offsets_n, gains = deviates(0.3), deviates(0.03)[::-1]
     problem, solution = fitted(lambda i, t, f: gains[i] * f + offsets_n[i])
     once = clearest(problem, solution).campaign
@@ -143,7 +143,7 @@ def _four_runs(mass_kg: float, offsets_n: tuple[float, ...]) -> list[Run]:
     return runs
 
 
-def test_effect_and_offsets_that_differ_by_run_are_found_together() -> None:
+def test_effect_and_offsets_that_differ_by_run_are_identified_together() -> None:
     offsets_n = (0.5, -0.3, 0.1, -0.4)
     found = diagnose(Rig(), _four_runs(2.0, offsets_n), law="coulomb")
     assert found.effects == ("inertia_leak",)

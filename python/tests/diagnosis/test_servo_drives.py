@@ -76,7 +76,7 @@ def test_law_without_memory_is_selected_for_coulomb_friction() -> None:
     assert diagnosed(4060, law="auto").model.law == "coulomb"
 
 
-def test_laws_are_compared_at_samples_that_remember_how_a_run_began() -> None:
+def test_held_out_errors_of_a_law_include_samples_of_the_initial_state_transient() -> None:
     """An elastic law does not predict them; a model in use must."""
     rng = np.random.default_rng(4)
     time = 0.01 * np.arange(600)
@@ -102,7 +102,7 @@ def campaign_of(seed: int) -> tuple[servosim.Campaign, Campaign]:
     return simulated, Campaign.prepare(rig, runs)
 
 
-def test_noise_of_the_force_is_found_next_to_the_errors_of_the_motion() -> None:
+def test_force_noise_is_estimated_separately_from_the_motion_errors() -> None:
     """A smooth motion between corners, whose errors the smoother overestimates."""
     simulated, campaign = campaign_of(4013)
     problem = Problem(campaign, "coulomb", "journal", ["inertia_leak"])
@@ -131,7 +131,7 @@ def test_scale_of_the_motion_errors_is_that_of_the_true_errors_of_the_accelerati
     assert motion.scale == pytest.approx(true_scale, rel=0.2)
 
 
-def test_acceleration_jumps_at_reversals_of_a_hand_guided_drive() -> None:
+def test_acceleration_error_of_a_hand_guided_drive_is_small_next_to_reversal_jumps() -> None:
     """Friction jumps by twice its Coulomb level, and the acceleration with it."""
     simulated, campaign = campaign_of(4012)
     plant = simulated.drawn.plant

@@ -96,7 +96,7 @@ def test_part_of_a_change_beyond_the_law_is_a_regression_residual(
     assert sigma == pytest.approx(0.1, rel=0.15)
 
 
-def test_samples_next_to_jumps_count_less_with_an_effect_that_moves_them() -> None:
+def test_weight_of_samples_next_to_jumps_is_reduced_if_an_effect_moves_the_jumps() -> None:
     t = np.arange(0.0, 12.0, 0.02)
     v = 0.1 * np.sin(1.1 * t)
     tried = coulomb_candidates([coulomb_run(t, v, seed=1)])

@@ -124,7 +124,7 @@ def test_standard_deviation_of_stroke_levels_is_recovered() -> None:
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.9])
-def test_no_stroke_levels_are_found_in_white_or_coloured_noise(memory: float) -> None:
+def test_no_stroke_levels_are_reported_in_white_or_coloured_noise(memory: float) -> None:
     campaign = sines()
     for seed in range(10):
         assert levels_in(campaign, with_levels(campaign, 0.0, seed, memory)) == []
@@ -161,7 +161,7 @@ def test_stroke_levels_require_three_strokes_of_sixteen_samples(
     assert len(levels_in(campaign, residuals, constancy_chance=0.5)) == found
 
 
-def test_stroke_levels_are_found_next_to_short_strokes_and_short_runs() -> None:
+def test_stroke_levels_are_detected_in_a_campaign_with_short_strokes_and_short_runs() -> None:
     campaign = slides([square_wave([10, 40, 40, 40]), square_wave([40, 40])])
     level = np.repeat([0.0, 0.1, -0.1, 0.1], [10, 40, 40, 40]) + 1e-6 * (np.arange(130) % 7)
     first, second = friction_of(campaign)

@@ -47,7 +47,7 @@ def proposed(found: Proposal | None) -> Proposal:
     return found
 
 
-def test_price_of_a_term_shares_the_probability_among_ten_kinds() -> None:
+def test_threshold_of_a_term_shares_the_error_probability_among_ten_kinds() -> None:
     for parameters in (1, 5):
         expected = stats.chi2.isf(DEFAULT.deviation_chance / 10.0, parameters)
         assert price_of_term(DEFAULT, parameters) == pytest.approx(expected)
@@ -67,7 +67,7 @@ def test_gain_of_variances_by_run_is_that_of_normal_likelihoods() -> None:
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e3])
-def test_gain_of_variances_is_the_same_in_any_unit_beside_an_effect_that_moves_jumps(
+def test_gain_of_variances_is_invariant_to_units_with_an_effect_that_moves_jumps(
     unit: float,
 ) -> None:
     """The effect excludes samples next to reversals."""

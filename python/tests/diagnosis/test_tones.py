@@ -50,7 +50,7 @@ def sine(n: int, frequency_hz: float, amplitude: float = 1.0, phase: float = 0.0
     return signal
 
 
-def test_no_tone_is_found_in_white_noise() -> None:
+def test_no_tone_is_reported_in_white_noise() -> None:
     campaign = campaign_of(1500, 1500, 1500)
     assert all(tones_in(*white_noise(campaign, seed)) == [] for seed in range(20))
 
@@ -65,19 +65,19 @@ def test_tone_is_significant_above_a_quantile_of_exponential_power(unit: float) 
 
 
 @pytest.mark.parametrize(("periods", "found"), [(7, False), (8, False), (9, True), (512, True)])
-def test_tone_requires_more_than_eight_periods_in_a_run(periods: int, found: bool) -> None:
+def test_tone_is_reported_only_above_eight_periods_in_a_run(periods: int, found: bool) -> None:
     assert bool(tones_in(flat_spectrum(1024, {periods: 1e3}))) == found
 
 
 @pytest.mark.parametrize(("samples", "found"), [(63, False), (64, True)])
-def test_tone_requires_64_samples_in_its_own_run(samples: int, found: bool) -> None:
+def test_tone_is_reported_only_in_runs_with_64_samples(samples: int, found: bool) -> None:
     short, other = flat_spectrum(samples, {20: 1e3}), flat_spectrum(1024, {100: 1e4})
     assert bool(tones_in(short)) == found
     (tone,) = tones_in(short, other)
     assert len(pairs_in(tone)) == 1 + found
 
 
-def test_tone_is_found_in_runs_next_to_constant_and_quiet_runs() -> None:
+def test_tone_is_attributed_only_to_its_runs_if_others_are_constant_or_quiet() -> None:
     loud = flat_spectrum(1024, {100: 1e4})
     (tone,) = tones_in(np.zeros(1024), loud, np.ones(512), flat_spectrum(1024, {}), loud)
     assert tone.where.endswith(" in b, e")

@@ -98,7 +98,7 @@ def _candidates(extra: Callable[[int, Array], Array | float], runs: int = 4) -> 
     return coulomb_candidates(records)
 
 
-def test_effect_that_agrees_in_all_runs_is_no_confounder_next_to_a_tone() -> None:
+def test_effect_that_is_equal_in_all_runs_is_not_a_confounder_if_a_tone_remains() -> None:
     candidates = _candidates(lambda i, t: 0.5 + 0.3 * np.sin(2.0 * np.pi * 6.3 * t))
     assert candidates.converge((OFFSET,)).rms_n > 0.2
     assert confounders(candidates, (OFFSET,)) == ()
@@ -110,7 +110,7 @@ def test_effect_whose_parameter_differs_between_runs_is_a_confounder() -> None:
     assert confounders(candidates, (OFFSET, DRIFT)) == (DRIFT,)
 
 
-def test_weak_effect_is_a_confounder_if_more_structure_remains_than_it_explains() -> None:
+def test_weak_effect_is_a_confounder_if_the_unexplained_structure_exceeds_its_gain() -> None:
     """The gain of an offset of 0.03 N is below the threshold plus 60."""
     candidates = _candidates(lambda i, t: 0.012)
     remains = (Remainder("time", "", 0.01), Remainder("stroke", "", 0.2))

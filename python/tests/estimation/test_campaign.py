@@ -169,7 +169,7 @@ def test_prepared_run_uses_the_largest_step_and_rate_of_its_findings(ready: Prep
     assert (some.converter_step_n, some.drawn_at_hz) == (0.5, 50.0)
 
 
-def test_force_with_its_own_time_column_is_compared_at_its_own_instants() -> None:
+def test_force_with_a_separate_time_column_is_compared_at_its_reading_instants() -> None:
     """Readings before the motion begins and after it ends are not used; at its ends they are."""
     instants, force = INSTANTS[10:301], INSTANTS[::5]
     channels = {

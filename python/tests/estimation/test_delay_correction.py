@@ -91,7 +91,7 @@ def test_shifted_force_is_compared_at_the_instant_at_which_it_acted() -> None:
         ((1.0, 0.0), -2e-3, False),
     ],
 )
-def test_clocks_differ_by_a_tenth_of_each_run_and_drift_by_two_parts_in_a_thousand_at_most(
+def test_delay_above_a_tenth_of_a_run_or_drift_above_0_2_percent_is_impossible(
     late_s: tuple[float, float], drift: float, possible: bool
 ) -> None:
     """Runs of 10 s and 20 s; at its ends a drift adds half the duration times the drift."""
@@ -102,7 +102,7 @@ def test_clocks_differ_by_a_tenth_of_each_run_and_drift_by_two_parts_in_a_thousa
 @pytest.mark.parametrize(
     "start_s", [(0.0,) * 4, pytest.param((0.0, 20e-3, 0.0, 30e-3), marks=EXTENDED)]
 )
-def test_delays_beyond_the_linear_range_are_found_at_any_start(start_s: tuple[float, ...]) -> None:
+def test_delays_beyond_the_linear_range_are_recovered_from_any_start(start_s: tuple[float, ...]) -> None:
     problem, start = fitted(one_way_campaign(LARGE_DELAYS_S))[0], np.array(start_s)
     found = shifts.fit_delays_by_run(
         problem, shifts.Shifted(*fitted(shifts.moved(problem, start, 0.0)), start, 0.0)
@@ -198,7 +198,7 @@ def test_common_delay_beyond_the_linear_range_is_not_corrected(seed: int) -> Non
 
 
 @pytest.mark.parametrize("delay_s", [8e-3, 12e-3])
-def test_common_delay_is_no_clock_drift(delay_s: float) -> None:
+def test_common_delay_is_not_corrected_as_a_clock_drift(delay_s: float) -> None:
     assert corrected(*fitted(reversing_campaign((delay_s,) * 4))) is None
     assert corrected(*fitted(one_way_campaign((delay_s,) * 4))) is None
 

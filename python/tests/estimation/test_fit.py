@@ -166,7 +166,7 @@ def torture() -> dict[str, Any]:
 @pytest.mark.parametrize(
     "seed", [s if s in FAST else pytest.param(s, marks=pytest.mark.extended) for s in FAILURES]
 )
-def test_campaign_that_once_failed_ends_in_a_consistent_answer(seed: int, torture: Any) -> None:
+def test_diagnosis_of_a_formerly_failing_campaign_is_complete_and_consistent(seed: int, torture: Any) -> None:
     row = torture["tried"](seed, 120.0)
     assert row["said"], FAILURES[seed]
     assert row["wrong"] == [], FAILURES[seed]

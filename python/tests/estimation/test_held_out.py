@@ -132,7 +132,7 @@ def staged(top: float, name: str, seed: int) -> Run:
     return Run.from_arrays(time, speed, force + 0.05 * rng.normal(size=1200), name=name)
 
 
-def test_faster_run_counts_by_its_parts_and_its_extrapolation_is_reported_apart() -> None:
+def test_faster_run_is_held_out_in_parts_and_its_extrapolation_reported_separately() -> None:
     """A quadratic drag of 4 N s^2/m^2 that no slow run tells: 14 N at the top speed."""
     runs = [staged(0.2, f"slow{k}", k) for k in range(3)] + [staged(2.0, "fast", 9)]
     result = diagnose(Rig(), runs, law="coulomb")

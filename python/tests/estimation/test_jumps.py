@@ -32,7 +32,7 @@ EXTENDED = pytest.mark.extended
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_jump_within_one_step_is_found_at_both_samples_with_its_size(unit: float) -> None:
+def test_jump_within_one_step_is_located_at_both_samples_with_its_size(unit: float) -> None:
     t = np.arange(0.0, 10.0, 0.02)
     smooth = 20.0 * unit * np.cos(t)
     assert not jumps(smooth).any()
@@ -60,7 +60,7 @@ def test_gradual_rise_over_several_samples_is_not_a_jump(neighbour: float, found
     assert jumps(one).any()
 
 
-def test_two_jumps_around_a_plateau_of_two_samples_are_found() -> None:
+def test_two_jumps_around_a_plateau_of_two_samples_are_both_detected() -> None:
     force = np.concatenate((np.full(20, 20.0), np.zeros(2), np.full(20, -20.0)))
     assert np.flatnonzero(jumps(force)).tolist() == [19, 20, 21, 22]
 
@@ -199,7 +199,7 @@ def test_error_after_a_reversal_is_rate_of_change_times_error_of_the_instant(uni
     assert instant_errors_n(p, prediction, 0.03 * unit)[9] == 0.0
 
 
-def test_error_of_the_instant_is_at_most_that_of_a_uniform_distribution_over_a_step() -> None:
+def test_error_of_the_instant_is_limited_to_that_of_a_uniform_distribution_over_a_step() -> None:
     p = prepared([0.2] * 4 + [-0.2] * 8, error=1e3)
     found = instant_errors_n(p, ramp(p), 1e-9)
     np.testing.assert_allclose(found[4:], STEP_S * 10.0 / np.sqrt(12.0), rtol=0.01)

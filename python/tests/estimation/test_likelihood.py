@@ -153,7 +153,7 @@ def test_autocorrelations_are_summed_up_to_the_longest_memory_of_the_noise_model
     assert likelihood.independent_share([np.zeros(50)], (0.02,)) == 1.0
 
 
-def test_likelihood_gain_counts_less_if_residuals_are_correlated() -> None:
+def test_counted_share_of_a_likelihood_gain_is_reduced_if_residuals_are_correlated() -> None:
     samples = samples_of([np.ones(2000)])
     wave = np.sin(0.01 * np.arange(2000))
     slow = np.repeat(white(5, 200), 10)
@@ -163,7 +163,7 @@ def test_likelihood_gain_counts_less_if_residuals_are_correlated() -> None:
         assert likelihood.share_of_gain(after, before) <= likelihood.effective_share(after)
 
 
-def test_likelihood_gain_counts_less_if_it_comes_from_samples_with_larger_noise() -> None:
+def test_counted_share_of_a_likelihood_gain_is_reduced_at_samples_with_larger_noise() -> None:
     here = np.arange(4000) % 10 == 0
     noise = white(5, 4000) * np.where(here, 10.0, 1.0)
     samples = samples_of([np.ones(4000)])

@@ -114,7 +114,7 @@ def test_other_peaks_are_the_two_lowest_minima_within_the_bounds() -> None:
 
 
 @pytest.mark.extended
-def test_resonance_of_a_drive_is_found_from_a_wrong_frequency() -> None:
+def test_resonance_of_a_drive_is_recovered_from_a_wrong_starting_frequency() -> None:
     name = "drive_compliance.J_kg_m2"
     rig, runs, truth = campaign(8, ("drive_compliance",))
     problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ("drive_compliance",))

@@ -90,7 +90,7 @@ def test_noise_estimated_from_white_noise_is_white(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 3])
-def test_noise_estimate_is_at_least_as_likely_as_any_of_a_grid(seed: int) -> None:
+def test_noise_estimate_has_the_largest_likelihood_of_a_grid(seed: int) -> None:
     random = np.random.default_rng(seed)
     slow = [autoregressive(10 * seed + k, random.uniform(0.08, 0.4), 0.3, 3000) for k in (0, 1)]
     runs = [noise + white(k, 0.3, 3000) for k, noise in enumerate(slow)]
@@ -103,7 +103,7 @@ def test_noise_estimate_is_at_least_as_likely_as_any_of_a_grid(seed: int) -> Non
     assert cost(estimate_noise(runs, steps, masks)) < min(map(cost, grid)) + 0.1
 
 
-def test_estimated_memory_is_at_least_two_of_the_shortest_steps() -> None:
+def test_estimated_memory_is_not_below_two_of_the_shortest_steps() -> None:
     fast = autoregressive(5, 0.022, 1.0, 8000)
     slower = autoregressive(6, 0.02, 1.0, 8000, 3.0 * STEP_S)
     found = estimate_noise([fast, slower], [STEP_S, 3.0 * STEP_S], [everywhere(8000)] * 2)
@@ -111,7 +111,7 @@ def test_estimated_memory_is_at_least_two_of_the_shortest_steps() -> None:
 
 
 @pytest.mark.parametrize(("step_s", "longest_s"), [(0.02, 0.6), (0.2, 0.8)])
-def test_estimated_memory_is_at_most_600_ms_or_four_steps(step_s: float, longest_s: float) -> None:
+def test_estimated_memory_is_limited_to_600_ms_or_four_steps(step_s: float, longest_s: float) -> None:
     slow = autoregressive(6, 10.0 * longest_s, 1.0, 4000, step_s) + white(7, 0.3, 4000)
     found = estimate_noise([slow], [step_s], [everywhere(4000)])
     assert 0.9 * longest_s < found.memory_s < 1.0001 * longest_s

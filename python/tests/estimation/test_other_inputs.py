@@ -65,7 +65,7 @@ def test_free_swing_without_force_gives_friction_and_weight(tmp_path: Path) -> N
         assert abs(parameter.value - true) < max(4.0 * parameter.stderr, 0.01 * true), name
 
 
-def test_look_at_motion_alone_asks_only_for_the_inertia(
+def test_look_at_a_record_without_force_reports_only_the_inertia_as_missing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (file,) = swings(tmp_path, [1.0], seed=3)
@@ -121,7 +121,7 @@ def test_motor_voltage_gives_the_constants_of_a_feedforward_in_volts(tmp_path: P
     assert "N m" not in text
 
 
-def test_voltage_next_to_a_torque_is_not_taken(tmp_path: Path) -> None:
+def test_voltage_column_is_ignored_if_a_torque_is_recorded(tmp_path: Path) -> None:
     log = motor(np.random.default_rng(9))
     header = "time [s],motor voltage [V],position [rad],velocity [rad/s],torque [Nm]"
     file = written(tmp_path / "log.csv", header, *log.T, 0.1 * log[:, 1])
@@ -166,7 +166,7 @@ def test_steady_states_are_explained_by_laws_without_memory(tmp_path: Path) -> N
     assert "inertia_leak" in result.not_tried
 
 
-def test_friction_that_grows_with_the_transmitted_torque_is_found(tmp_path: Path) -> None:
+def test_friction_proportional_to_the_transmitted_torque_is_identified(tmp_path: Path) -> None:
     rng = np.random.default_rng(6)
     time = np.arange(0.0, 60.0, 0.01)
     speed = 2.0 * np.sin(2.0 * time)
@@ -216,7 +216,7 @@ def test_free_swing_is_not_explained_by_play(tmp_path: Path) -> None:
     assert "backlash" not in result.effects
 
 
-def test_model_file_of_a_motor_read_by_its_voltage_states_volts(tmp_path: Path) -> None:
+def test_model_file_of_a_voltage_driven_motor_has_coefficients_in_volts(tmp_path: Path) -> None:
     log = motor(np.random.default_rng(10))
     header = "time [s],motor voltage [V],position [rad],velocity [rad/s]"
     found = import_files(written(tmp_path / "log.csv", header, *log.T))

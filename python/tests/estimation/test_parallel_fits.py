@@ -55,7 +55,7 @@ def drag_effect() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("drag_effect")
-def test_parallel_fits_are_as_many_as_threads_but_one_for_python_effects(
+def test_number_of_parallel_fits_is_that_of_threads_and_one_for_python_effects(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Effects in Python may have a state, so that they are fitted one at a time."""

@@ -69,7 +69,7 @@ def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign
         *(pytest.param(0.031, a, marks=EXTENDED) for a in (True, False)),
     ],
 )
-def test_most_likely_pitch_is_that_of_the_simulated_wave(pitch_m: float, along: bool) -> None:
+def test_pitch_of_maximum_likelihood_is_that_of_the_simulated_wave(pitch_m: float, along: bool) -> None:
     """A fit finds the peak from within half a period over the path; here a quarter is required."""
     campaign = Campaign.prepare(Rig(), axis_runs([(pitch_m, 0.3)], along=along))
     found = pitches(campaign, along=along)
@@ -77,7 +77,7 @@ def test_most_likely_pitch_is_that_of_the_simulated_wave(pitch_m: float, along: 
     assert abs(path_m / found[0] - path_m / pitch_m) < 0.25
 
 
-def test_pitches_of_waves_are_found_in_the_order_of_their_amplitudes() -> None:
+def test_pitches_of_waves_are_listed_in_the_order_of_their_amplitudes() -> None:
     some = [(0.0123, 0.4), (0.0079, 0.2), (0.0043, 0.04)]
     campaign = Campaign.prepare(Rig(), axis_runs(some, noise_n=0.05))
     found = pitches(campaign, along=False)
@@ -85,19 +85,19 @@ def test_pitches_of_waves_are_found_in_the_order_of_their_amplitudes() -> None:
 
 
 @pytest.mark.parametrize(("periods", "found"), [(3.7, False), (4.3, True)])
-def test_pitch_is_found_only_if_the_path_contains_four_periods(periods: float, found: bool) -> None:
+def test_pitch_is_estimated_only_if_the_path_contains_four_periods(periods: float, found: bool) -> None:
     lines = [0.2 / p for p in pitches(shuttle([(0.2 / periods, 1.0)]), along=False)]
     assert (abs(lines[0] - periods) < 0.25) == found
 
 
 @pytest.mark.parametrize(("samples", "found"), [(3.8, False), (4.3, True)])
-def test_pitch_is_found_only_if_it_spans_four_path_samples(samples: float, found: bool) -> None:
+def test_pitch_is_estimated_only_if_it_spans_four_path_samples(samples: float, found: bool) -> None:
     pitch_m = samples * 0.5e-3
     likeliest = pitches(shuttle([(pitch_m, 1.0)]), along=False)[0]
     assert (likeliest == pytest.approx(pitch_m, rel=2e-3)) == found
 
 
-def test_no_pitch_is_found_in_a_short_record_or_along_a_short_path() -> None:
+def test_no_pitch_is_estimated_from_a_short_record_or_a_short_path() -> None:
     t = np.arange(0.0, 0.5, STEP_S)
     v = np.full(len(t), 0.01)
     run = Run.from_arrays(t, v, np.full(len(t), 5.0), position_m=0.01 * t)

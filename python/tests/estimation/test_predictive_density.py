@@ -66,7 +66,7 @@ def test_density_of_held_out_runs_is_gaussian_in_free_parameters(
     assert found == pytest.approx(sum(gaussian(solution, p) for p in parts), rel=1e-9)
 
 
-def test_error_counts_little_in_a_direction_that_the_other_runs_do_not_determine() -> None:
+def test_held_out_error_in_a_direction_undetermined_by_other_runs_hardly_lowers_density() -> None:
     """The other runs hold a thousandth of the information on the third parameter."""
     rng = np.random.default_rng(6)
     solution = linear_model(rng)

@@ -168,7 +168,7 @@ def test_triangular_rows_preserve_all_inner_products() -> None:
     assert triangular(r[:0], j[:0])[1].shape == (0, 4)
 
 
-def test_search_of_very_many_samples_uses_every_fourth_run_by_name() -> None:
+def test_search_above_the_sample_limit_uses_equidistant_runs_sorted_by_name() -> None:
     names = [f"{k:02d}" for k in range(20)]
     length = 2 * MOST_SEARCHED // 20
     assert every_so_many([length] * 20, names) == [0, 4, 8, 12, 16]

@@ -59,7 +59,7 @@ def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) 
         assert found.parameters[name].value == pytest.approx(true, rel=0.02)
 
 
-def test_force_on_time_has_no_finding_of_a_delay() -> None:
+def test_force_without_a_delay_has_no_finding_of_a_delay() -> None:
     found = fit(Rig(), [drive(31), drive(32)], ["inertia_leak"], law="coulomb")
     assert "late_channel" not in {finding.kind for finding in found.findings}
 

@@ -14,13 +14,13 @@ def wave(count: int, period: int) -> Array:
 
 @pytest.mark.parametrize("period", [7, 20, 61, 150])
 @pytest.mark.parametrize("mean", [0.0, -2.0])
-def test_period_is_found_exactly_whatever_the_mean_speed(period: int, mean: float) -> None:
+def test_period_is_exact_and_independent_of_the_mean_speed(period: int, mean: float) -> None:
     """The first repetition is returned, not a multiple of it."""
     assert period_samples(mean + wave(5 * period + 130, period)) == period
 
 
 @pytest.mark.parametrize(("count", "found"), [(99, None), (100, 20)])
-def test_no_period_is_found_in_fewer_than_a_hundred_samples(count: int, found: int | None) -> None:
+def test_period_is_detected_only_from_a_hundred_samples_on(count: int, found: int | None) -> None:
     assert period_samples(wave(count, 20)) == found
 
 
@@ -40,7 +40,7 @@ def test_motion_that_does_not_repeat_has_no_period(velocity: Array) -> None:
 
 @pytest.mark.parametrize(("noise", "found"), [(0.010, 100), (0.018, None)])
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
-def test_period_is_found_only_if_repetitions_differ_by_less_than_two_percent(
+def test_period_is_detected_only_if_repetitions_agree_within_two_percent(
     noise: float, found: int | None, unit: float
 ) -> None:
     """The difference of two noises has sqrt(2) times the standard deviation of one."""
@@ -56,5 +56,5 @@ def test_period_covers_two_strokes_if_their_sizes_differ(second: float, period: 
 
 
 @pytest.mark.parametrize(("period", "found"), [(150, 150), (240, None)])
-def test_period_is_found_up_to_three_quarters_of_the_record(period: int, found: int | None) -> None:
+def test_period_is_detected_up_to_three_quarters_of_the_record(period: int, found: int | None) -> None:
     assert period_samples(wave(300, period)) == found

@@ -36,7 +36,7 @@ EXTENDED = pytest.mark.extended
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=EXTENDED)])
-def test_run_delays_are_found_within_half_a_grid_step_if_they_differ(seed: int) -> None:
+def test_run_delays_that_differ_are_recovered_within_half_a_grid_step(seed: int) -> None:
     """The search for start values has steps of 2 ms."""
     problem, solution = fitted(reversing_campaign(DELAYS_S, seed=seed), DELAY)
     found = lateness(problem, solution, 0, CHANCE)
@@ -68,7 +68,7 @@ def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed
 
 
 @pytest.mark.parametrize("drift", [1e-3, pytest.param(-6e-4, marks=EXTENDED)])
-def test_clock_drift_is_found_within_15_percent_in_reversing_runs(drift: float) -> None:
+def test_clock_drift_is_recovered_within_15_percent_in_reversing_runs(drift: float) -> None:
     """A clock that was right at the start has half of its error in the middle of the run."""
     middle = (0.5 * drift * DURATION_S,) * 4
     found = lateness(*fitted(reversing_campaign(middle, drift), DELAY), 0, CHANCE)
@@ -156,7 +156,7 @@ def test_runs_without_information_on_the_delay_do_not_change_its_significance() 
     assert one.differ_chance(np.zeros(2)) == 1.0
 
 
-def test_delay_step_of_one_way_runs_solves_the_normal_equations() -> None:
+def test_delay_step_of_unidirectional_runs_solves_the_normal_equations() -> None:
     problem, solution = fitted(one_way_campaign((2e-3, -1e-3, 3e-3)))
     step = white(problem, solution)
     viscous = value(problem, solution, "F_v_n_s_m")
@@ -223,7 +223,7 @@ def test_p_values_of_campaigns_without_delay_are_uniform() -> None:
     assert stats.kstest(chances, "uniform").pvalue > 0.02
 
 
-def test_drift_step_of_one_way_runs_solves_the_normal_equations() -> None:
+def test_drift_step_of_unidirectional_runs_solves_the_normal_equations() -> None:
     drift = 1.2e-4
     campaign = one_way_campaign((0.0, 0.0), drift, durations_s=(20.0, 10.0))
     problem, solution = fitted(campaign)

@@ -157,7 +157,7 @@ def test_approach_reaches_the_minimum_of_a_nonlinear_curve() -> None:
     assert problem.square(approach(problem, [{}], 60).values) <= least * (1.0 + 1e-5)
 
 
-def test_fit_with_an_effect_is_never_worse_than_the_law_alone() -> None:
+def test_rms_of_a_fit_with_an_effect_does_not_exceed_that_of_the_base_law() -> None:
     campaign = with_mass()
     problem = Problem(campaign, "coulomb", "journal", ("inertia_leak",))
     law = bare_solution(campaign)

@@ -114,7 +114,7 @@ def test_trajectory_fit_to_exact_friction_recovers_the_parameters() -> None:
     assert found.to_dict()["sum_of_squares"] == found.sum_of_squares
 
 
-def test_trajectory_fit_from_distant_starts_works_with_missing_samples() -> None:
+def test_trajectory_fit_from_distant_starts_converges_with_missing_samples() -> None:
     pieces = np.split(noisy(42), len(SWINGS))
     pieces[1][:20] = np.nan
     start = {"f_m": 0.34, "U_tr": 0.042, "K0": 9.7e5, "gamma": 23.0}

@@ -73,7 +73,7 @@ def test_values_errors_and_correlations_are_those_of_linear_regression(fitted: L
     assert found.doubtful == ()
 
 
-def test_parameters_of_a_fit_are_found_by_full_or_short_name(fitted: LinearFit) -> None:
+def test_parameters_of_a_fit_are_accessible_by_full_or_short_name(fitted: LinearFit) -> None:
     found = fitted[1]
     assert found["F_c"] is found["F_c_n"] is found.parameters["F_c_n"]
     assert [name in found for name in ("F_c_n", "F_c", "zz", 3)] == [True, True, False, False]
@@ -82,7 +82,7 @@ def test_parameters_of_a_fit_are_found_by_full_or_short_name(fitted: LinearFit) 
         found["zz"]
 
 
-def test_error_of_a_logarithmic_parameter_is_in_its_own_unit() -> None:
+def test_error_of_a_logarithmic_parameter_is_in_the_unit_of_the_parameter() -> None:
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     fixed = {"delta": 2.0, "F_v_n_s_m": 20.0}
     problem = Problem(campaign, "stribeck", "journal", (), fixed)
@@ -221,7 +221,7 @@ def bent() -> Bent:
     # (1 + b)^2 is 1.3 at b = 0.14; the other side (1 - b)^2 is 0.74.
     [(0.0, False), (0.12, False), (-0.12, False), (0.155, True), (-0.155, True), (0.9, True)],
 )
-def test_error_is_doubtful_if_cost_is_no_parabola(bent: Bent, bend: float, doubtful: bool) -> None:
+def test_error_is_doubtful_if_the_cost_deviates_from_a_parabola(bent: Bent, bend: float, doubtful: bool) -> None:
     assert bent(bend) == (("p",) if doubtful else ())
 
 

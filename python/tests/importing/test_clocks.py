@@ -78,7 +78,7 @@ def test_run_with_two_clocks_keeps_every_sample(samples: int, slow: Any, tmp_pat
 JBF_HEADER = "time_s,position_m,friction_n"
 
 
-def test_rows_with_an_empty_cell_are_kept_if_they_are_many(tmp_path: Path) -> None:
+def test_rows_with_an_empty_cell_are_kept_if_four_of_five_rows_have_one(tmp_path: Path) -> None:
     rows = (f"{i / 100},{i / 1000},{'' if i % 5 else '1.5'}" for i in range(1000))
     result = import_files(text_file(tmp_path, rows, JBF_HEADER))
     assert len(cells(result, "time_s")[0]) == 1000
@@ -205,13 +205,13 @@ def test_clock_of_a_microcontroller_states_its_unit(
     np.testing.assert_allclose(run.time_s, 0.01 * np.arange(400), atol=1e-9)
 
 
-def test_unit_of_time_follows_from_a_place_and_a_speed_without_units(tmp_path: Path) -> None:
+def test_unit_of_time_is_inferred_from_position_and_speed_without_units(tmp_path: Path) -> None:
     guess = look(serial_log(tmp_path, "t,pos,vel,torque", 1.0, 1e3))
     assert "ms" in next(e.expression for e in guess.entries if e.key == "time_s")
     assert [q.place for q in guess.questions] == ["pos", "vel", "torque"]
 
 
-def test_unit_of_time_stays_open_if_place_and_speed_do_not_agree(tmp_path: Path) -> None:
+def test_unit_of_time_is_an_open_question_if_position_and_speed_are_inconsistent(tmp_path: Path) -> None:
     """A place in degrees next to a speed in rad/s."""
     guess = look(serial_log(tmp_path, "t,pos,vel,torque", 57.3, 1e3))
     assert "t" in [q.place for q in guess.questions]

@@ -206,7 +206,7 @@ def to_and_fro(cycles: int = 6, period: float = 2.0) -> Columns:
 
 
 @pytest.mark.parametrize("without", ["nothing", "position_m", "velocity_m_s"])
-def test_motion_to_and_fro_is_cut_where_each_forward_stroke_begins(
+def test_reciprocating_motion_is_cut_where_each_forward_stroke_begins(
     without: str, tmp_path: Path
 ) -> None:
     result = imported(tmp_path, 'by = "cycles"', to_and_fro(), without)
@@ -215,7 +215,7 @@ def test_motion_to_and_fro_is_cut_where_each_forward_stroke_begins(
     assert sum(len(run) for run in result.runs) == 2400
 
 
-def test_noise_at_standstill_makes_no_cycles(tmp_path: Path) -> None:
+def test_noise_at_standstill_is_not_cut_into_cycles(tmp_path: Path) -> None:
     columns = to_and_fro(cycles=2)
     rng = np.random.default_rng(4)
     rest = {name: np.full(400, values[-1]) for name, values in columns.items()}
@@ -236,17 +236,17 @@ def test_recording_is_cut_into_parts_of_equal_duration(
 
 
 @pytest.mark.parametrize("parts", ["1", "2.5", "true", '"half"'])
-def test_number_of_parts_that_is_no_whole_number_is_refused(parts: str, tmp_path: Path) -> None:
+def test_number_of_parts_that_is_not_a_positive_integer_is_refused(parts: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cut\.parts"):
         imported(tmp_path, f"parts = {parts}", to_and_fro())
 
 
-def test_parts_without_their_way_of_cutting_are_refused(tmp_path: Path) -> None:
+def test_parts_key_is_refused_if_the_recording_is_cut_by_another_criterion(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cut\.parts"):
         imported(tmp_path, 'by = "cycles"\nparts = 3', to_and_fro())
 
 
-def test_motion_one_way_without_cycles_is_noted(tmp_path: Path) -> None:
+def test_cutting_unidirectional_motion_by_cycles_reports_that_there_are_no_cycles(tmp_path: Path) -> None:
     columns = to_and_fro()
     speed = np.abs(columns["velocity_m_s"]) + 0.01
     columns |= {"velocity_m_s": speed, "position_m": np.cumsum(speed) * 0.005}

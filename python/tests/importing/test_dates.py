@@ -51,7 +51,7 @@ def test_parsed_date_agrees_with_the_standard_library_in_every_notation(moment: 
 
 
 @given(st.lists(st.tuples(MOMENTS, st.integers(0, 3)), max_size=30), st.data())
-def test_column_of_several_notations_is_parsed_like_its_cells(
+def test_parsed_column_of_mixed_notations_equals_its_separately_parsed_cells(
     moments: list[tuple[datetime, int]], data: st.DataObject
 ) -> None:
     formats = ("%Y-%m-%dT%H:%M:%S.%f", "%d.%m.%y %H:%M", "%d-%b-%Y %I:%M:%S %p", "%Y/%m/%d")
@@ -118,7 +118,7 @@ def test_time_of_day_that_steps_back_by_one_second_stays_on_the_same_day() -> No
         "13:05:00,000;12,125;-1234,50",
     ],
 )  # fmt: skip
-def test_cell_that_is_no_valid_date_or_time_is_refused_with_its_row(cell: str) -> None:
+def test_cell_without_a_valid_date_or_time_is_refused_with_its_row(cell: str) -> None:
     with pytest.raises(InputError, match="is no date and no time of day") as refused:
         Instants().parse(["2026-01-01", cell, "-"], [False, False, False])
     assert refused.value.row == 1
@@ -167,7 +167,7 @@ def test_month_is_recognised_by_its_name(word: str, month: int) -> None:
     assert parsed(f"24-{word}-2026 10:00:00") == ns(datetime(2026, month, 24, 10))
 
 
-def test_quoted_dates_are_read_like_others(tmp_path: Path) -> None:
+def test_quoted_dates_have_the_same_values_as_unquoted_dates(tmp_path: Path) -> None:
     rows = [f"2026-01-24 10:00:{i / 10:06.3f},{i}.5,{i}" for i in range(40)]
     plain = "\n".join(["Time,Force [N],Pos [mm]", *rows]) + "\n"
     lines = [["Time", "Force [N]", "Pos [mm]"], *(row.split(",") for row in rows)]

@@ -144,7 +144,7 @@ def test_ambiguous_columns_become_questions_and_stop_the_import(case: str, tmp_p
 
 
 @pytest.mark.parametrize("name", ["uart_latency_ms", "dt_ms", "jitter_us", "loop_time_us"])
-def test_column_that_does_not_run_forward_is_no_clock(name: str, tmp_path: Path) -> None:
+def test_column_that_does_not_increase_is_not_taken_as_the_time(name: str, tmp_path: Path) -> None:
     random = np.random.default_rng(4)
     lines = [f"time [s],{name},F [N],x [mm]"]
     lines += [f"{t:.3f},{40.0 + random.normal():.3f},{f:.3f},{x:.4f}" for t, x, _, f in samples()]
@@ -172,7 +172,7 @@ def test_joint_states_without_units_are_those_of_a_revolute_joint(tmp_path: Path
          ("hip", "knee")),
     ],
 )  # fmt: skip
-def test_each_joint_of_several_is_a_campaign_of_its_own(
+def test_each_joint_of_a_recording_is_imported_as_a_separate_campaign(
     header: str, joints: tuple[str, str], tmp_path: Path
 ) -> None:
     lines = [header]
@@ -191,7 +191,7 @@ def test_each_joint_of_several_is_a_campaign_of_its_own(
     assert {p.name for p in (tmp_path / "each").iterdir()} == set(joints)
 
 
-def test_channel_without_a_value_is_left_out(tmp_path: Path) -> None:
+def test_channel_without_any_value_is_omitted_from_the_import(tmp_path: Path) -> None:
     lines = ["t [s],F [N],x [mm],v [mm/s]"]
     lines += [f"{t:.3f},{f:.3f},{x:.4f},nan" for t, x, _, f in samples()]
     path = written(tmp_path, "\n".join(lines) + "\n")

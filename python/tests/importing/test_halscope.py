@@ -46,7 +46,7 @@ def test_halscope_log_has_the_names_of_its_pins_and_the_rate_of_its_period(tmp_p
     np.testing.assert_array_equal(head["drive.torque-fb"], TORQUE)
 
 
-def test_units_of_a_halscope_log_are_asked_for(tmp_path: Path) -> None:
+def test_missing_units_of_a_halscope_log_become_questions(tmp_path: Path) -> None:
     write_log(tmp_path / "scope.log")
     asked = questions(jbf.look(tmp_path / "scope.log"))
     assert "joint.0.motor-pos-fb: no unit is written" in asked
@@ -55,7 +55,7 @@ def test_units_of_a_halscope_log_are_asked_for(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("tagged", [False, True])
-def test_halsampler_output_is_asked_for_its_columns_and_rate(tagged: bool, tmp_path: Path) -> None:
+def test_missing_columns_and_rate_of_halsampler_output_become_questions(tagged: bool, tmp_path: Path) -> None:
     path = tmp_path / "sampler.txt"
     rows = [
         f"{f'{k} ' if tagged else ''}{p:.6f} {t:.6f} "
@@ -76,7 +76,7 @@ def test_halsampler_output_is_asked_for_its_columns_and_rate(tagged: bool, tmp_p
 
 
 @pytest.mark.parametrize("share", [0.0005, 0.003, 0.5, 0.98])
-def test_truncated_halscope_log_gives_its_samples_or_one_line(share: float, tmp_path: Path) -> None:
+def test_truncated_halscope_log_returns_its_complete_samples_or_a_one_line_error(share: float, tmp_path: Path) -> None:
     path = tmp_path / "scope.log"
     write_log(path)
     data = path.read_bytes()

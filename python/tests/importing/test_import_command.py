@@ -59,7 +59,7 @@ def test_import_without_a_map_writes_a_map_that_can_be_imported(capsys: Capture)
     assert written == {"cut.toml", "import.json", "log.csv", "map.toml", "rig.toml"}
 
 
-def test_recording_is_cut_at_its_rests_by_default_and_says_so(capsys: Capture) -> None:
+def test_recording_is_cut_at_its_rests_by_default_and_the_option_to_disable_is_named(capsys: Capture) -> None:
     text = printed(capsys, IMPORT)
     assert "3 runs of" in text
     assert "--no-cut keeps it whole" in text
@@ -90,7 +90,7 @@ def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture)
     assert not Path("runs").exists()
 
 
-def test_second_look_keeps_the_map_and_another_file_has_a_map_of_its_own(capsys: Capture) -> None:
+def test_second_look_keeps_an_edited_map_and_another_file_gets_a_separate_map(capsys: Capture) -> None:
     # A map that no look has written is nobody's to replace.
     assert "log.map.toml was written" in printed(capsys, "import log.csv")
     assert Path("map.toml").read_text() == MAP
@@ -160,7 +160,7 @@ def every(step: int, text: str, cell: str | None) -> str:
 
 
 @pytest.mark.parametrize("cell", ["ab0.3", "1,2", None])
-def test_damaged_rows_are_left_out_and_reported_up_to_one_in_a_thousand(
+def test_damaged_rows_are_dropped_and_reported_up_to_one_in_a_thousand(
     cell: str | None, capsys: Capture
 ) -> None:
     path = Path("log.csv")
@@ -206,7 +206,7 @@ def test_quantity_with_a_unit_is_converted_to_the_unit_of_its_key(capsys: Captur
     refusal(capsys, IMPORT, "key drive.rated_torque_n_m: '127 N' is no quantity in N m")
 
 
-def test_condition_leaves_out_the_rows_where_it_does_not_hold(capsys: Capture) -> None:
+def test_rows_that_violate_the_condition_of_the_map_are_dropped(capsys: Capture) -> None:
     table = dict(recording(1, 8.0, 4.0).columns)
     powered = (table["time_s"] > 5.0) & (table["time_s"] < 9.0)
     csv(Path("log.csv"), {**table, "powered": powered.astype(float)})
@@ -216,7 +216,7 @@ def test_condition_leaves_out_the_rows_where_it_does_not_hold(capsys: Capture) -
     np.testing.assert_array_equal(run.time_s, table["time_s"][powered])
 
 
-def test_load_that_is_not_above_zero_is_refused_only_in_what_is_kept(capsys: Capture) -> None:
+def test_nonpositive_load_is_refused_only_in_rows_that_the_import_keeps(capsys: Capture) -> None:
     table = dict(recording(1, 8.0, 4.0).columns)
     off = table["time_s"] < 3.0
     csv(Path("log.csv"), {**table, "load_n": np.where(off, -0.1, 40.0)})

@@ -94,7 +94,7 @@ def test_simulink_structure_with_time_is_imported_by_labels_and_seconds(
 
 
 @writers
-def test_two_simulink_structures_keep_their_own_clocks(write: Writer, tmp_path: Path) -> None:
+def test_two_simulink_structures_keep_their_separate_clocks(write: Writer, tmp_path: Path) -> None:
     slow = {"values": FORCE[::4], "label": "friction [N]"}
     fast = {"values": POSITION, "label": "position [m]"}
     content = {

@@ -129,7 +129,7 @@ def set_align(line: str) -> None:
     Path("two.toml").write_text(TWO.replace(ALIGN, line), encoding="utf-8")
 
 
-def test_offsets_and_drift_of_three_files_are_found_within_a_fifth_of_a_sample() -> None:
+def test_offsets_and_drift_of_three_files_are_recovered_within_a_fifth_of_a_sample() -> None:
     result = jbf.import_files("drive.csv", "map.toml", "campaign")
     found = alignments(result)
     check_force(found["force.csv"])
@@ -166,7 +166,7 @@ def test_sign_and_scale_of_the_common_signal_do_not_matter(gain: float) -> None:
     check_force(alignments(jbf.import_files("drive.csv", "two.toml"))["force.csv"])
 
 
-def test_drift_that_is_not_there_is_not_reported() -> None:
+def test_no_drift_is_reported_if_the_clocks_have_the_same_rate() -> None:
     write_force(drift_ppm=0.0)
     check_force(alignments(jbf.import_files("drive.csv", "two.toml"))["force.csv"], 0.0)
 
@@ -275,7 +275,7 @@ def test_times_since_1970_align_files_without_an_entry() -> None:
     np.testing.assert_allclose(run.friction_n[read], force(run.time_s[read]), atol=1e-5)
 
 
-def test_look_asks_for_a_common_signal_and_proposes_the_one_common_column(
+def test_look_reports_a_missing_common_signal_and_proposes_the_only_common_column(
     capsys: Capture,
 ) -> None:
     Path("map.toml").unlink()
@@ -292,7 +292,7 @@ def test_look_asks_for_a_common_signal_and_proposes_the_one_common_column(
     assert "3 files" in capsys.readouterr().out
 
 
-def test_unit_of_a_time_is_asked_for_each_file() -> None:
+def test_missing_unit_of_time_becomes_a_question_for_each_file() -> None:
     true_s = np.arange(0.0, 30.0, 1 / 100)
     write("drive.csv", **{"time": true_s, "pos [mm]": position(true_s), "trigger": true_s % 7})
     write("force.csv", **{"time": 1e3 * true_s, "F [N]": force(true_s), "trigger": true_s % 7})
@@ -309,7 +309,7 @@ def test_files_are_named_relative_to_the_folder_of_the_map() -> None:
     check_force(alignments(jbf.import_files("drive.csv", "maps/two.toml"))["force.csv"])
 
 
-def test_file_without_an_alignment_is_refused_with_what_to_write() -> None:
+def test_file_without_an_alignment_is_refused_with_the_entry_to_add() -> None:
     set_align("")
     assert refusal('write force = "A ~ B"').startswith("force.csv: its clock and that of drive.csv")
 

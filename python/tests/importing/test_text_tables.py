@@ -83,5 +83,5 @@ def test_numbers_of_regular_lines_have_the_bits_of_float(
 @pytest.mark.parametrize(
     "line", ["1;2\n", "1;2;3;4\n", "1;x;3\n", "1;;3\n", "1;inf;3\n", '1;"2";3\n', "1;1e999;3\n"]
 )
-def test_irregular_line_is_left_to_the_caller(line: str) -> None:
+def test_columns_with_an_irregular_line_are_not_parsed_as_regular(line: str) -> None:
     assert plain_columns(["1;2;3\n", line], Dialect(";", "."), 3, [0, 1, 2], []) is None

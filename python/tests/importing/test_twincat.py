@@ -75,7 +75,7 @@ def channels(source: Source) -> dict[str, tuple[Values, Values, str, str]]:
 
 @pytest.mark.parametrize("timelines", ["all", "sampletime"])
 @pytest.mark.parametrize(("delimiter", "decimal"), [(";", ","), ("\t", "."), ("\t", ",")])
-def test_twincat_export_keeps_each_channels_own_times(
+def test_twincat_export_keeps_the_times_of_each_channel(
     delimiter: str, decimal: str, timelines: str, tmp_path: Path
 ) -> None:
     write(tmp_path / "a.csv", delimiter, decimal, timelines)
@@ -149,14 +149,14 @@ def test_twincat_channel_that_begins_later_keeps_its_times(tmp_path: Path) -> No
     np.testing.assert_array_equal(found["B"][1], 3.0 * np.arange(10, 50))
 
 
-def test_twincat_export_of_the_older_head_is_read(tmp_path: Path) -> None:
+def test_twincat_export_with_the_older_header_is_read(tmp_path: Path) -> None:
     write(tmp_path / "a.csv", heads=("StartRecord", "EndRecord"), eof=False)
     with open_source(tmp_path / "a.csv") as source:
         assert set(channels(source)) == set(VALUES)
 
 
 @pytest.mark.parametrize("share", [0.02, 0.05, 0.3, 0.7, 0.99])
-def test_truncated_twincat_export_gives_its_samples_or_one_line(
+def test_truncated_twincat_export_returns_its_complete_samples_or_a_one_line_error(
     share: float, tmp_path: Path
 ) -> None:
     path = tmp_path / "a.csv"
@@ -191,7 +191,7 @@ def test_damaged_cell_of_a_twincat_export_is_reported_with_row_and_column(tmp_pa
         jbf.import_files(path, whole=True)
 
 
-def test_tables_next_to_each_other_keep_their_own_times(tmp_path: Path) -> None:
+def test_tables_side_by_side_in_a_file_keep_their_separate_times(tmp_path: Path) -> None:
     fast, slow = np.arange(400) / 100.0, np.arange(100) / 25.0
     lines = ["Time [s];Position [mm];Velocity [mm/s];Time [s];Force [N]"]
     for k, t in enumerate(fast.tolist()):

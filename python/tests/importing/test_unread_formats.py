@@ -27,7 +27,7 @@ def test_unread_format_is_named_with_a_remedy(unread: object, tmp_path: Path) ->
         assert "\n" not in line
 
 
-def test_no_suffix_is_both_read_and_unread() -> None:
+def test_supported_and_unsupported_formats_have_no_suffix_in_common() -> None:
     read = {suffix for known in FORMATS for suffix in known.suffixes}
     assert not read & {suffix for unread in UNREAD for suffix in unread.suffixes}
 

@@ -129,7 +129,7 @@ def test_wpilog_without_a_sample_is_refused_in_one_line(size: int, tmp_path: Pat
     assert "\n" not in str(refused.value)
 
 
-def test_wpilog_of_the_writer_of_wpilib_is_read(tmp_path: Path) -> None:
+def test_wpilog_written_by_wpilib_is_read(tmp_path: Path) -> None:
     wpiutil = pytest.importorskip("wpiutil")
     entries = pytest.importorskip("wpiutil.log")
     path = tmp_path / "a.wpilog"

@@ -294,7 +294,7 @@ def test_user_effect_receives_the_recorded_columns_that_its_arguments_name() -> 
     assert np.max(np.abs(seen["angle_rad"] - run.angle_rad)) < 1e-3
 
 
-def test_bending_table_lists_exactly_the_nonlinear_instrument_effects() -> None:
+def test_table_of_nonlinear_instruments_lists_exactly_the_nonlinear_instrument_effects() -> None:
     """A linear instrument responds to a sum of forces with the sum of its responses."""
     t = np.linspace(0.0, 10.0, 400)
     run = Run.from_arrays(t, 0.1 * np.cos(t), position_m=0.1 * np.sin(t))

@@ -15,7 +15,7 @@ def test_page_and_picture_of_every_effect_are_up_to_date() -> None:
 
 
 @pytest.mark.parametrize("name", ["drive_compliance", "dwell_stiction", "load_dependence"])
-def test_effect_changes_each_curve_of_its_picture_by_more_than_five_percent(name: str) -> None:
+def test_effect_changes_each_curve_of_its_picture_by_over_five_percent(name: str) -> None:
     plane, along = PAGES["draw"](built_in()[name]).axes
     for axes in (plane, along):
         changed, plain = (line.get_ydata() for line in axes.lines)

@@ -97,7 +97,7 @@ def test_integer_at_or_above_its_minimum_is_returned_as_int(value: Any, least: i
     ("value", "least"),
     [(-1, 0), (2, 3), (True, 0), (1.0, 0), (Fraction(1, 2), 0), ("1", 0), (None, 0)],
 )
-def test_whole_number_below_minimum_or_of_another_type_is_rejected(value: Any, least: int) -> None:
+def test_integer_below_its_minimum_or_of_another_type_is_rejected(value: Any, least: int) -> None:
     assert str(least) in str(input_error(arguments.whole_number, value, "n", least).mend)
 
 

@@ -67,14 +67,14 @@ def test_channels_without_speed_or_position_are_rejected() -> None:
     assert error.column == "velocity_m_s"
 
 
-def test_column_has_its_own_clock_if_ten_samples_and_five_percent_are_missing() -> None:
+def test_column_has_a_separate_clock_if_ten_samples_and_five_percent_are_missing() -> None:
     for samples, missing, omitted in ((100, 9, 0), (100, 10, 10), (400, 19, 0), (400, 20, 20)):
         time_s = np.arange(float(samples))
         clock, read = with_own_clock(time_s, np.where(time_s < missing, np.nan, 1.0))
         assert (clock[0], len(clock), len(read)) == (omitted, samples - omitted, samples - omitted)
 
 
-def test_own_clock_finding_has_the_force_rate_if_force_and_motion_rates_differ() -> None:
+def test_clock_finding_has_the_force_rate_if_force_and_motion_rates_differ() -> None:
     index = np.arange(1000)
     run = Run.from_arrays(0.01 * index, np.sin(0.01 * index), np.cos(0.01 * index), name="a")
     # The force is compared with the fastest channel of the motion.
@@ -110,7 +110,7 @@ def slide(force_hz: float = 90.0, motion_hz: float = 400.0, seed: int = 1) -> di
     }
 
 
-def test_run_with_own_force_clock_is_prepared_at_the_force_readings() -> None:
+def test_run_with_a_separate_force_clock_is_prepared_at_the_force_readings() -> None:
     channels = slide()
     prepared = Prepared.of(jbf.Rig(), Run.from_channels(channels))
     force_s, force_n = channels["friction_n"]
@@ -119,7 +119,7 @@ def test_run_with_own_force_clock_is_prepared_at_the_force_readings() -> None:
     assert "own_clock" in {finding.kind for finding in prepared.examined.findings}
 
 
-def test_fit_to_a_force_with_its_own_clock_recovers_law_and_noise() -> None:
+def test_fit_to_a_force_with_a_separate_clock_recovers_law_and_noise() -> None:
     fit = jbf.fit(jbf.Rig(), [Run.from_channels(slide())], law="coulomb")
     for name, value in LAW.items():
         estimate: Any = fit.parameters[name]

@@ -163,7 +163,7 @@ def cells(count: int, empty: int, value: str) -> list[str]:
 
 
 @pytest.mark.parametrize(("samples", "empty"), [(100, 10), (400, 20)])
-def test_csv_column_with_ten_cells_and_five_percent_empty_has_its_own_clock(
+def test_csv_column_with_ten_cells_and_five_percent_empty_has_a_separate_clock(
     write: Write, samples: int, empty: int
 ) -> None:
     def path_with(empty: int) -> Path:

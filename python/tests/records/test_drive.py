@@ -230,7 +230,7 @@ def test_run_and_model_of_a_joint_are_unchanged_by_a_file_round_trip(tmp_path: P
     assert jbf.Model.load(tmp_path / "model.toml").rig == rig
 
 
-def test_motor_column_with_half_of_its_cells_empty_has_its_own_clock(tmp_path: Path) -> None:
+def test_motor_column_with_half_of_its_cells_empty_has_a_separate_clock(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     rows = [f"{t},{ANGLE[i]},{ANGLE[i] if i % 2 else ''}" for i, t in enumerate(TIME_S)]
     path.write_text("\n".join(["time_s,angle_rad,current_a", *rows]))

@@ -88,7 +88,7 @@ def test_end_sample_is_an_outlier_beyond_four_times_the_largest_change() -> None
         assert loose_ends(TIME_S[:200], values, 1)[0] == found, jump
 
 
-def test_outlier_at_the_end_of_a_parabola_is_found_if_sampling_is_uneven() -> None:
+def test_outlier_at_the_end_of_a_parabola_is_detected_if_sampling_is_uneven() -> None:
     time_s = np.cumsum(np.random.default_rng(3).uniform(0.5, 1.5, 200)) * 0.01
     path = 3.0 + 20.0 * time_s - 4.0 * time_s**2 + white(200, 4, 1e-4)
     assert not loose_ends(time_s, path, 3).any()
@@ -113,7 +113,7 @@ def test_outlier_at_an_end_of_the_force_is_a_glitch_and_not_usable(end: int) -> 
     assert set(places(~examined.usable)) == {end, 500}
 
 
-def test_fit_changes_by_less_than_0_2_percent_if_the_first_rows_are_corrupt() -> None:
+def test_fit_changes_by_under_0_2_percent_if_the_first_rows_are_corrupt() -> None:
     clean, corrupt = [], []
     for seed in (6, 8):
         force, speed = FORCE_N + white(SAMPLES, seed, 0.1), noisy_speed()

@@ -39,7 +39,7 @@ def test_gap_is_reported_from_one_and_a_half_median_steps_on(steps: float, missi
     assert all(f"{missing} row" in finding.words for finding in findings)
 
 
-def test_late_stamps_are_no_gaps_beside_a_row_that_is_missing() -> None:
+def test_jittered_time_stamps_are_not_gaps_but_a_missing_row_is() -> None:
     """Jitter of 0.2 periods gives steps of 1.5 periods and more."""
     jitter = np.random.default_rng(6).normal(0.0, 0.2, 400)
     jitter[195:206] *= 0.1
@@ -112,7 +112,7 @@ def test_repeated_rows_of_a_moving_drive_are_removed_and_their_share_reported() 
     assert finding.size == pytest.approx(100.0 * again.mean())
 
 
-def test_repeated_rows_are_found_from_40_rows_and_2_percent_on() -> None:
+def test_repeated_rows_are_detected_from_40_rows_and_2_percent_on() -> None:
     for every, rows in ((22, 800), (60, 4000)):
         assert repeated_rows(polled(every, rows)) is None
     for every, rows in ((18, 800), (40, 4000)):

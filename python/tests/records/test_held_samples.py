@@ -29,14 +29,14 @@ def test_five_equal_readings_in_noisy_data_are_held_samples_except_the_first() -
         assert places(held(repeating(NOISY_SINE, 300, count))) == expected
 
 
-def test_equal_readings_are_held_samples_if_less_probable_than_1e_minus_6() -> None:
+def test_equal_readings_are_held_samples_if_their_probability_is_below_1e_minus_6() -> None:
     """Half of the readings repeat: k equal ones have the probability 2000 / 2^(k-1) < 1e-6."""
     pairs = np.repeat(NOISE, np.where(np.arange(SAMPLES) % 2, 1, 2))[:SAMPLES]
     assert places(held(repeating(pairs, 302, 30))) == []
     assert places(held(repeating(pairs, 302, 31))) == list(range(303, 333))
 
 
-def test_least_length_of_held_samples_follows_from_noise_and_quantisation() -> None:
+def test_minimum_length_of_held_samples_follows_from_noise_and_quantisation() -> None:
     """Rounding to whole steps adds 1/12 to the variance of the noise. A reading in the middle of a
     step is repeated k times with probability p^k, which must be below 1e-6 in the record."""
     values = np.round(np.linspace(-50.0, 50.0, SAMPLES) + 0.5 * NOISE)
@@ -68,7 +68,7 @@ def test_held_samples_finding_has_the_longest_otherwise_unexplained_stretch() ->
     assert (no_findings, mask.any()) == ([], False)
 
 
-def test_command_at_its_limit_is_used_and_a_noisy_force_that_stands_still_is_not() -> None:
+def test_saturated_command_is_usable_but_constant_samples_of_a_noisy_force_are_held() -> None:
     command = np.clip(12.0 * np.sin(3.0 * TIME_S), -8.0, 8.0)
     assert held(command).any()
     motion = 0.1 + 0.0 * TIME_S

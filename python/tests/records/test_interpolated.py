@@ -138,7 +138,7 @@ def test_interpolated_readings_are_recovered_if_parts_of_the_force_are_held(rate
 
 
 @pytest.mark.parametrize("rate_hz", [*extended([9.2]), 17.0])
-def test_reading_rate_is_recovered_if_most_of_the_force_is_constant(rate_hz: float) -> None:
+def test_reading_rate_is_recovered_if_the_force_is_mainly_constant(rate_hz: float) -> None:
     fine_s = 0.005 * np.arange(4000)
     ticks_s = reading_instants(rate_hz, fine_s)
     moving = (ticks_s > 4.0) & (ticks_s < 7.0)
@@ -188,7 +188,7 @@ def test_force_that_was_not_interpolated_has_no_readings_of_a_known_period() -> 
     assert find_native_of(TIME_S[:60], reversing_force(TIME_S[:60], 1), period_s) is None
 
 
-def test_short_run_has_the_reading_rate_found_in_a_longer_run() -> None:
+def test_short_run_takes_the_reading_rate_of_a_longer_run() -> None:
     # Nearly every sample is a reading: 400 samples are too few to find the rate.
     period_s = 1.083 * 0.02
     ticks_s = 0.4 * 0.02 + period_s * np.arange(-1, 600)

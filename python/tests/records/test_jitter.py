@@ -91,7 +91,7 @@ def test_position_noise_at_low_speed_is_subtracted_from_the_jitter(slow_noise: f
 
 
 @pytest.mark.parametrize("even", [True, False])
-def test_finding_of_uneven_stamps_tells_which_instants_are_used(even: bool) -> None:
+def test_finding_of_time_stamp_jitter_states_which_instants_are_used(even: bool) -> None:
     """Samples at even instants with stamps that are off, or at uneven instants with true stamps."""
     stamped = stamps(3e-4, 1000)
     read = STEP_S * np.arange(1000) if even else stamped

@@ -17,7 +17,7 @@ def test_planned_motion_is_the_planned_speed_with_its_slope() -> None:
     assert motion.sign_known.all()
 
 
-def test_planned_motion_rests_where_two_samples_stand_still() -> None:
+def test_planned_motion_rests_at_two_successive_samples_of_zero_speed() -> None:
     speed = np.array([0.1, 0.0, -0.1, 0.0, 0.0, 0.2, 0.2, 0.3, 0.2, 0.0])
     run = Run.from_arrays(STEP_S * np.arange(10), speed, position_m=np.zeros(10))
     assert known_motion(run, None).resting.tolist() == [False] * 3 + [True] * 2 + [False] * 5

@@ -37,7 +37,7 @@ def load_with_periodogram(power: Any) -> Any:
     return 100.0 + wave / np.ptp(wave)
 
 
-def test_load_is_not_noise_if_a_spectral_line_is_less_probable_than_1e_minus_4() -> None:
+def test_load_is_not_noise_if_a_spectral_line_has_a_probability_below_1e_minus_4() -> None:
     """Fisher's test: a line with a share g of the power has probability m (1 - g)^(m - 1)."""
     m = 249
     for probability, noise in ((1.03e-4, True), (0.97e-4, False)):
@@ -47,7 +47,7 @@ def test_load_is_not_noise_if_a_spectral_line_is_less_probable_than_1e_minus_4()
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_load_is_not_noise_if_its_colour_is_less_probable_than_1e_minus_4(order: int) -> None:
+def test_load_is_not_noise_if_its_colour_has_a_probability_below_1e_minus_4(order: int) -> None:
     """Bartlett's test: a cumulative periodogram that deviates by d has 2 exp(-2 m d^2)."""
     m = 300
     for probability, noise in ((1.1e-4, True), (0.9e-4, False)):

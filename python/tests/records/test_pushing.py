@@ -108,7 +108,7 @@ def stribeck(omega: float) -> tuple[Array, Array, Array]:
 
 @pytest.mark.parametrize("omega", MOTIONS)
 @pytest.mark.parametrize("size", [0.2, 5.0])
-def test_wrong_sign_of_stribeck_friction_is_found_at_any_speed(omega: float, size: float) -> None:
+def test_wrong_sign_of_stribeck_friction_is_detected_at_any_speed(omega: float, size: float) -> None:
     v, friction, _ = stribeck(omega)
     assert prepared_findings(size * friction, v) == []
     (finding,) = prepared_findings(-size * friction, v)
@@ -124,7 +124,7 @@ def test_weight_inertia_and_spring_forces_are_not_reported_as_wrong_sign(omega: 
         assert prepared_findings(0.02 * friction + other, v) == []
 
 
-def test_one_way_motion_or_random_walk_noise_has_no_wrong_sign_finding() -> None:
+def test_unidirectional_motion_or_random_walk_noise_has_no_wrong_sign_finding() -> None:
     v = 0.05 + 0.03 * np.sin(0.7 * LONG_S)
     assert prepared_findings(-8.0 - 10.0 * v, v) == []
     random_walk = 0.05 * np.cumsum(white(3000, 0))

@@ -18,7 +18,7 @@ def mask(text: str) -> Any:
     return np.array([character == "1" for character in text])
 
 
-def test_at_least_three_consecutive_zero_speeds_are_a_rest() -> None:
+def test_three_or_further_consecutive_zero_speeds_are_a_rest() -> None:
     v = np.array([0.0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0])
     assert places(rests.resting_samples(v)) == [0, 1, 2, 7, 8, 9, 10, 12, 13, 14]
     assert not rests.resting_samples(np.array([1e-300, 0.0, 0.0])).any()

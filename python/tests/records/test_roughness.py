@@ -51,7 +51,7 @@ def test_encoder_step_is_the_smallest_change_above_rounding_and_noise() -> None:
 
 
 @pytest.mark.parametrize("step", [1e-4, 1e-3])
-def test_quantum_is_the_step_of_a_rounded_signal_of_any_speed(step: float) -> None:
+def test_quantisation_step_of_a_rounded_path_is_recovered_at_any_speed(step: float) -> None:
     for turns in (0.01, 1.0, 20.0):
         path = quantised(turns * path_of(TIME_S), step)
         expected = step if np.ptp(path) > 15.0 * step else 0.0
@@ -59,7 +59,7 @@ def test_quantum_is_the_step_of_a_rounded_signal_of_any_speed(step: float) -> No
         assert quantum_of(np.round(path + 7.0, 9)) == pytest.approx(expected)
 
 
-def test_signal_of_noise_of_set_levels_or_of_exact_ramps_has_no_quantum() -> None:
+def test_no_quantisation_step_is_estimated_from_noise_two_levels_or_exact_ramps() -> None:
     assert quantum_of(path_of(TIME_S)) == 0.0
     assert quantum_of(white(400, 3, 1.0)) == 0.0
     assert quantum_of(np.where(np.arange(400) % 50 < 25, 0.1, -0.1)) == 0.0

@@ -18,7 +18,7 @@ def with_errors(motion: Smoothed, **changed: float) -> Smoothed:
     return replace(motion, errors=replace(motion.errors, **changed))
 
 
-def test_runs_with_the_same_errors_have_no_further_starts(trapezoids: Smoothed) -> None:
+def test_runs_with_equal_reading_errors_give_no_additional_starts(trapezoids: Smoothed) -> None:
     other = with_errors(trapezoids, velocity_variance=3.0 * trapezoids.errors.velocity_variance)
     assert further_starts([trapezoids]) == ()
     assert further_starts([trapezoids, other, other]) == ()
@@ -28,7 +28,7 @@ def test_runs_with_the_same_errors_have_no_further_starts(trapezoids: Smoothed) 
     "changed",
     [{"velocity_variance": 1e-2}, {"position_variance": 1e-3}, {"velocity_delay_s": 2e-3}],
 )
-def test_errors_that_differ_between_runs_become_starts(
+def test_reading_errors_that_differ_between_runs_become_additional_starts(
     trapezoids: Smoothed, changed: dict[str, float]
 ) -> None:
     other = with_errors(trapezoids, **changed)

@@ -20,7 +20,7 @@ def run_with(friction_n: Any) -> Run:
 
 
 @pytest.mark.parametrize("digits", [4, 6, 15])
-def test_noise_floor_of_a_command_is_not_known_and_divides_no_error(digits: int) -> None:
+def test_noise_floor_of_a_command_is_unknown_and_no_error_is_relative_to_it(digits: int) -> None:
     comparison = compare(MODEL, [run_with(np.round(FORCE_N, digits))])
     assert "smooth_force" in {f.kind for f in comparison.findings}
     assert comparison.to_dict()["noise_n"] is None

@@ -59,7 +59,7 @@ def test_jitter_of_the_stamps_of_an_even_clock_does_not_change_the_motion(jitter
     assert np.std(motion.mean[:, 2] - acceleration) < 1.3 * error
 
 
-def test_samples_read_off_even_stamps_have_errors_that_grow_with_the_speed() -> None:
+def test_samples_off_their_even_stamps_have_errors_that_grow_with_the_speed() -> None:
     """The stamps are even, the instants are not: the position is off by speed times jitter."""
     t = np.arange(30_000) * STEP_S / FINE
     random = np.random.default_rng(9)
@@ -82,7 +82,7 @@ def test_samples_at_uneven_instants_with_true_stamps_are_not_on_an_even_clock() 
 
 
 @pytest.mark.parametrize("loop_s", [0.0103, 0.0047])
-def test_stamps_in_whole_milliseconds_are_taken_from_an_even_clock(loop_s: float) -> None:
+def test_even_clock_is_recovered_from_stamps_truncated_to_milliseconds(loop_s: float) -> None:
     true = 3.0 + loop_s * np.arange(2000)
     even = even_clock(np.floor(1e3 * true) / 1e3)
     assert even is not None

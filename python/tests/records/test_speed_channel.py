@@ -124,7 +124,7 @@ def at_standstill(offset: float, noise: float = 0.0, samples: int = 100, step: f
 
 
 @pytest.mark.parametrize("offset", [2e-3, -2e-3])
-def test_speed_offset_at_standstill_is_subtracted_from_the_whole_record(offset: float) -> None:
+def test_speed_offset_at_standstill_is_subtracted_from_all_samples(offset: float) -> None:
     speed, hum, finding = at_standstill(offset)
     np.testing.assert_allclose(speed[160:240], 0.0, atol=1e-12)
     assert (speed[0], hum) == pytest.approx((0.1, 0.1))

@@ -33,7 +33,7 @@ def test_last_digit_is_a_decimal_step_or_1e_minus_9_of_largest(values: Any, digi
     assert last_digit(np.array(values, float)) == pytest.approx(digit)
 
 
-def test_quantisation_step_is_found_if_levels_are_missing_or_uneven() -> None:
+def test_quantisation_step_is_recovered_if_levels_are_missing_or_uneven() -> None:
     levels = quantised(WAVE, 0.5)
     assert step_of(levels) == pytest.approx(0.5)
     assert step_of(levels[(levels != 2.0) & (levels != -3.0)]) == pytest.approx(0.5)
@@ -54,7 +54,7 @@ def test_quantisation_step_is_found_if_levels_are_missing_or_uneven() -> None:
         (np.repeat(np.cumsum(np.where(np.arange(100) < 12, 1.4, 1.0)), 10), 0.0),
     ],
 )
-def test_quantisation_step_needs_few_levels_whole_steps_apart(values: Array, step: float) -> None:
+def test_quantisation_step_requires_few_levels_at_integer_multiples_of_the_step(values: Array, step: float) -> None:
     """Nine of ten levels must be whole steps apart, to 3 % of at least five steps."""
     assert step_of(values) == pytest.approx(step)
 
@@ -83,7 +83,7 @@ def clipped(low: float = -np.inf, high: float = np.inf, noise: float = 0.3) -> A
     return np.clip(WAVE + noise * NOISE, low, high)
 
 
-def test_saturation_at_either_limit_is_found_with_seven_samples_on_each_side() -> None:
+def test_saturation_at_either_limit_is_detected_with_seven_samples_on_each_side() -> None:
     force = clipped(-8.0, 9.0)
     mask, ends = saturated(force)
     assert ends == [9.0, -8.0]
@@ -96,7 +96,7 @@ def test_saturation_at_either_limit_is_found_with_seven_samples_on_each_side() -
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_at_least_five_equal_extreme_readings_are_saturation(sign: float) -> None:
+def test_equal_extreme_readings_are_saturation_from_five_readings_on(sign: float) -> None:
     for count, found in ((4, False), (5, True)):
         values = clipped()
         values[100 : 100 + 60 * count : 60] = sign * 20.0

@@ -110,7 +110,7 @@ def test_friction_loop_plot_has_record_and_model_over_speed(comparison: Comparis
     assert modelled[known] == pytest.approx(5.0 + 20.0 * v[known], rel=1e-3)
 
 
-def test_friction_loop_plot_of_friction_alone_excludes_the_sensor_offset() -> None:
+def test_friction_loop_plot_of_isolated_friction_excludes_the_sensor_offset() -> None:
     runs = by_hand.there_and_back(lambda t, v, a: coulomb(t, v, a) + 2.0)
     model = Model(Rig(), "coulomb", ["sensor_offset"], {**LAW, "sensor_offset.b_n": 2.0})
     v, measured = line(jbf.plot.loops(compare(model, runs), 0, alone=True), "measured")
@@ -206,7 +206,7 @@ def test_plotted_run_is_selected_by_name_index_or_largest_rms(comparison: Compar
         index_of(comparison, "nope")
 
 
-def test_most_telling_run_is_the_one_in_which_two_models_differ_most() -> None:
+def test_default_run_of_a_plot_is_that_with_the_largest_difference_between_two_models() -> None:
     """5 N + 20 N s/m and 1 N + 40 N s/m agree at 0.2 m/s and differ by 2 N at 0.1 m/s."""
     runs = [one_way("slow", coulomb), one_way("fast", coulomb, way=2.0)]
     first, second = (

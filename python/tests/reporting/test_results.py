@@ -74,7 +74,7 @@ def test_reporting_functions_reject_an_object_that_is_not_a_result() -> None:
             method(3)  # type: ignore[operator]
 
 
-def test_fit_parameter_is_found_by_full_name_and_by_name_without_unit() -> None:
+def test_fit_parameter_is_accessible_by_full_name_and_by_name_without_unit() -> None:
     fit = fit_by_hand(["sensor_offset"])
     assert fit["sensor_offset.b"] is fit.parameters["sensor_offset.b_n"]
     assert fit["F_c"].value == fit.values["F_c_n"] == 4.9876
@@ -161,7 +161,7 @@ def test_html_table_has_rows_of_a_result(results: Results, kind: str, row: tuple
     assert f"<tr>{cells}</tr>" in results[kind]._repr_html_()
 
 
-def test_html_table_of_an_import_states_why_a_piece_was_left_out() -> None:
+def test_html_table_of_an_import_states_why_a_piece_was_excluded() -> None:
     pieces = (Piece("r", "a.csv", 0, 0.0, 1.5), Piece("", "a.csv", 0, 1.5, 2.0, False, "at rest"))
     html = Import(Path("out"), Rig(), pieces, {})._repr_html_()
     assert "<td>r</td><td>a.csv</td><td>0.000</td><td>1.500</td>" in html

@@ -90,12 +90,12 @@ def findings_of(*cases: tuple[str, str]) -> list[Finding]:
         ("xyzwvv", "x, in a; y, in b; z, in c; and in 3 runs more (left)"),
     ],
 )
-def test_finding_row_names_at_most_three_runs_and_three_texts(texts: str, expected: str) -> None:
+def test_finding_row_lists_up_to_three_runs_and_three_texts(texts: str, expected: str) -> None:
     cases = zip("abcdef", texts, strict=False)
     assert tables.finding_rows(findings_of(*cases)) == [("slow channel", expected)]
 
 
-def test_findings_have_one_row_for_each_kind_and_no_heading_if_there_are_none() -> None:
+def test_findings_have_one_row_for_each_kind_and_an_empty_list_has_no_heading() -> None:
     other = Finding("glitches", "angle_rad", "a", 2.0, "rad", "weighed", "one jump")
     assert tables.finding_rows([*findings_of(("a", "x")), other]) == [
         ("slow channel", "x, in a (left)"),

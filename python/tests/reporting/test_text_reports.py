@@ -166,7 +166,7 @@ def test_optional_sections_of_a_diagnosis_report_appear_only_with_content() -> N
         assert not has_section(plain.summary(), heading)
 
 
-def test_diagnosis_report_has_structure_next_experiment_and_unseen_effects() -> None:
+def test_diagnosis_report_has_structure_next_experiment_and_undetectable_effects() -> None:
     unexplained = diagnosis_by_hand("unexplained").summary()
     tone, bursts = section(unexplained, "What remains")
     assert tone == ["frequency", "12 %", "a 3.00 Hz tone"]
@@ -177,7 +177,7 @@ def test_diagnosis_report_has_structure_next_experiment_and_unseen_effects() -> 
     assert "no pattern along any axis" in adequate
 
 
-def test_diagnosis_report_has_all_steps_in_lines_of_at_most_100_characters() -> None:
+def test_diagnosis_report_has_all_steps_in_lines_of_up_to_100_characters() -> None:
     diagnosis = golden("bearing_coulomb_drag")
     report = diagnosis.summary()
     assert max(map(len, report.splitlines())) <= 100

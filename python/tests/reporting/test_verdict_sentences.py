@@ -92,7 +92,7 @@ def test_headline_has_the_verdict_with_posterior_weights_but_without_errors() ->
         assert numbers_in(rest) == numbers_in(words.verdict_sentence(diagnosis_by_hand(verdict)))
 
 
-def test_unexplained_verdict_names_the_effects_found_and_the_residual_structure() -> None:
+def test_unexplained_verdict_names_the_identified_effects_and_the_residual_structure() -> None:
     remains = diagnosis_by_hand("unexplained").unexplained
     both = replace(diagnosis_by_hand("missing"), verdict="unexplained", unexplained=remains)
     sentence = words.verdict_sentence(both)

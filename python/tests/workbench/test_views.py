@@ -140,12 +140,12 @@ def test_box_with_only_a_lower_speed_limit_selects_all_faster_samples(loaded: Se
     assert min(cell[1] for cell in result["cells"]) >= views.MAP_SPEEDS // 2
 
 
-def test_selection_by_a_mark_is_refused_if_there_is_no_model(loaded: Session) -> None:
+def test_selection_by_a_mark_is_refused_without_a_model(loaded: Session) -> None:
     with pytest.raises(InputError, match="no such model"):
         views.brushed(loaded, None, {"mark": 0}, ["stopgo"], SIZE)
 
 
-def test_series_and_plane_have_only_records_if_there_is_no_model(loaded: Session) -> None:
+def test_series_and_plane_contain_only_records_without_a_model(loaded: Session) -> None:
     result = views.series(loaded, None, "stopgo", (None, None), 1000)
     assert "model_n" not in result
     run = loaded.on_bench().run("stopgo")

@@ -109,7 +109,9 @@ def test_speed_ranges_without_a_film_are_thirds_of_recorded_speeds(campaign: Cam
     assert_changes_at(axis, campaign, slow, fast)
 
 
-def test_velocity_axis_has_12_bins_of_equal_count_in_each_direction(campaign: Campaign, axes: Axes) -> None:
+def test_velocity_axis_has_12_bins_of_equal_count_in_each_direction(
+    campaign: Campaign, axes: Axes
+) -> None:
     axis, velocity = axes["velocity"], velocities(campaign)
     at = places(axis)
     assert len(axis.bins) == 24
@@ -132,7 +134,9 @@ def test_constant_speed_gives_one_velocity_bin_in_each_direction(speed: float) -
     assert [b.centre for b in axis.bins] == pytest.approx([-speed, speed])
 
 
-def test_acceleration_axis_separates_speeding_up_from_slowing(campaign: Campaign, axes: Axes) -> None:
+def test_acceleration_axis_separates_speeding_up_from_slowing(
+    campaign: Campaign, axes: Axes
+) -> None:
     """An acceleration below 2 % of the largest of the run counts as steady motion."""
     axis = axes["acceleration"]
     for p, at in zip(campaign.prepared, axis.places, strict=True):
@@ -247,7 +251,7 @@ def test_force_axis_has_sixteen_bins_of_equal_count() -> None:
 
 
 @pytest.mark.parametrize(("error", "bins"), [(0.0, 16), (0.02, 2)])
-def test_force_axis_merges_bins_that_differ_by_a_fraction_of_the_force_error(
+def test_force_axis_merges_bins_whose_differences_are_below_the_force_error(
     error: float, bins: int
 ) -> None:
     """A drive at its limit: bins within one constant force would separate signs of the error."""

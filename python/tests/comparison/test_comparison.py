@@ -114,7 +114,9 @@ def test_means_over_speed_lie_on_lines_of_record_and_model(off_by_1_n: Compariso
 
 
 @pytest.mark.parametrize(("count", "bins"), [(4, 0), (5, 1), (9, 1), (10, 2), (119, 23), (125, 24)])
-def test_speed_bin_with_fewer_than_5_samples_is_omitted(off_by_1_n: Comparison, count: int, bins: int) -> None:
+def test_speed_bin_with_fewer_than_5_samples_is_omitted(
+    off_by_1_n: Comparison, count: int, bins: int
+) -> None:
     masks: list[npt.NDArray[np.bool_]] = [np.arange(501) < count, np.arange(501) < 50]
     few = replace(off_by_1_n, samples=off_by_1_n.samples.within(masks))
     found = {one.way: len(one.speed_m_s) for one in friction_over_speed(few)}

@@ -62,7 +62,9 @@ def test_result_of_a_run_has_errors_in_json_and_all_samples_in_csv() -> None:
 
 
 @pytest.mark.parametrize(("seconds", "steps"), [(1.0, 500), (0.0031, 2), (1e-4, 1)])
-def test_run_has_one_sample_per_step_and_a_run_shorter_than_a_step_has_one(seconds: float, steps: int) -> None:
+def test_run_has_one_sample_per_step_and_a_run_shorter_than_a_step_has_one(
+    seconds: float, steps: int
+) -> None:
     r = run(None, "none", replace(SHORT, seconds=seconds, skip_s=0.0))
     assert r.time_s == pytest.approx(0.002 * np.arange(steps))
     assert len(r.output_v) == len(r.reference) == steps

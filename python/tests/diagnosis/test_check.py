@@ -26,7 +26,9 @@ def _model() -> Model:
 
 
 @pytest.mark.parametrize("campaigns", [1, pytest.param(8, marks=pytest.mark.extended)])
-def test_strong_effect_is_named_in_all_and_only_the_campaigns_that_simulate_it(campaigns: int) -> None:
+def test_strong_effect_is_named_in_all_and_only_the_campaigns_that_simulate_it(
+    campaigns: int,
+) -> None:
     with ThreadPoolExecutor(1) as executor:
         checked = check(_model(), RUNS, campaigns=campaigns, executor=executor)
     hidden = [answer.hidden for answer in checked.answers]

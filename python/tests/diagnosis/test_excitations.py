@@ -53,7 +53,7 @@ def test_proposed_sines_have_two_periods_and_respect_the_acceleration_limit() ->
             assert found[sine(speed, w)].velocity_m_s == pytest.approx(speed * np.sin(w * time_s()))
 
 
-def test_sine_exceeds_the_acceleration_limit_by_no_more_than_one_percent() -> None:
+def test_sine_exceeds_the_acceleration_limit_by_at_most_one_percent() -> None:
     assert sine(0.1, 2.0) not in motions(sharp=0.1975)
     assert sine(0.1, 2.0) in motions(sharp=0.1985)
 

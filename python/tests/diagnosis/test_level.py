@@ -126,7 +126,9 @@ def _level(false_alarms: float = 0.01) -> Level:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("noise", NOISES)
-def test_false_alarm_rate_does_not_exceed_the_nominal_rate_in_four_kinds_of_noise(noise: str) -> None:
+def test_false_alarm_rate_does_not_exceed_the_nominal_rate_in_four_kinds_of_noise(
+    noise: str,
+) -> None:
     campaigns, false = 120, 0
     for seed in range(campaigns):
         directions = _directions(NOISES[noise](np.random.default_rng(seed)))

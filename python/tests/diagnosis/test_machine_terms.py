@@ -42,7 +42,7 @@ def assert_machine_is_found(found: Diagnosis) -> None:
         assert abs(parameter.value - true) < 3.0 * parameter.stderr, name
 
 
-def test_weight_and_inertia_of_a_drive_are_its_machine_and_no_missing_effects() -> None:
+def test_weight_and_inertia_of_a_drive_are_machine_terms_and_not_missing_effects() -> None:
     found = diagnose(DRIVE, RUNS, law="coulomb")
     assert found.verdict == "adequate", found.summary()
     assert (found.machine, found.effects) == (("inertia_leak", "gravity"), ())
@@ -60,7 +60,7 @@ def test_weight_and_inertia_of_a_rig_without_a_drive_are_both_named_as_effects()
     assert_machine_is_found(found)
 
 
-def test_effect_is_named_next_to_the_machine_of_a_drive() -> None:
+def test_effect_is_named_in_addition_to_the_machine_terms_of_a_drive() -> None:
     def with_cogging(run: Run) -> Run:
         ripple = 0.08 * np.sin(23.0 * np.asarray(run.angle_rad) + 0.4)
         return replace(run, friction_n=run.friction_n + ripple)

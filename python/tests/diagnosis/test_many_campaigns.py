@@ -28,7 +28,9 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path / "all"
 
 
-def test_diagnosis_of_a_folder_equals_that_of_its_runs_if_another_folder_is_invalid(folder: Path) -> None:
+def test_diagnosis_of_a_folder_equals_that_of_its_runs_if_another_folder_is_invalid(
+    folder: Path,
+) -> None:
     progress: list[tuple[str, int, int]] = []
     found = diagnose_many(
         {"lost": folder / "without_rig", "mass": folder / "mass"},

@@ -185,7 +185,9 @@ def test_diagnosis_reports_power_only_if_no_structure_is_unexplained() -> None:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("effect", ["inertia_leak", "sensor_drift"])
-def test_effect_of_detectable_strength_is_detected_in_eighty_percent_of_campaigns(effect: str) -> None:
+def test_effect_of_detectable_strength_is_detected_in_eighty_percent_of_campaigns(
+    effect: str,
+) -> None:
     value: float = powers()[effect].found_80
 
     def friction(t: Array, v: Array, a: Array) -> Array:

@@ -48,7 +48,9 @@ def axes_of(residuals: list[Array]) -> dict[str, float]:
 
 @pytest.mark.parametrize("noise", [WHITE, Noise(0.2, 0.5)])
 @pytest.mark.parametrize("seed", range(5))
-def test_no_structure_is_reported_in_noise_that_the_noise_model_describes(seed: int, noise: Noise) -> None:
+def test_no_structure_is_reported_in_noise_that_the_noise_model_describes(
+    seed: int, noise: Noise
+) -> None:
     residuals = [noise.coloured(e, 0.02) for e in white_noise(sines(), seed)]
     assert find_remainder(*solution_with(sines(), residuals, noise=noise)) == ()
 
@@ -67,7 +69,9 @@ def test_no_structure_is_reported_in_noise_that_the_noise_model_describes(seed: 
         ("stroke", stroke_levels()),
     ],
 )
-def test_each_kind_of_structure_is_detected_in_white_noise(axis: str, structure: list[Array]) -> None:
+def test_each_kind_of_structure_is_detected_in_white_noise(
+    axis: str, structure: list[Array]
+) -> None:
     first, second = white_noise(sines(), 3)
     assert axis in axes_of([first + structure[0], second + structure[1]])
 

@@ -60,7 +60,7 @@ def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:
     assert (found.verdict, found.effects) == ("missing", (effect,)), found.summary()
 
 
-def test_level_that_differs_by_stroke_is_unexplained() -> None:
+def test_friction_level_that_differs_by_stroke_gives_an_unexplained_verdict() -> None:
     found = diagnosed(4045, ("stroke_scatter",))
     assert (found.verdict, found.effects) == ("unexplained", ()), found.summary()
 
@@ -131,7 +131,7 @@ def test_scale_of_the_motion_errors_is_that_of_the_true_errors_of_the_accelerati
     assert motion.scale == pytest.approx(true_scale, rel=0.2)
 
 
-def test_acceleration_error_of_a_hand_guided_drive_is_small_next_to_reversal_jumps() -> None:
+def test_acceleration_error_of_a_hand_guided_drive_is_below_7_percent_of_its_jumps() -> None:
     """Friction jumps by twice its Coulomb level, and the acceleration with it."""
     simulated, campaign = campaign_of(4012)
     plant = simulated.drawn.plant

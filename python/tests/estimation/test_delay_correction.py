@@ -102,7 +102,9 @@ def test_delay_above_a_tenth_of_a_run_or_drift_above_0_2_percent_is_impossible(
 @pytest.mark.parametrize(
     "start_s", [(0.0,) * 4, pytest.param((0.0, 20e-3, 0.0, 30e-3), marks=EXTENDED)]
 )
-def test_delays_beyond_the_linear_range_are_recovered_from_any_start(start_s: tuple[float, ...]) -> None:
+def test_delays_beyond_the_linear_range_are_recovered_from_any_start(
+    start_s: tuple[float, ...],
+) -> None:
     problem, start = fitted(one_way_campaign(LARGE_DELAYS_S))[0], np.array(start_s)
     found = shifts.fit_delays_by_run(
         problem, shifts.Shifted(*fitted(shifts.moved(problem, start, 0.0)), start, 0.0)
@@ -203,7 +205,7 @@ def test_common_delay_is_not_corrected_as_a_clock_drift(delay_s: float) -> None:
     assert corrected(*fitted(one_way_campaign((delay_s,) * 4))) is None
 
 
-def test_delay_of_a_single_run_is_that_of_the_effect() -> None:
+def test_delay_of_a_single_run_is_not_corrected_outside_the_model() -> None:
     assert corrected(*fitted(reversing_campaign((12e-3,)))) is None
 
 

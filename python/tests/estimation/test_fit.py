@@ -166,7 +166,9 @@ def torture() -> dict[str, Any]:
 @pytest.mark.parametrize(
     "seed", [s if s in FAST else pytest.param(s, marks=pytest.mark.extended) for s in FAILURES]
 )
-def test_diagnosis_of_a_formerly_failing_campaign_is_complete_and_consistent(seed: int, torture: Any) -> None:
+def test_diagnosis_of_a_formerly_failing_campaign_is_complete_and_consistent(
+    seed: int, torture: Any
+) -> None:
     row = torture["tried"](seed, 120.0)
     assert row["said"], FAILURES[seed]
     assert row["wrong"] == [], FAILURES[seed]

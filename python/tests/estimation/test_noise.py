@@ -90,7 +90,7 @@ def test_noise_estimated_from_white_noise_is_white(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 3])
-def test_noise_estimate_has_the_largest_likelihood_of_a_grid(seed: int) -> None:
+def test_likelihood_of_the_noise_estimate_reaches_the_maximum_over_a_grid(seed: int) -> None:
     random = np.random.default_rng(seed)
     slow = [autoregressive(10 * seed + k, random.uniform(0.08, 0.4), 0.3, 3000) for k in (0, 1)]
     runs = [noise + white(k, 0.3, 3000) for k, noise in enumerate(slow)]
@@ -111,7 +111,9 @@ def test_estimated_memory_is_not_below_two_of_the_shortest_steps() -> None:
 
 
 @pytest.mark.parametrize(("step_s", "longest_s"), [(0.02, 0.6), (0.2, 0.8)])
-def test_estimated_memory_is_limited_to_600_ms_or_four_steps(step_s: float, longest_s: float) -> None:
+def test_estimated_memory_is_limited_to_600_ms_or_four_steps(
+    step_s: float, longest_s: float
+) -> None:
     slow = autoregressive(6, 10.0 * longest_s, 1.0, 4000, step_s) + white(7, 0.3, 4000)
     found = estimate_noise([slow], [step_s], [everywhere(4000)])
     assert 0.9 * longest_s < found.memory_s < 1.0001 * longest_s

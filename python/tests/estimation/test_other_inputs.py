@@ -181,7 +181,7 @@ def test_friction_proportional_to_the_transmitted_torque_is_identified(tmp_path:
     assert result.steps[-1].holdout_rms_n < 0.0105
 
 
-def test_order_of_steady_states_does_not_matter(tmp_path: Path) -> None:
+def test_fit_of_steady_states_does_not_depend_on_their_order(tmp_path: Path) -> None:
     file = stribeck_table(tmp_path / "curve.csv", np.random.default_rng(7))
     header, *rows = file.read_text().splitlines()
     shuffled = tmp_path / "shuffled.csv"

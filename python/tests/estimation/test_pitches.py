@@ -69,7 +69,9 @@ def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign
         *(pytest.param(0.031, a, marks=EXTENDED) for a in (True, False)),
     ],
 )
-def test_pitch_of_maximum_likelihood_is_that_of_the_simulated_wave(pitch_m: float, along: bool) -> None:
+def test_pitch_of_maximum_likelihood_is_that_of_the_simulated_wave(
+    pitch_m: float, along: bool
+) -> None:
     """A fit finds the peak from within half a period over the path; here a quarter is required."""
     campaign = Campaign.prepare(Rig(), axis_runs([(pitch_m, 0.3)], along=along))
     found = pitches(campaign, along=along)
@@ -85,7 +87,9 @@ def test_pitches_of_waves_are_listed_in_the_order_of_their_amplitudes() -> None:
 
 
 @pytest.mark.parametrize(("periods", "found"), [(3.7, False), (4.3, True)])
-def test_pitch_is_estimated_only_if_the_path_contains_four_periods(periods: float, found: bool) -> None:
+def test_pitch_is_estimated_only_if_the_path_contains_four_periods(
+    periods: float, found: bool
+) -> None:
     lines = [0.2 / p for p in pitches(shuttle([(0.2 / periods, 1.0)]), along=False)]
     assert (abs(lines[0] - periods) < 0.25) == found
 

@@ -60,7 +60,9 @@ def test_rms_of_the_quantisation_bias_is_that_of_its_first_harmonic(step: float)
 
 @pytest.mark.parametrize("step", [1e-3, 2.5, 40.0])
 @pytest.mark.parametrize("origin", [-0.4, 0.0, 0.25])
-def test_origin_of_readings_is_their_offset_from_integer_multiples_of_the_step(step: float, origin: float) -> None:
+def test_origin_of_readings_is_their_offset_from_integer_multiples_of_the_step(
+    step: float, origin: float
+) -> None:
     readings = step * (np.array([-3.0, 0.0, 1.0, 7.0, np.nan]) + origin)
     assert origin_n(step, readings) == pytest.approx(origin * step, abs=1e-9 * step)
 

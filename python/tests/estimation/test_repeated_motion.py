@@ -56,5 +56,7 @@ def test_period_covers_two_strokes_if_their_sizes_differ(second: float, period: 
 
 
 @pytest.mark.parametrize(("period", "found"), [(150, 150), (240, None)])
-def test_period_is_detected_up_to_three_quarters_of_the_record(period: int, found: int | None) -> None:
+def test_period_is_detected_up_to_three_quarters_of_the_record(
+    period: int, found: int | None
+) -> None:
     assert period_samples(wave(300, period)) == found

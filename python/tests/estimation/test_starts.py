@@ -91,7 +91,9 @@ def test_every_start_that_the_catalogue_names_has_a_rule() -> None:
         ("drive_damping", (80.0,)),
     ],
 )
-def test_starting_values_of_a_rule_follow_from_sizes(rule: str, starts: tuple[float, ...]) -> None:
+def test_starting_values_of_a_rule_follow_from_the_sizes_of_a_campaign(
+    rule: str, starts: tuple[float, ...]
+) -> None:
     assert (RULES | LINEAR_RULES)[rule](SIZES) == pytest.approx(starts)
 
 

@@ -221,7 +221,9 @@ def bent() -> Bent:
     # (1 + b)^2 is 1.3 at b = 0.14; the other side (1 - b)^2 is 0.74.
     [(0.0, False), (0.12, False), (-0.12, False), (0.155, True), (-0.155, True), (0.9, True)],
 )
-def test_error_is_doubtful_if_the_cost_deviates_from_a_parabola(bent: Bent, bend: float, doubtful: bool) -> None:
+def test_error_is_doubtful_if_the_cost_deviates_from_a_parabola(
+    bent: Bent, bend: float, doubtful: bool
+) -> None:
     assert bent(bend) == (("p",) if doubtful else ())
 
 

@@ -109,7 +109,7 @@ def test_row_with_a_repeated_time_stamp_is_dropped_and_reported(tmp_path: Path) 
     ],
     ids=["back", "coarse"],
 )
-def test_time_that_runs_back_after_a_restart_or_repeats_ten_times_is_refused(
+def test_time_that_decreases_after_a_restart_or_repeats_ten_times_is_refused(
     times: list[int], message: str, tmp_path: Path
 ) -> None:
     rows = (f"{t},{i},1.0" for i, t in enumerate(times))
@@ -197,7 +197,7 @@ def serial_log(folder: Path, header: str, pos_scale: float, time_scale: float) -
 
 
 @pytest.mark.parametrize(("name", "scale"), [("millis", 1e3), ("micros", 1e6)])
-def test_clock_of_a_microcontroller_states_its_unit(
+def test_unit_of_a_microcontroller_clock_is_inferred_from_its_header(
     name: str, scale: float, tmp_path: Path
 ) -> None:
     header = f"{name},angle [rad],speed [rad/s],torque [Nm]"
@@ -211,7 +211,9 @@ def test_unit_of_time_is_inferred_from_position_and_speed_without_units(tmp_path
     assert [q.place for q in guess.questions] == ["pos", "vel", "torque"]
 
 
-def test_unit_of_time_is_an_open_question_if_position_and_speed_are_inconsistent(tmp_path: Path) -> None:
+def test_unit_of_time_is_an_open_question_if_position_and_speed_are_inconsistent(
+    tmp_path: Path,
+) -> None:
     """A place in degrees next to a speed in rad/s."""
     guess = look(serial_log(tmp_path, "t,pos,vel,torque", 57.3, 1e3))
     assert "t" in [q.place for q in guess.questions]

@@ -41,7 +41,9 @@ def test_variables_of_a_trace_with_equal_times_share_a_table(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("own_times", [False, True])
-def test_columns_named_by_data_layer_paths_are_guessed_without_open_questions(own_times: bool, tmp_path: Path) -> None:
+def test_columns_named_by_data_layer_paths_are_guessed_without_open_questions(
+    own_times: bool, tmp_path: Path
+) -> None:
     channels = {"pos [mm]": POSITION, "vel [mm/s]": VELOCITY, "force [N]": FORCE}
     columns: list[list[str]] = []
     for name, values in channels.items():
@@ -59,7 +61,9 @@ def test_columns_named_by_data_layer_paths_are_guessed_without_open_questions(ow
 
 
 @pytest.mark.parametrize("share", [0.003, 0.4, 0.8])
-def test_truncated_trace_returns_its_complete_samples_or_a_one_line_error(share: float, tmp_path: Path) -> None:
+def test_truncated_trace_returns_its_complete_samples_or_a_one_line_error(
+    share: float, tmp_path: Path
+) -> None:
     path = tmp_path / "trace.csv"
     write_trace(path)
     data = path.read_bytes()

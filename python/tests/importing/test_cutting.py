@@ -236,7 +236,9 @@ def test_recording_is_cut_into_parts_of_equal_duration(
 
 
 @pytest.mark.parametrize("parts", ["1", "2.5", "true", '"half"'])
-def test_number_of_parts_that_is_not_a_positive_integer_is_refused(parts: str, tmp_path: Path) -> None:
+def test_number_of_parts_that_is_not_an_integer_above_one_is_refused(
+    parts: str, tmp_path: Path
+) -> None:
     with pytest.raises(InputError, match=r"cut\.parts"):
         imported(tmp_path, f"parts = {parts}", to_and_fro())
 
@@ -246,7 +248,9 @@ def test_parts_key_is_refused_if_the_recording_is_cut_by_another_criterion(tmp_p
         imported(tmp_path, 'by = "cycles"\nparts = 3', to_and_fro())
 
 
-def test_cutting_unidirectional_motion_by_cycles_reports_that_there_are_no_cycles(tmp_path: Path) -> None:
+def test_cutting_unidirectional_motion_by_cycles_reports_that_there_are_no_cycles(
+    tmp_path: Path,
+) -> None:
     columns = to_and_fro()
     speed = np.abs(columns["velocity_m_s"]) + 0.01
     columns |= {"velocity_m_s": speed, "position_m": np.cumsum(speed) * 0.005}

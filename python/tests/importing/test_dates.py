@@ -69,7 +69,7 @@ def test_parsed_column_of_mixed_notations_equals_its_separately_parsed_cells(
         ("24-OKT-2026 13:05:07", 10),
     ],
 )  # fmt: skip
-def test_month_that_is_written_as_a_word_is_recognised(cell: str, month: int) -> None:
+def test_date_with_a_month_name_is_parsed_in_every_notation(cell: str, month: int) -> None:
     assert parsed(cell) == ns(datetime(2026, month, 24, 13, 5, 7))
     assert is_instant(cell)
 
@@ -163,7 +163,7 @@ def test_file_times_of_windows_keep_their_ticks(tmp_path: Path) -> None:
     ("word", "month"),
     [("Jan", 1), ("ene", 1), ("gen", 1), ("juin", 6), ("juillet", 7), ("Mär", 3), ("dic", 12)],
 )
-def test_month_is_recognised_by_its_name(word: str, month: int) -> None:
+def test_month_name_is_parsed_as_its_number(word: str, month: int) -> None:
     assert parsed(f"24-{word}-2026 10:00:00") == ns(datetime(2026, month, 24, 10))
 
 

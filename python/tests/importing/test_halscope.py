@@ -55,7 +55,9 @@ def test_missing_units_of_a_halscope_log_become_questions(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("tagged", [False, True])
-def test_missing_columns_and_rate_of_halsampler_output_become_questions(tagged: bool, tmp_path: Path) -> None:
+def test_missing_columns_and_rate_of_halsampler_output_become_questions(
+    tagged: bool, tmp_path: Path
+) -> None:
     path = tmp_path / "sampler.txt"
     rows = [
         f"{f'{k} ' if tagged else ''}{p:.6f} {t:.6f} "
@@ -76,7 +78,9 @@ def test_missing_columns_and_rate_of_halsampler_output_become_questions(tagged: 
 
 
 @pytest.mark.parametrize("share", [0.0005, 0.003, 0.5, 0.98])
-def test_truncated_halscope_log_returns_its_complete_samples_or_a_one_line_error(share: float, tmp_path: Path) -> None:
+def test_truncated_halscope_log_returns_its_complete_samples_or_a_one_line_error(
+    share: float, tmp_path: Path
+) -> None:
     path = tmp_path / "scope.log"
     write_log(path)
     data = path.read_bytes()

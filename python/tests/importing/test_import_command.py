@@ -59,14 +59,16 @@ def test_import_without_a_map_writes_a_map_that_can_be_imported(capsys: Capture)
     assert written == {"cut.toml", "import.json", "log.csv", "map.toml", "rig.toml"}
 
 
-def test_recording_is_cut_at_its_rests_by_default_and_the_option_to_disable_is_named(capsys: Capture) -> None:
+def test_recording_is_cut_at_its_rests_by_default_and_the_option_to_disable_is_named(
+    capsys: Capture,
+) -> None:
     text = printed(capsys, IMPORT)
     assert "3 runs of" in text
     assert "--no-cut keeps it whole" in text
     assert len(jbf.import_files("log.csv", "map.toml", whole=True).runs) == 1
 
 
-def test_motion_that_sticks_and_slips_is_not_cut_by_default(capsys: Capture) -> None:
+def test_stick_slip_motion_is_not_cut_by_default(capsys: Capture) -> None:
     time_s = np.arange(0.0, 20.0, 0.01)
     slips = np.floor(time_s / 0.8) + np.clip((time_s % 0.8) / 0.2, 0.0, 1.0)
     force = np.where(time_s % 0.8 < 0.2, 5.0, 6.0)
@@ -90,7 +92,9 @@ def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture)
     assert not Path("runs").exists()
 
 
-def test_second_look_keeps_an_edited_map_and_another_file_gets_a_separate_map(capsys: Capture) -> None:
+def test_second_look_keeps_an_edited_map_and_another_file_gets_a_separate_map(
+    capsys: Capture,
+) -> None:
     # A map that no look has written is nobody's to replace.
     assert "log.map.toml was written" in printed(capsys, "import log.csv")
     assert Path("map.toml").read_text() == MAP

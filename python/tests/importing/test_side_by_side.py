@@ -161,7 +161,7 @@ def test_fit_of_aligned_files_recovers_the_simulated_parameters(capsys: Capture)
 
 
 @pytest.mark.parametrize("gain", [-1e-3, 250.0])
-def test_sign_and_scale_of_the_common_signal_do_not_matter(gain: float) -> None:
+def test_alignment_does_not_depend_on_sign_and_scale_of_the_common_signal(gain: float) -> None:
     write_force(gain)
     check_force(alignments(jbf.import_files("drive.csv", "two.toml"))["force.csv"])
 

@@ -10,7 +10,9 @@ from jbf.importing.formats.registry import FORMATS, UNREAD, format_of
 
 
 @pytest.mark.parametrize("unread", UNREAD, ids=lambda unread: unread.name)
-def test_unread_format_is_named_with_a_remedy(unread: object, tmp_path: Path) -> None:
+def test_unsupported_format_is_refused_with_its_name_and_a_remedy(
+    unread: object, tmp_path: Path
+) -> None:
     known = next(u for u in UNREAD if u is unread)
     paths = [tmp_path / f"a{suffix}" for suffix in known.suffixes]
     for path in paths:
@@ -32,7 +34,7 @@ def test_supported_and_unsupported_formats_have_no_suffix_in_common() -> None:
     assert not read & {suffix for unread in UNREAD for suffix in unread.suffixes}
 
 
-def test_look_at_an_unread_format_exits_with_2_and_one_line(tmp_path: Path) -> None:
+def test_look_at_an_unsupported_format_exits_with_2_and_a_one_line_message(tmp_path: Path) -> None:
     path = tmp_path / "axis.svdx"
     path.write_bytes(b"\x00\x01")
     command = [sys.executable, "-m", "jbf", "import", str(path)]
@@ -43,7 +45,7 @@ def test_look_at_an_unread_format_exits_with_2_and_one_line(tmp_path: Path) -> N
     assert [p.name for p in tmp_path.iterdir()] == ["axis.svdx"]
 
 
-def test_text_with_the_suffix_of_an_unread_format_is_read(tmp_path: Path) -> None:
+def test_text_file_with_the_suffix_of_an_unsupported_format_is_read(tmp_path: Path) -> None:
     path = tmp_path / "curve.raw"
     path.write_text("time [s],force [N],position [mm]\n0.0,1.0,2.0\n0.1,1.1,2.1\n")
     assert format_of(path).name == "text"

@@ -152,7 +152,7 @@ def test_artefact_that_only_a_model_reveals_gives_no_finding_without_a_fit(artef
         ("jitter", "jitter", "rms_s"),
     ],
 )
-def test_finding_size_is_within_25_percent_of_true_size(
+def test_size_of_a_finding_is_within_25_percent_of_the_simulated_size(
     artefact: str, kind: str, size: str
 ) -> None:
     _, truth = recorded(SEED, (), (artefact,), "usual")

@@ -108,7 +108,9 @@ def stribeck(omega: float) -> tuple[Array, Array, Array]:
 
 @pytest.mark.parametrize("omega", MOTIONS)
 @pytest.mark.parametrize("size", [0.2, 5.0])
-def test_wrong_sign_of_stribeck_friction_is_detected_at_any_speed(omega: float, size: float) -> None:
+def test_wrong_sign_of_stribeck_friction_is_detected_at_any_speed(
+    omega: float, size: float
+) -> None:
     v, friction, _ = stribeck(omega)
     assert prepared_findings(size * friction, v) == []
     (finding,) = prepared_findings(-size * friction, v)

@@ -145,7 +145,9 @@ def test_load_coefficients_are_forces_for_a_drive_but_ratios_for_a_bearing() -> 
 
 
 @pytest.mark.parametrize("law", [name for name, page in laws().items() if not page.needs_bearing])
-def test_drive_parameter_has_the_units_of_its_motion_and_is_accepted_by_its_bare_name(law: str) -> None:
+def test_drive_parameter_has_the_units_of_its_motion_and_is_accepted_by_its_bare_name(
+    law: str,
+) -> None:
     effects = tuple(name for name, page in jbf.effects().items() if law not in page.refused)
     known = parameters_of(law, effects)
     for name, page in known.items():

@@ -18,7 +18,7 @@ def mask(text: str) -> Any:
     return np.array([character == "1" for character in text])
 
 
-def test_three_or_further_consecutive_zero_speeds_are_a_rest() -> None:
+def test_at_least_three_consecutive_zero_speeds_are_a_rest() -> None:
     v = np.array([0.0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0])
     assert places(rests.resting_samples(v)) == [0, 1, 2, 7, 8, 9, 10, 12, 13, 14]
     assert not rests.resting_samples(np.array([1e-300, 0.0, 0.0])).any()
@@ -47,7 +47,7 @@ def test_speed_of_a_rest_is_below_0_5_percent_of_the_top_speed_or_a_given_limit(
 
 
 @pytest.mark.parametrize(("samples", "found"), [(160, True), (60, False)])
-def test_rest_under_a_noisy_speed_is_as_long_as_its_counts_resolve_a_slow_speed(
+def test_standstill_with_a_noisy_speed_is_a_rest_if_its_counts_resolve_the_speed_limit(
     samples: int, found: bool
 ) -> None:
     """1.5 counts in 60 samples of 1 ms are 2.5 mm/s, in 160 samples 0.9 mm/s; the limit is

@@ -124,7 +124,7 @@ def test_quantity_in_a_wrong_unit_is_refused_with_file_key_and_remedy(
 
 
 @pytest.mark.parametrize("value", ["0.01", "1e-2", ".5", "mm", "ten mm", "", "nan", "1e999 mm"])
-def test_text_without_a_number_and_a_unit_is_not_a_number(value: str, path: Path) -> None:
+def test_text_without_a_number_and_a_unit_is_refused_in_a_rig_file(value: str, path: Path) -> None:
     error = input_error(rig_of, path, SCREW.replace("10 mm", value))
     assert (error.file, error.key) == (str(path), "drive.pitch_m")
 

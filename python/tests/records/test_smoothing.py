@@ -140,7 +140,7 @@ def test_motion_does_not_depend_on_the_unit_the_zero_or_the_direction_of_time() 
     np.testing.assert_allclose(-back[::-1], motion.mean[:, 1], atol=0.02 * NOISE)
 
 
-def test_long_record_is_smoothed_with_errors_of_its_middle() -> None:
+def test_long_record_is_smoothed_with_the_velocity_noise_recovered_within_5_percent() -> None:
     position, velocity, _ = motion_of("hand-guided", 24_000)
     motion = smooth(readings_of(position, velocity))
     errors = motion.errors

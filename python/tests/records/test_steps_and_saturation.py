@@ -54,7 +54,9 @@ def test_quantisation_step_is_recovered_if_levels_are_missing_or_uneven() -> Non
         (np.repeat(np.cumsum(np.where(np.arange(100) < 12, 1.4, 1.0)), 10), 0.0),
     ],
 )
-def test_quantisation_step_requires_few_levels_at_integer_multiples_of_the_step(values: Array, step: float) -> None:
+def test_quantisation_step_requires_few_levels_at_integer_multiples_of_the_step(
+    values: Array, step: float
+) -> None:
     """Nine of ten levels must be whole steps apart, to 3 % of at least five steps."""
     assert step_of(values) == pytest.approx(step)
 

@@ -35,8 +35,8 @@ def one_way(
 ) -> Run:
     """A run at 0.05 to 0.15 m/s in one direction.
 
-    `friction` is a function of time, speed and acceleration; `way` is the sign of the speed, or a
-    factor of it; `rate` is its angular frequency, 1/s.
+    `friction` is a function of time, speed and acceleration. The argument `way` multiplies the
+    speed and may be a sign; `rate` is the angular frequency of the speed, 1/s.
     """
     t = np.arange(0.0, duration_s + 0.5 * STEP_S, STEP_S)
     v = way * (0.1 + 0.05 * np.sin(rate * t))
@@ -80,14 +80,14 @@ def coulomb(t: Array, v: Array, a: Array) -> Array:
 
 
 def along(more_n: float) -> Friction:
-    """`coulomb` with dry friction larger by `more_n`."""
+    """`coulomb` with a dry friction that is larger by `more_n`."""
     return lambda t, v, a: coulomb(t, v, a) + more_n * np.sign(v)
 
 
 def assert_recovered(
     estimate: ParameterValue, true: float, *, errors: float = 4.0, share: float = 0.0
 ) -> None:
-    """Check an estimate against its standard errors, and in addition a share of the true value."""
+    """Check that an estimate is within its standard errors plus a share of the true value."""
     assert estimate.stderr is not None
     assert abs(estimate.value - true) < errors * estimate.stderr + share * abs(true)
 
@@ -98,7 +98,7 @@ def _computed() -> tuple[Fit, Comparison]:
     fitted = fit(Rig(), there_and_back(coulomb, noise_n=0.1), law="coulomb")
     compared = compare(Model(Rig(), "coulomb", parameters=LAW), there_and_back(along(1.0)))
     campaign = compared.campaign
-    # Records without noise have a finding of that.
+    # Records without noise have a finding that states this.
     without_findings = tuple(
         replace(p, examined=replace(p.examined, findings=())) for p in campaign.prepared
     )
@@ -106,7 +106,7 @@ def _computed() -> tuple[Fit, Comparison]:
 
 
 def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) -> Fit:
-    """A fit of three law parameters, of which one is held, and of the sensor offset if given."""
+    """A fit of three law parameters, one of which is held, and of the sensor offset if given."""
     parameters = {
         "F_c_n": ParameterValue(4.9876, 0.0123),
         "F_s_n": ParameterValue(6.0, None, "held fixed", held=True),

@@ -23,7 +23,7 @@ def campaign(
     motions: tuple[Motion, ...] = SHORT.motions,
     loads: tuple[tuple[str, float], ...] = (),
 ) -> tuple[Rig, list[Run], dict[str, Any]]:
-    """A rig, its runs, and the truth behind them."""
+    """A simulated campaign: rig, runs and true parameters."""
     return simulated(
         seed,
         effects,

@@ -1,4 +1,4 @@
-"""Fixtures: a short campaign simulated with a model of jbf, a known effect and seeded noise."""
+"""Fixtures: a short campaign simulated with a jbf model, a known effect and seeded noise."""
 
 import os
 import shutil
@@ -23,7 +23,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Remove the directory in the process that created it."""
+    """Remove the directory if this process created it."""
     created = config.stash.get(SHARED, None)
     if created is not None:
         shutil.rmtree(created, ignore_errors=True)
@@ -38,7 +38,7 @@ ENCODER_RAD = 1.0 / 2387.3
 
 
 def _motion(kind: str, duration_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """Time and shaft rate (rad/s): a two-way sine, or starts, stops and reversals."""
+    """Time (s) and shaft speed (rad/s): a reversing sine, or starts, stops and reversals."""
     time_s = np.arange(0.0, duration_s, 1.0 / RATE_HZ)
     if kind == "stopgo":
         levels = np.array([0.0, 1.5, 0.0, -3.0, 0.0, 6.0, -1.5])
@@ -50,7 +50,7 @@ def _motion(kind: str, duration_s: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def make_run(model: Model, kind: str, *, seed: int, duration_s: float = 24.0) -> Run:
-    """One run of the model under a motion, as an instrument would record it."""
+    """Simulate one run of the model under a motion, with the noise of an instrument."""
     bearing = model.rig.bearing
     assert bearing is not None
     random = np.random.default_rng(seed)
@@ -87,13 +87,13 @@ def rig() -> Rig:
 
 @pytest.fixture(scope="session")
 def runs() -> list[Run]:
-    """Three short runs with a hidden load-independent drag."""
+    """Three short runs with a load-independent drag that the base law lacks."""
     return make_runs({"coulomb_drag": {"F_d_n": DRAG_N}})
 
 
 @pytest.fixture(scope="session")
 def full_fit(rig: Rig, runs: list[Run]) -> Fit:
-    """Fit of the base law with the hidden effect."""
+    """Fit of the base law with the simulated effect."""
     return fit(rig, runs, effects=["coulomb_drag"])
 
 

@@ -35,7 +35,7 @@ def values_of(problem: Problem, **changed: float) -> Array:
 
 
 def solution_at(problem: Problem, values: Array, noise: Noise = WHITE) -> Solution:
-    """The solution at given values, on the campaign's samples."""
+    """Solution with the given parameter values at the samples of the campaign."""
     return problem.solution(values, problem.campaign.samples, noise)
 
 
@@ -44,7 +44,7 @@ def samples_of(
     counted: Sequence[npt.NDArray[np.bool_]] | None = None,
     step_s: float = STEP_S,
 ) -> Samples:
-    """Samples with these weights, one array for each run; by default all with weight count."""
+    """Samples with the given weights, one array for each run; by default all weights are one."""
     masks = [w > 0.0 for w in weight] if counted is None else counted
     names = tuple(f"run {i}" for i in range(len(weight)))
     return Samples(names, (step_s,) * len(weight), tuple(masks), tuple(weight))
@@ -56,7 +56,7 @@ def solution_of(
     jacobian: Sequence[Array] | None = None,
     noise: Noise = WHITE,
 ) -> Solution:
-    """A solution with these residuals and with values of zero."""
+    """A solution with the given residuals and with all parameter values zero."""
     slopes = [np.zeros((len(r), 0)) for r in residuals] if jacobian is None else list(jacobian)
     values = np.zeros(slopes[0].shape[1])
     cost = samples.cost(residuals, noise)
@@ -64,7 +64,7 @@ def solution_of(
 
 
 def autoregressive(seed: int, memory_s: float, sd: float, n: int, step_s: float = STEP_S) -> Array:
-    """First-order autoregressive noise of a correlation time and standard deviation."""
+    """First-order autoregressive noise with a correlation time (s) and a standard deviation."""
     phi = float(np.exp(-step_s / memory_s))
     kicks = np.random.default_rng(seed).normal(0.0, sd * np.sqrt(1.0 - phi**2), n + 500)
     noise: Array = signal.lfilter([1.0], [1.0, -phi], kicks)[500:]
@@ -72,7 +72,7 @@ def autoregressive(seed: int, memory_s: float, sd: float, n: int, step_s: float 
 
 
 def arma_innovations(values: Array, step_s: float, noise: Noise) -> Array:
-    """`e_t = r_t - phi r_t-1 + phi (1 - colour) e_t-1` by scipy, along the first axis."""
+    """Innovations `e_t = r_t - phi r_t-1 + phi (1 - colour) e_t-1` by SciPy on the first axis."""
     phi = float(np.exp(-step_s / noise.memory_s)) if noise.colour else 0.0
     numerator, denominator = [1.0, -phi], [1.0, -phi * (1.0 - noise.colour)]
     found: Array = signal.lfilter(numerator, denominator, values, axis=0)

@@ -6,8 +6,8 @@ With delay d and clock drift c the force recorded at time t of a run of duration
 - `F(t - d - c t)` in `one_way_campaign`: d is the delay at the start of the run, and the delay in
   its middle is `d + c T / 2`.
 
-Reversing motions reverse about once a second. The friction `F_c + F_v v` of one-way motions is
-linear in every parameter.
+Reversing motions reverse about once a second. The friction `F_c + F_v v` of unidirectional motions
+is linear in every parameter.
 """
 
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ ONE_WAY_NOISE_N = 0.005
 
 
 def reversing_speed(run: int, t: Array) -> Array:
-    """Speed of a reversing run, whose rates depend on its number, m/s."""
+    """Speed of a reversing run, m/s; its frequencies depend on the number of the run."""
     rate = 3.0 + 0.4 * run
     v: Array = 0.12 * np.sin(rate * t) + 0.05 * np.sin(0.618 * rate * t + run)
     return v
@@ -81,7 +81,7 @@ def one_way_campaign(
     constant_speed: int | None = None,
     durations_s: Sequence[float] | None = None,
 ) -> Campaign:
-    """One-way runs of 20 s by default; `delays_s` are those at the start of each run.
+    """Unidirectional runs of 20 s by default; `delays_s` are those at the start of each run.
 
     The run with the number `constant_speed` has a constant speed.
     """
@@ -97,7 +97,7 @@ def one_way_campaign(
 
 
 def fitted(campaign: Campaign, effects: Sequence[str] = ()) -> tuple[Problem, Solution]:
-    """Coulomb's law fitted to the runs as they are recorded."""
+    """Coulomb's law fitted to the uncorrected runs."""
     return fit_from_truth(campaign, *effects)
 
 

@@ -22,12 +22,12 @@ def stroke_speed(amplitude_m: float, omega: float, second: float = 0.37) -> Spee
 
 
 def _bristle(speed: Speed, t: Array, slope: Callable[[float, float], float]) -> Array:
-    """A state whose rate depends on the speed, from zero, at the times `t`."""
+    """Integrate a state from zero whose rate depends on the speed, at the times `t`."""
     return driven(lambda s, y: slope(speed(s), y), t)
 
 
 def driven(rate: Callable[[float, float], float], t: Array) -> Array:
-    """A state with a given rate (time, state), from zero, at the times `t`."""
+    """Integrate a state from zero with a given rate (time, state), at the times `t`."""
     result = solve_ivp(
         lambda s, y: [rate(s, y[0])],
         (t[0], t[-1]),
@@ -116,7 +116,7 @@ def maxwell_slip(
 def elasto_plastic(
     speed: Speed, t: Array, *, fc: float, s0: float, breakaway: float, fv: float
 ) -> Array:
-    """Single-state elasto-plastic law of Dupont with an exponential approach to the level (N)."""
+    """Elasto-plastic law of Dupont with an exponential approach to the steady force (N)."""
 
     def alpha(share: float) -> float:
         return 0.0 if share <= breakaway else (1.0 - breakaway / share) / (1.0 - breakaway)
@@ -155,7 +155,7 @@ def seven(
     tau: float,
     gamma: float,
 ) -> Array:
-    """The seven-parameter model as a state machine on a grid of 0.1 ms (N)."""
+    """The seven-parameter model as a state machine on a time grid of 0.1 ms (N)."""
     dt = 1e-4
     fine = np.arange(t[0], t[-1] + dt, dt)
     v = np.array([speed(x) for x in fine])

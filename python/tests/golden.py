@@ -84,7 +84,7 @@ def _drive(seed: int, path: str, *effects: str, swing: float = 1.0) -> Simulated
 
 
 def _stribeck_slide() -> Simulated:
-    """Three runs of a slide whose Stribeck curve is written out here, not taken from jbf."""
+    """Three runs of a slide whose Stribeck curve is defined here, independently of jbf."""
     noise_n, runs = 0.2, []
     for k, (amplitude, period_s) in enumerate([(0.02, 4.0), (0.1, 3.0), (0.05, 2.5)]):
         t = np.arange(0.0, 24.0, 0.01)
@@ -157,7 +157,7 @@ GOLDEN = {
 
 @cache
 def golden_campaign(name: str) -> Simulated:
-    """The rig, the runs and the noise with rounding errors (N) of a reference campaign."""
+    """Rig, runs and standard deviation of noise and rounding errors (N) of a reference campaign."""
     return GOLDEN[name].simulate()
 
 

@@ -71,7 +71,7 @@ SECONDS = 20
 
 
 def cases(rows: Mapping[str, tuple[Any, ...]], fast: Collection[str]) -> list[Any]:
-    """Parameters of a test, one set for each row; rows not in `fast` are marked as extended."""
+    """Parameters of a test, one set per row; rows not in `fast` run in the extended suite."""
     assert set(fast) <= set(rows)
     return [
         pytest.param(*row, id=name, marks=() if name in fast else pytest.mark.extended)
@@ -87,7 +87,7 @@ def csv_text(
 
 
 def with_cell(row: int, column: str, text: str) -> str:
-    """The run with another text in one cell; the header is row 1."""
+    """The run with a different text in one cell; the header is row 1."""
     rows = [list(cells) for cells in ROWS]
     rows[row - 2][HEADER.index(column)] = text
     return csv_text(rows)

@@ -1,4 +1,4 @@
-"""The `InputError` of a call, for tests that check which place of the input it names."""
+"""Access to the `InputError` of a call, for tests of the place that it names."""
 
 from collections.abc import Callable
 from typing import Any

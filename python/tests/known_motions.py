@@ -23,13 +23,13 @@ def path_of(time_s: Any) -> Any:
 
 
 def reversing_force(time_s: Any, seed: int, noise_n: float = 0.3) -> Array:
-    """A friction force of 20 N that reverses, with white noise independent at each instant, N."""
+    """Friction of 20 N that reverses, with white noise independent at each instant, N."""
     force: Array = 20.0 * np.tanh(50.0 * np.sin(0.3 * time_s)) + white(len(time_s), seed, noise_n)
     return force
 
 
 def reading_instants(rate_hz: float, time_s: Any) -> Array:
-    """Instants of a clock with a given rate that covers a record, s."""
+    """Instants of a clock with a given rate over the duration of a record, s."""
     instants: Array = np.arange(-0.3 / rate_hz, time_s[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
     return instants
 

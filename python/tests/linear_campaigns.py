@@ -34,7 +34,7 @@ def mass(kilograms: float) -> Friction:
 
 
 def lag(seconds: float) -> Friction:
-    """Coulomb friction with a sensor lag to first order, which is then equivalent to a delay."""
+    """Coulomb friction with a sensor lag to first order, where it is equivalent to a delay."""
     return lambda t, v, a: coulomb(t, v, a) - seconds * 20.0 * a
 
 
@@ -56,7 +56,7 @@ HIDDEN: dict[str, tuple[Friction, float]] = {
     "lag": (lag(0.005), 0.05),
     "offset and tone": (offset_and_tone(0.5, 0.46), 0.3),
 }
-"""Friction and standard deviation of its white noise (N) by name of the campaign."""
+"""Friction and standard deviation of its white noise (N) by the name of the campaign."""
 
 
 def linear_runs(hidden: str) -> list[Run]:
@@ -70,7 +70,7 @@ def linear_runs(hidden: str) -> list[Run]:
 
 @shared
 def linear_diagnosis(hidden: str) -> Diagnosis:
-    """The diagnosis of one of these campaigns."""
+    """Diagnosis of one of the campaigns."""
     return diagnose(Rig(), linear_runs(hidden), law="coulomb")
 
 

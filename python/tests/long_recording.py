@@ -31,7 +31,7 @@ class Recording:
 
 
 def recording(motions: int, moving_s: float, resting_s: float, seed: int = 1) -> Recording:
-    """Create motions in both directions, each after a rest, and a last rest."""
+    """Create motions in both directions, each preceded by a rest, and a final rest."""
     rng = np.random.default_rng(seed)
     speeds, spans, runs = [], [], []
     at_s = 0.0
@@ -50,7 +50,7 @@ def recording(motions: int, moving_s: float, resting_s: float, seed: int = 1) ->
     v, x, a = fine[::_FINE], path[::_FINE], rate[::_FINE]
     force = COULOMB_N * np.sign(v) + VISCOUS_N_S_M * v + MASS_KG * a
     columns = {
-        # A quotient of integers, as the clock of every format gives it.
+        # The times are quotients of integers, as the clocks of all formats represent them.
         "time_s": np.arange(len(v)) / RATE_HZ,
         "position_m": np.round(x, 6),
         "velocity_m_s": np.where(v == 0.0, 0.0, v + 1e-5 * rng.standard_normal(len(v))),

@@ -1,4 +1,4 @@
-"""Simulated axis that a position controller moves from point to point and holds between."""
+"""Simulated axis whose position controller moves it from point to point and holds it between."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,7 +15,7 @@ COUNT_M, SPEED_NOISE_M_S, FORCE_NOISE_N = 1e-7, 1e-4, 0.3
 
 
 def trapezoids(random: Any, duration_s: float) -> Any:
-    """Demanded speed (m/s) at each substep: rounded trapezoids to and fro, pauses between them."""
+    """Reference speed (m/s) at each substep: rounded trapezoids in both directions, with pauses."""
     step_s, parts, way = STEP_S / SUBSTEPS, [np.zeros(200)], 1.0
     while sum(map(len, parts)) * step_s < duration_s:
         top, ramp_s, flat_s, pause_s = random.uniform([0.1, 0.1, 0.1, 0.4], [0.5, 0.3, 0.5, 1.5])
@@ -45,10 +45,10 @@ def controlled(demand: Any, integral_1_s: float, bias_n: float) -> tuple[Any, An
         half = 0.5 * VISCOUS_N_S_M * step_s / MASS_KG
         free = ((1.0 - half) * v + (force - bias_n) * step_s / MASS_KG) / (1.0 + half)
         brake = COULOMB_N * step_s / MASS_KG / (1.0 + half)
-        # Friction stops the axis within a step, and does not turn it round.
+        # Friction stops the axis within a step, but does not reverse it.
         new = np.sign(free) * max(abs(free) - brake, 0.0)
         new = 0.0 if v * new < 0.0 else float(new)
-        # The force of a step is that of its middle.
+        # The force of a step is that at its midpoint.
         states[k] = x + 0.25 * (v + new) * step_s, 0.5 * (v + new), force
         x, v = x + 0.5 * (v + new) * step_s, new
     return states[:, 0], states[:, 1], states[:, 2]

@@ -27,7 +27,7 @@ def motion_of(kind: str, samples: int = 3000) -> tuple[Array, Array, Array]:
         up, down = phase < 0.4, (phase > 1.0) & (phase < 1.4)
         return driven(np.where(up, 5.0, 0.0) - np.where(down, 10.0, 0.0) + 5.0 * (phase > 2.6))
     if kind == "saturated steps":
-        # A drive at its limit, either way, and a velocity loop that settles.
+        # A drive at its limit in either direction, and a velocity loop that settles.
         level = np.where(np.mod(t, 2.0) < 1.0, 1.5, -1.5)
         velocity, acceleration = 0.0, np.empty(len(t))
         for k, target in enumerate(level):

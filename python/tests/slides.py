@@ -28,7 +28,7 @@ VALUES = {**LAW, "F_s_n": LAW["F_c_n"]}
 
 
 def numbers_in(pattern: str, text: str) -> tuple[float, ...]:
-    """The numbers that the groups of a pattern capture in a text."""
+    """Numbers captured by the groups of a pattern in a text."""
     match = re.search(pattern, text)
     assert match is not None, text
     return tuple(map(float, match.groups()))

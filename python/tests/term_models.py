@@ -1,4 +1,4 @@
-"""Fitted models beside which terms of the observation model are estimated."""
+"""Fitted models for tests of the terms of the observation model."""
 
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.terms.proposal import Model

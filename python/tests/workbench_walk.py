@@ -1,4 +1,4 @@
-"""A page in headless Chromium, served by the workbench, with every console message collected."""
+"""A page of the workbench in headless Chromium that collects all console messages."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def browser() -> str | None:
 
 
 def why_not() -> str | None:
-    """The reason why browser tests cannot run here; None where they can."""
+    """Reason why browser tests cannot run here; None if they can."""
     try:
         import playwright.sync_api  # noqa: F401
     except ImportError:
@@ -41,7 +41,7 @@ def why_not() -> str | None:
 
 @contextmanager
 def served(folder: Path, *more: str) -> Iterator[str]:
-    """Run `jbf workbench FOLDER` in a separate process; gives its address."""
+    """Run `jbf workbench FOLDER` in a separate process and return its address."""
     command = [sys.executable, "-m", "jbf", "workbench", str(folder), "--no-browser", *more]
 
     def interruptible() -> None:

@@ -1,4 +1,4 @@
-"""Arbitrary bytes in a file: a reader returns a value or raises an `InputError`, within 20 s."""
+"""Check that a reader of arbitrary bytes returns a value or raises an `InputError` within 20 s."""
 
 import re
 from collections.abc import Callable
@@ -31,7 +31,7 @@ FILES = settings(deadline=None, derandomize=True, suppress_health_check=CHECKS)
 
 @st.composite
 def broken(draw: st.DrawFn, kind: str) -> bytes:
-    """A valid file in which a few ranges are removed, doubled or overwritten."""
+    """A valid file in which a few ranges are removed, duplicated or overwritten."""
     data = TEXTS[kind].encode()
     for _ in range(draw(st.integers(1, 3))):
         first = draw(st.integers(0, len(data)))
@@ -54,7 +54,7 @@ def content(kind: str) -> st.SearchStrategy[bytes]:
 
 
 def value_or_one_line(read: Callable[[], object]) -> object:
-    """Return the value that is read, or None if the reader raises an `InputError` of one line."""
+    """Return the value that is read, or None if the reader raises a one-line `InputError`."""
     try:
         with in_time():
             return read()
@@ -122,7 +122,7 @@ def test_randomly_changed_file_is_read_or_refused(
 
 @pytest.mark.parametrize("kind", ["csv", "rig", "model"])
 def test_valid_csv_rig_and_model_file_is_read_without_an_error(kind: str, folder: Path) -> None:
-    """The test above would also pass if every file were refused."""
+    """Guard against a reader that refuses every file, which would also pass the test above."""
     (folder / "x").write_text(TEXTS[kind])
     read = {"csv": read_run, "rig": read_rig, "model": Model.load}[kind]
     assert value_or_one_line(lambda: read(folder / "x")) is not None

@@ -1,4 +1,4 @@
-"""A wrong argument of a public function raises an `InputError` of one line."""
+"""Invalid arguments of public functions raise an `InputError` of one line."""
 
 from collections.abc import Callable
 from typing import Any

@@ -115,7 +115,7 @@ def test_nan_in_a_run_reports_file_row_and_column(command: str, capfd: Capture) 
 
 
 def test_motion_to_predict_with_misspelt_friction_column_is_refused(capfd: Capture) -> None:
-    """A motion to predict may lack friction, but not misspell it."""
+    """The friction column of a motion to predict is optional, but a misspelt name is an error."""
     Path("bad.csv").write_text(csv_text().replace("friction_n", "fricton_n"))
     words = ["predict", "model.toml", "bad.csv", "--out", "new.csv"]
     refused(words, "column fricton_n: is not a known column; did you mean", capfd)

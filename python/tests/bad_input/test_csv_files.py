@@ -1,4 +1,4 @@
-"""CSV files: invalid content is refused with its place; unusual notation is read correctly."""
+"""CSV files: invalid content is refused with its position; unusual notation is read correctly."""
 
 import gzip
 import math
@@ -62,7 +62,7 @@ REFUSED: dict[str, tuple[Text, str]] = {
     # Times
     "unsorted": (csv_text([ROWS[1], ROWS[0], *ROWS[2:]]), "row 3, column time_s: time runs back"),
     "repeated": (csv_text([*ROWS[:5], *ROWS[4:]]), "row 7, column time_s: time repeats at 0.08"),
-    # Sizes that no machine has
+    # Sizes beyond those of any machine
     "1e160 N": (with_force("1e160"), "row 9, column friction_n: 1e+160"),
     "nanoseconds of an epoch": (with_column("time_s", lambda t: 1.7e18 + 1e9 * t), "column time_s"),
     # Loads

@@ -91,7 +91,7 @@ def test_zero_jobs_are_refused_and_an_unset_number_of_jobs_is_accepted() -> None
 
 
 def started(command: Sequence[str], stderr: int) -> subprocess.Popen[bytes]:
-    """A process with the default action of SIGINT, which background processes of a shell ignore."""
+    """Start a process with the default action of SIGINT, which shells disable in the background."""
 
     def restore_interrupts() -> None:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -101,7 +101,7 @@ def started(command: Sequence[str], stderr: int) -> subprocess.Popen[bytes]:
 
 
 def open_for_writing(pipe: str) -> int:
-    """A descriptor of the pipe, as soon as another process reads it."""
+    """Open the pipe for writing as soon as another process reads from it."""
     end = time.monotonic() + SECONDS
     while True:
         try:
@@ -113,7 +113,7 @@ def open_for_writing(pipe: str) -> int:
 
 
 def test_interrupted_command_prints_one_line_and_leaves_no_file(folder: Path) -> None:
-    """The command reads from an open pipe without content when the signal comes."""
+    """The signal arrives while the command reads from an open pipe without content."""
     os.mkfifo("slow.csv")
     before = sorted(p.name for p in folder.iterdir())
     words = ["compare", "model.toml", "slow.csv", "--json", "new.json"]

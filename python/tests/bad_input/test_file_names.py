@@ -23,7 +23,8 @@ def unprivileged() -> Iterator[None]:
     if os.geteuid() != 0:
         yield
         return
-    # Import now what a command imports on demand, possibly from a folder that only root can read.
+    # Import in advance the modules that a command imports on demand, possibly from a folder of
+    # root.
     parser()
     b"".decode("utf-8-sig")
     for module in ("comparison.comparison", "importing.import_files", "demo"):
@@ -126,7 +127,7 @@ FEW_BYTES = 64 << 20
 
 
 def bytes_read() -> int:
-    """Bytes that this process has read; 0 on systems that do not count them."""
+    """Number of bytes read by this process; 0 on systems that do not count them."""
     counters = Path("/proc/self/io")
     text = counters.read_text(encoding="ascii") if counters.exists() else "rchar: 0"
     return int(text.split("rchar: ")[1].split()[0])

@@ -1,4 +1,4 @@
-"""Model files on the command line: bad content is refused, unusual notation is read."""
+"""Model files on the command line: invalid content is refused, unusual notation is read."""
 
 import math
 from pathlib import Path

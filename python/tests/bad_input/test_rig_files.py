@@ -1,4 +1,4 @@
-"""Rig files: bad content is refused with file and key; unusual notation gives the same rig."""
+"""Rig files: invalid content is refused with file and key; unusual notation gives the same rig."""
 
 import re
 from pathlib import Path
@@ -31,7 +31,7 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "a unit in mm": (rig("radius_m = 0.0127", "radius_mm = 12.7"), 'did you mean "radius_m"?'),
     "no bearing": (RIG[RIG.index("[lub") :], "the rig has no [bearing]"),
     "no mass": (rig("mass_kg = 2.2", "#"), "key bearing.mass_kg: is missing; add it to [bearing]"),
-    # Kinds
+    # Types
     "text": (size("viscosity_pa_s", '"thin"'), 'key lubricant.viscosity_pa_s: "thin" is not a num'),
     "true": (size("radius_m", "true"), "key bearing.radius_m: a bool is not a number"),
     # Sizes

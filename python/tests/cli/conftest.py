@@ -6,7 +6,7 @@ import pytest
 from by_hand import coulomb, four_runs
 
 MASS_KG = 0.05
-"""Moved mass that the Coulomb law lacks; its force is half the noise."""
+"""Moving mass that Coulomb's law lacks; its force is half of the noise."""
 NOISE_N = 0.1
 
 

@@ -20,7 +20,7 @@ posix = pytest.mark.skipif(os.name != "posix", reason="needs pipes and terminals
 
 @pytest.fixture
 def model(campaign: Path, full_fit: jbf.Fit) -> Path:
-    """The fitted model with the hidden effect, saved in the folder of the campaign."""
+    """The fitted model with the simulated effect, saved in the folder of the campaign."""
     full_fit.model.save(campaign / "model.toml")
     return campaign / "model.toml"
 

@@ -1,4 +1,4 @@
-"""`jbf control`: tables, files and pictures of simulated compensation; refused arguments."""
+"""`jbf control`: tables, files and plots of simulated compensation; invalid arguments."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""`jbf demo`: a diagnosis of the shipped data, and the commands that it suggests."""
+"""`jbf demo`: diagnosis of the packaged data, and the suggested next command."""
 
 from pathlib import Path
 

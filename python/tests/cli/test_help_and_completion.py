@@ -1,4 +1,4 @@
-"""Help with examples that parse, suggestions for misspelt options, shell completion."""
+"""Help with valid examples, suggestions for misspelt options, and shell completion."""
 
 import shlex
 import shutil
@@ -35,7 +35,7 @@ def test_option_value_is_accepted_after_an_equals_sign_or_a_space() -> None:
 
 
 def completed(text: str, *words: str) -> list[str]:
-    """Words that bash offers after the given ones."""
+    """Completions that bash offers after the given words."""
     line = " ".join(shlex.quote(word) for word in ("jbf", *words))
     request = f'COMP_WORDS=({line}); COMP_CWORD={len(words)}; _jbf; echo "${{COMPREPLY[@]}}"'
     command = ["bash", "-c", f"{text}\n{request}"]

@@ -72,7 +72,7 @@ def test_interrupted_fit_returns_the_best_parameters_so_far() -> None:
 
 
 def stop_at_candidates(message: str, done: int, total: int) -> None:
-    """A progress callback that interrupts as soon as candidates are tried."""
+    """A progress callback that interrupts when the first candidate is tried."""
     if total > 0:
         raise KeyboardInterrupt
 

@@ -53,7 +53,7 @@ def test_concurrent_fits_and_predictions_equal_sequential_ones(campaigns: Campai
 
 @pytest.mark.skipif(not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="the GIL exists")
 def test_extension_does_not_enable_the_gil_of_a_free_threaded_interpreter() -> None:
-    # In a separate process, because another library of the tests may enable the lock.
+    # Use a separate process, because another library of the tests may enable the lock.
     code = "import sys, jbf; jbf.effects(); print(sys._is_gil_enabled())"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

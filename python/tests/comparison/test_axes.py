@@ -1,4 +1,4 @@
-"""Axes of a residual: every sample falls into the bin that its motion determines."""
+"""Axes of a residual: the motion determines the bin of every sample."""
 
 import math
 from itertools import pairwise
@@ -88,7 +88,7 @@ def test_run_axis_has_one_bin_for_each_run(axes: Axes) -> None:
 
 
 def assert_changes_at(axis: Binned, campaign: Campaign, slow: float, fast: float) -> None:
-    """Check that bin 0 has the rests, and bins 1 to 3 the speeds below, between and above."""
+    """Check that bin 0 contains the rests, and bins 1 to 3 the speeds below, between and above."""
     for p, at in zip(campaign.prepared, axis.places, strict=True):
         speed = np.abs(p.motion.velocity_m_s)
         ranges = 1 + (speed >= slow).astype(int) + (speed >= fast)
@@ -137,7 +137,7 @@ def test_constant_speed_gives_one_velocity_bin_in_each_direction(speed: float) -
 def test_acceleration_axis_separates_speeding_up_from_slowing(
     campaign: Campaign, axes: Axes
 ) -> None:
-    """An acceleration below 2 % of the largest of the run counts as steady motion."""
+    """Accelerations below 2 % of the maximum of the run count as steady motion."""
     axis = axes["acceleration"]
     for p, at in zip(campaign.prepared, axis.places, strict=True):
         v, a = p.motion.velocity_m_s, p.motion.acceleration_m_s2
@@ -254,7 +254,7 @@ def test_force_axis_has_sixteen_bins_of_equal_count() -> None:
 def test_force_axis_merges_bins_whose_differences_are_below_the_force_error(
     error: float, bins: int
 ) -> None:
-    """A drive at its limit: bins within one constant force would separate signs of the error."""
+    """The force at a drive's limit is constant; more bins would separate signs of its error."""
     rng = np.random.default_rng(1)
     forces = np.repeat([-3.5, 3.5], 800) + 0.02 * rng.normal(size=1600)
     assert len(force_axis([forces], error).bins) == bins

@@ -1,4 +1,4 @@
-"""Bins of an axis as data: labels, and positions in a picture."""
+"""Bins of an axis: labels, and positions in a plot."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Model against runs: residuals, RMS errors, friction over speed, against closed forms."""
+"""Comparison of a model with runs: residuals, RMS errors and friction over speed in closed form."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ def test_comparison_json_has_errors_noise_runs_and_failures(off_by_1_n: Comparis
     found = off_by_1_n
     content = found.to_dict()
     assert (content["rms_n"], content["noise_n"]) == (found.rms_n, None)
-    # A force without noise has no known noise floor.
+    # The noise floor of a force without noise is unknown.
     assert found.noise_n == 0.0
     runs = [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in found.runs]
     assert content["runs"] == runs
@@ -98,7 +98,7 @@ def test_prediction_with_a_time_delay_lags_by_the_delay() -> None:
 
 
 def test_means_over_speed_lie_on_lines_of_record_and_model(off_by_1_n: Comparison) -> None:
-    """Friction is linear in the speed, so that the means lie on the line."""
+    """Friction is linear in the speed: the means lie on the line."""
     found = friction_over_speed(off_by_1_n)
     assert [one.way for one in found] == [1.0, -1.0]
     for one in found:

@@ -1,4 +1,4 @@
-"""Parts of a model's force: the contribution of effects that other parameters cannot replace."""
+"""Attribution of the force to effects, as far as other parameters cannot replace it."""
 
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ def model_of(effects: list[str], **values: ParameterValue | float) -> Model:
 
 @pytest.fixture(scope="module")
 def runs() -> list[Run]:
-    """Coulomb and viscous friction, read with a zero error of 2 N and a drift of 0.5 N/s."""
+    """Coulomb and viscous friction with a sensor offset of 2 N and a sensor drift of 0.5 N/s."""
     return there_and_back(lambda t, v, a: coulomb(t, v, a) + 2.0 + 0.5 * t)
 
 
@@ -84,7 +84,7 @@ def test_isolated_friction_excludes_offset_inertia_and_drift_but_not_lag() -> No
 def residual_of_least_squares(
     added: list[Array], columns: list[Array], counted: list[npt.NDArray[np.bool_]]
 ) -> list[Array]:
-    """`added` less its least-squares fit by `columns` on the counted samples."""
+    """Residual of a least-squares fit of `columns` to `added` on the counted samples."""
     target = np.concatenate([a[c] for a, c in zip(added, counted, strict=True)])
     matrix = np.concatenate([w[c] for w, c in zip(columns, counted, strict=True)])
     coefficients = np.linalg.lstsq(matrix, target, rcond=None)[0]
@@ -95,7 +95,7 @@ def residual_of_least_squares(
 def test_effect_force_excludes_the_fit_of_free_parameters(
     full: Comparison, runs: list[Run], free: tuple[str, ...]
 ) -> None:
-    """The derivatives are sign(v) and v; held parameters and uncounted samples have no part."""
+    """The derivatives are sign(v) and v; held parameters and uncounted samples are excluded."""
     held = {n: ParameterValue(x, None, held=n not in free) for n, x in LAW.items()}
     before = compare(model_of([], **held), runs)
     masks = [np.arange(501) < 400, np.arange(501) >= 250]
@@ -117,7 +117,7 @@ def test_effects_that_both_compared_models_have_get_no_share_of_the_force(full: 
 
 
 def test_parameter_without_influence_keeps_the_force_attributed_to_an_effect() -> None:
-    """The time constant of a warm-up of size zero has a derivative of zero."""
+    """With a warm-up of size zero the force does not depend on the time constant."""
     runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.01)
     idle = {"F_s_n": 6.0, **LAW, "warm_up.a": 0.0, "warm_up.tau_s": 30.0}
     before = Model(Rig(), "coulomb", ["warm_up"], idle)

@@ -18,7 +18,7 @@ RUNS = tuple(Bin(name) for name in "abcde")
 
 
 def samples_of(*counted: Array) -> Samples:
-    """Samples of which those with a one count, one array for each run."""
+    """Samples with the given masks of counted samples, one array for each run."""
     masks = tuple(c.astype(bool) for c in counted)
     names = tuple(f"{i}" for i in range(len(masks)))
     return Samples(names, (0.01,) * len(masks), masks, tuple(m.astype(float) for m in masks))
@@ -45,7 +45,7 @@ def test_bin_means_use_only_counted_samples_that_have_a_bin() -> None:
 
 
 def test_pattern_share_is_the_explained_square_minus_one_variance_per_bin() -> None:
-    """Of a sum of squares of 95 N^2, three bins of ten samples explain 50 N^2."""
+    """Three bins of ten samples explain 50 N^2 of a sum of squares of 95 N^2."""
     axis = binned(RUNS[:4], [0] * 10 + [1] * 10 + [2] * 10 + [-1] * 5)
     residuals = np.repeat([2.0, -1.0, 0.0, 3.0], [10, 10, 10, 5])
     samples = samples_of(np.ones(35))
@@ -56,14 +56,14 @@ def test_pattern_share_is_the_explained_square_minus_one_variance_per_bin() -> N
     assert found.counts.tolist() == [10, 10, 10, 0]
     assert found.bins == RUNS[:4]
     assert found.to_dict() == {"axis": "run", "where": found.where, "share": 0.5184}
-    # A pattern with exactly the least share is reported.
+    # A pattern whose share equals the minimum share is reported.
     assert pattern_along(axis, samples, [residuals], 0.5, found.share) is not None
     assert pattern_along(axis, samples, [residuals], 0.5, np.nextafter(found.share, 1.0)) is None
 
 
 @pytest.mark.parametrize(("share", "reported"), [(0.0097, False), (0.0103, True)])
 def test_pattern_below_1_percent_is_not_reported_by_default(share: float, reported: bool) -> None:
-    """A mean m with unit swings around it explains m^2 of 1 + m^2."""
+    """Residuals m + 1 and m - 1 have the mean square 1 + m^2, of which the bin explains m^2."""
     mean = np.sqrt(share / (1.0 - share))
     residual = mean + np.tile([1.0, -1.0], 100)
     axis, samples = binned(RUNS[:1], [0] * 200), samples_of(np.ones(200))
@@ -75,7 +75,7 @@ def test_pattern_below_1_percent_is_not_reported_by_default(share: float, report
 def test_pattern_is_reported_if_its_square_exceeds_the_chi_square_threshold(
     significance: float, excess: float, reported: bool
 ) -> None:
-    """A chi-square variable of three degrees of freedom has mean 3 and deviation sqrt(6)."""
+    """Chi-square with three degrees of freedom has mean 3 and standard deviation sqrt(6)."""
     noise = 0.7
     explained = (3.0 + significance * np.sqrt(6.0) + excess) * noise**2
     residual = np.full(30, np.sqrt(explained / 30.0))
@@ -100,7 +100,7 @@ def test_pattern_sizes_are_those_of_the_second_residual_if_given() -> None:
 
 
 def test_pattern_description_has_the_sign_and_the_mean_size_over_all_samples() -> None:
-    """300 samples at 1 N m and 100 samples at 3 N m have the mean size 1.5 N m."""
+    """300 samples of 1 N m and 100 samples of 3 N m have a mean size of 1.5 N m."""
     for means, relation in (
         ([-1.0, 3.0], "record above the model by 1.5 N m"),
         ([1.0, -3.0], "record below the model by 1.5 N m"),
@@ -123,7 +123,7 @@ def test_bins_below_2_percent_of_square_are_not_named(other: float, named: bool)
 
 
 def test_pattern_description_names_the_bins_with_the_largest_explained_square() -> None:
-    """10 samples at 2 N m explain 40 (N m)^2; 100 samples at 1 and -0.9 N m explain 100 and 81."""
+    """10 samples of 2 N m explain 40 (N m)^2; 100 samples of 1 and -0.9 N m explain 100 and 81."""
     words = description(RUNS[:3], [2.0, 1.0, -0.9], [10, 100, 100])
     assert words == "most +1 N m at run b; -0.9 N m at run c"
     found_elsewhere = description(RUNS[:3], [1.0, -8.0, 2.0], found=[3.0, 0.1, 3.0])
@@ -160,7 +160,7 @@ def test_step_between_runs_is_the_largest_failure_with_its_share_and_means() -> 
     step = [r + level for r, level in zip(noise_of(campaign), (0.5, -0.5), strict=True)]
     found = find_failures(campaign, campaign.samples, step, 0.05, 1.0)
     assert found[0].axis == "run"
-    # The step is 0.25 of the mean square 1.25.
+    # The step explains 0.25 of the mean square 1.25.
     assert found[0].share == pytest.approx(0.2, abs=0.03)
     assert found[0].means_n == pytest.approx([0.5, -0.5], abs=0.1)
     shares = [f.share for f in found]

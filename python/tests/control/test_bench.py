@@ -39,7 +39,7 @@ def test_bench_has_the_constants_of_the_thesis() -> None:
 
 
 def test_simulated_shaft_without_noise_obeys_its_equation_of_motion() -> None:
-    """v' = -a v + b (u - F), exact over a step of constant input and friction."""
+    """Exact solution of v' = -a v + b (u - F) over a step of constant input and friction."""
     bench = replace(QUIET, inner_steps=1)
     r = run(None, "none", SHORT, bench=bench)
     decay = math.exp(-bench.damping_1_s * bench.dt_s)
@@ -49,7 +49,7 @@ def test_simulated_shaft_without_noise_obeys_its_equation_of_motion() -> None:
 
 
 def test_velocity_loop_without_friction_has_the_analytical_transfer_function() -> None:
-    """A first-order plant under u = -g (v_hat - r) + c r, v_hat with the observer's lag 1/k."""
+    """First-order plant under u = -g (v_hat - r) + c r; v_hat has the observer's lag 1/k."""
     task = replace(SHORT, frequency_rad_s=2.0, seconds=40.0, skip_s=10.0)
     r = run(None, "none", task, bench=replace(QUIET, volts_per_n=1e-12))
     s = 2.0j
@@ -62,7 +62,7 @@ def test_velocity_loop_without_friction_has_the_analytical_transfer_function() -
 
 
 def test_shaft_below_the_breakaway_voltage_stays_at_rest_for_ten_minutes() -> None:
-    """An error of 0.1 rad gives 0.19 V; the bearings hold 0.76 V."""
+    """An error of 0.1 rad gives 0.19 V, below the breakaway voltage of 0.76 V."""
     task = replace(TASKS["position sine"], seconds=600.0)
     held = (np.full(300_000, 0.1), np.zeros(300_000))
     r = run(thesis_model(elastic="nothing"), "none", task, bench=QUIET, reference=held)
@@ -101,7 +101,7 @@ def test_simulated_runs_are_equal_if_and_only_if_their_noise_seeds_are() -> None
 def test_scaled_noise_multiplies_encoder_variance_including_rounding(
     factor: float, counts: float
 ) -> None:
-    """Rounding to whole counts has the variance 1/12 (Widrow), which no encoder falls below."""
+    """Rounding to integer counts adds a variance of 1/12 (Widrow), the minimum of any encoder."""
     bench = with_noise(replace(THESIS_BENCH, encoder_noise_counts=counts), factor)
     assert bench.input_noise_v == pytest.approx(0.005 * factor)
     expected = max(factor**2 * (counts**2 + 1.0 / 12.0) - 1.0 / 12.0, 0.0)
@@ -117,7 +117,7 @@ def test_thesis_model_has_given_elastic_element_and_parameters(elastic: str, eff
     assert (model.effects, model.clock, model.rig) == (effects, "journal", THESIS_RIG)
     values = {n: p.value for n, p in model.parameters.items()}
     assert values == {"f_m": 0.26, **FITTED, "K0": 1e6, **ELASTIC[elastic]}
-    # The contact bends by one encoder count before it slides at f_m = 0.26.
+    # At f_m = 0.26 the contact deflects by one encoder count before it slides.
     stiffness = ELASTIC["contact"]["presliding.sigma_1_m"]
     assert stiffness * 0.0127 / COUNTS_PER_RAD == pytest.approx(0.26)
 

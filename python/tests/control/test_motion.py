@@ -1,4 +1,4 @@
-"""Recorded motions as references of a loop."""
+"""Recorded motions as references of a control loop."""
 
 import math
 from dataclasses import replace
@@ -16,7 +16,7 @@ RADIUS_M = 0.0127
 
 
 def recorded(**columns: Any) -> Run:
-    """A speed that grows by 1 rad/s each second, with further columns."""
+    """A speed that increases by 1 rad/s each second, with additional columns."""
     return Run.from_arrays(TIME, **{"velocity_m_s": RADIUS_M * TIME, **columns})
 
 

@@ -1,4 +1,4 @@
-"""Robustness of a compensator whose model is wrong: the cases, the ratios and the verdict."""
+"""Robustness of a compensator with a wrong model: cases, error ratios and verdict."""
 
 import re
 from dataclasses import replace
@@ -26,7 +26,7 @@ def all_cases() -> dict[str, Case]:
 
 @shared
 def square_outcomes() -> dict[str, Outcome]:
-    """The outcome of each case for the square in position, by name."""
+    """Result of each case for the square wave in position, by name."""
     return {o.name: o for o in robustness(tasks=SQUARE)}
 
 
@@ -58,7 +58,7 @@ def test_each_hidden_effect_is_added_to_the_plant_at_its_strong_or_starting_valu
         for p in page.parameters:
             expected = STRONG.get(name, {}).get(p.name, p.starts[0])
             assert case.plant.parameters[f"{name}.{p.name}"].value == expected
-        # The load dependence has an influence only under another load.
+        # The load dependence has an influence only if the load differs from the reference.
         assert case.load_factor == (1.5 if name == "load_dependence" else 1.0)
 
 
@@ -97,7 +97,7 @@ def test_robustness_cases_with_a_wrong_constant_differ_by_the_factor_they_name()
 def test_robustness_cases_exclude_model_effects_and_viscosity_without_a_film() -> None:
     names = {case.name for case in cases(Model(Rig.thesis(), "coulomb", ["wear_in"]))}
     assert "hidden wear_in" not in names
-    assert "hidden coulomb_drag" not in names  # the law has it already
+    assert "hidden coulomb_drag" not in names  # already contained in the law
     assert not any("viscosity" in name for name in names)
     assert "load doubled" in names
 
@@ -121,7 +121,7 @@ def test_robustness_ratio_is_the_error_with_over_that_without_compensation(name:
 
 
 def test_robustness_ratios_agree_with_the_table_of_the_documentation() -> None:
-    """In every case the worst task is the square in position."""
+    """In every case the largest error ratio is that of the square wave in position."""
     section = PAGE.read_text(encoding="utf-8").partition("## When the model is wrong")[2]
     rows = re.findall(r"\| `?([a-z_][\w %]*?)`? \| (\d\.\d{3}) ", section)
     printed = {name: float(ratio) for name, ratio in rows}

@@ -1,4 +1,4 @@
-"""One run of the loop: errors, references, loads, faults, and the model of the compensator."""
+"""One run of the control loop: errors, references, loads, faults, and the compensator's model."""
 
 import csv
 import io
@@ -17,7 +17,7 @@ SHORT = replace(TASKS["velocity sine"], seconds=14.0)
 
 
 def same(a: Result, b: Result) -> bool:
-    """Whether two runs agree in every column."""
+    """Return whether two runs agree in every column."""
     return all(np.array_equal(x, b.columns()[n]) for n, x in a.columns().items())
 
 
@@ -93,7 +93,7 @@ def test_default_load_equals_an_explicit_constant_load_of_the_rig() -> None:
 
 
 def test_breakaway_friction_is_proportional_to_the_load() -> None:
-    """The shaft breaks away where the output reaches f_m times the load in volts."""
+    """The shaft breaks away when the output reaches f_m times the load in volts."""
     task = replace(TASKS["position sine"], seconds=4.0)
     ramp = (np.linspace(0.0, 2.0, 2000), np.zeros(2000))
     model, bench = thesis_model(elastic="nothing"), replace(THESIS_BENCH, input_noise_v=0.0)
@@ -123,7 +123,7 @@ def test_compensation_is_switched_off_while_the_encoder_is_frozen(scheme: str, r
     assert np.all(r.status[frozen] & FALLBACK)
     fallback = ((r.status & FALLBACK) > 0) & (np.abs(r.base_v) < THESIS_BENCH.limit_v)
     assert np.array_equal(r.output_v[fallback], r.base_v[fallback])
-    # The encoder counts again from 12 s on.
+    # The encoder resumes counting at 12 s.
     assert np.all(r.status[r.time_s > 15.0] & (FROZEN | FALLBACK) == 0)
 
 

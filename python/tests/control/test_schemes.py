@@ -18,7 +18,7 @@ NEWTONS = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_v_n_s_m": 20.0})
 
 
 def extended(*values: object) -> list[Any]:
-    """Parameters of a test that are left to the extended suite."""
+    """Parameters of a test that runs in the extended suite only."""
     return [pytest.param(value, marks=pytest.mark.extended) for value in values]
 
 
@@ -56,7 +56,7 @@ def test_observed_compensator_reduces_the_error_tenfold_on_another_drive() -> No
 
 
 CONSTANT = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 1e-6})
-"""A friction of 5 N at any speed."""
+"""Friction of 5 N, independent of the speed."""
 TENTH_VOLT = replace(THESIS_BENCH, volts_per_n=0.1)
 
 
@@ -75,7 +75,7 @@ def test_coulomb_observer_starts_at_its_initial_value_and_stops_at_its_limit() -
 
 @pytest.mark.parametrize("task", [POSITION, VELOCITY], ids=["position", "velocity"])
 def test_repetitive_gain_is_half_of_the_loop_stiffness_at_a_blocked_shaft(task: Task) -> None:
-    """The stiffness is the output voltage per error of a shaft that cannot move."""
+    """The stiffness is the output voltage per unit of error of a blocked shaft."""
     task = replace(task, seconds=6.0, skip_s=0.0)
     bench = replace(THESIS_BENCH, input_noise_v=0.0)
     held = (np.full(3000, 0.01), np.zeros(3000))
@@ -103,14 +103,14 @@ def test_repetitive_scheme_halves_the_error_between_the_first_and_the_last_perio
 
 @pytest.mark.parametrize(("task", "top"), [(VELOCITY, 1.04), (POSITION, 1.0)])
 def test_friction_table_has_the_steady_friction_up_to_the_top_speed(task: Task, top: float) -> None:
-    """5 N + 20 N s/m, from zero at rest, up to at least 1 rad/s."""
+    """Friction of 5 N + 20 N s/m times the speed, tabulated from rest up to at least 1 rad/s."""
     core = Table(NEWTONS).core(task, THESIS_BENCH)
     speeds = core["width"] * np.arange(len(core["levels_v"]))
     assert speeds[-1] == pytest.approx(top)
     assert core["levels_v"][0] == 0.0
     expected = (5.0 + 20.0 * speeds) * THESIS_BENCH.volts_per_n
     assert core["levels_v"][1:] == pytest.approx(expected[1:].tolist())
-    # The speed of a bearing is that of its journal.
+    # The speed of a bearing is the surface speed of its journal.
     model = thesis_model()
     levels = Table(model).core(task, THESIS_BENCH)["levels_v"]
     (steady,) = model.steady_friction(np.array([top * 0.0127])) * THESIS_BENCH.volts_per_n

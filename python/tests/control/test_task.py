@@ -1,4 +1,4 @@
-"""Tasks of the loop: the programs of the thesis, derived quantities, and invalid values."""
+"""Tasks of the control loop: programs of the thesis, derived quantities, and invalid values."""
 
 import math
 from dataclasses import replace
@@ -28,7 +28,7 @@ def test_predefined_task_agrees_with_chapter_six_of_the_thesis(name: str) -> Non
     assert task.top_speed_rad_s == pytest.approx(top)
     assert task.is_position == name.startswith("position")
     assert task.unit == ("rad" if task.is_position else "rad/s")
-    # In velocity control the first two seconds do not count.
+    # The first two seconds are skipped in velocity control.
     assert (task.seconds, task.skip_s) == ((50.0, 0.0) if task.is_position else (52.0, 2.0))
     assert set(TASKS) == set(PROGRAMS)
 

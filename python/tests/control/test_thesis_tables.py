@@ -1,4 +1,4 @@
-"""Tables 6.1 and 6.2 of the thesis: the printed figures are the reference."""
+"""Tables 6.1 and 6.2 of the thesis: simulations against the printed figures."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,7 @@ from jbf.control.thesis_tables import PRINTED_PEAK, PRINTED_RMS, Cell, Tables, f
 from shared import shared
 
 PRINTED = {
-    # Peak and RMS error without compensation, with the dynamic, with the Coulomb scheme.
+    # Peak and RMS errors without compensation, with the dynamic and with the Coulomb scheme.
     "position triangle": (0.474, 0.398, 0.454, 0.0894, 0.296, 0.212),
     "position square": (None, 0.232, None, 0.165, None, 0.162),
     "position sine": (0.536, 0.384, 0.350, 0.0595, 0.356, 0.0615),
@@ -80,7 +80,7 @@ def test_error_ratio_of_learning_decreases_if_the_friction_scale_increases() -> 
 def test_table_cell_has_the_rms_error_over_seeds_and_the_mean_peak_error() -> None:
     """The seeds are 1, 2, ..., independent of the seed of the bench."""
     task = replace(TASKS["velocity sine"], seconds=8.0)
-    # The noise is large enough for the seeds to differ.
+    # The noise is large enough to make the results of the seeds differ.
     bench = replace(THESIS_BENCH, seed=9, input_noise_v=1.0)
     reports: list[tuple[str, int, int]] = []
     tasks, schemes = {"velocity sine": task}, {"none": NoCompensation()}
@@ -152,7 +152,7 @@ def test_fit_of_the_uncompensated_cells_recovers_the_friction_of_the_bench() -> 
 
 @pytest.mark.extended
 def test_largest_error_of_the_uncompensated_cells_is_19_percent_on_the_journal_clock() -> None:
-    """The documentation states 19 % for the worst cell on the journal clock."""
+    """The documentation states an error of 19 % for the worst cell on the journal clock."""
     on_the_thesis_clock = max(abs(c.ratio - 1.0) for c in simulated_tables().column("none"))
     assert on_the_thesis_clock < on_the_journal_clock() == pytest.approx(0.19, abs=0.01)
 
@@ -173,7 +173,7 @@ def test_each_changed_assumption_alters_only_the_table_columns_that_it_concerns(
         for column in ("none", "learning", "coulomb", "observed"):
             same = found[name].column(column) == base.column(column)
             assert same == (column in columns), (name, column)
-    # Fewer cells agree with the scale of the listings than with that of the rig.
+    # Fewer cells agree with the friction scale of the listings than with that of the rig.
     assert found["scale 25.5 V, as listed"].within(2.0) < base.within(2.0)
     assert found["nothing elastic"].model.effects == ()
     assert found["elastic contact, no belt"].model.effects == ("presliding",)

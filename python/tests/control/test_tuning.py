@@ -13,7 +13,7 @@ from jbf.control.tuning import friction_level_v
 
 DRY = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 20.0})
 VOLT = replace(THESIS_BENCH, volts_per_n=1.0 / 5.1)
-"""A bench on which the friction of `DRY` at 5 mm/s is one volt."""
+"""A bench on which the friction of `DRY` at 5 mm/s corresponds to one volt."""
 
 
 def test_friction_level_is_the_friction_at_five_millimetres_per_second() -> None:
@@ -31,7 +31,7 @@ def test_friction_level_is_that_of_the_direction_with_larger_friction(asymmetry:
 
 
 def test_friction_level_of_a_bearing_lies_just_below_its_breakaway_friction() -> None:
-    """Breakaway is f_m times the load; at 5 mm/s the film carries at most U / U_tr of it."""
+    """Breakaway friction is f_m times the load; at 5 mm/s the film carries U / U_tr of it or less."""
     breakaway = 0.26 * 104.0 * THESIS_BENCH.volts_per_n
     level = friction_level_v(thesis_model(elastic="nothing"))
     assert (1.0 - 0.005 / FITTED["U_tr_m_s"]) * breakaway < level <= breakaway
@@ -54,7 +54,7 @@ def test_settings_follow_from_time_step_encoder_resolution_and_friction_level() 
 
 
 def test_bandwidth_limits_encoder_noise_to_one_percent_of_the_friction_level() -> None:
-    """The noise of the speed estimate is sigma w sqrt(w dt)."""
+    """The standard deviation of the speed estimate is sigma w sqrt(w dt)."""
     noisy = replace(VOLT, encoder_noise_counts=40.0)
     sigma_rad = math.sqrt(1.0 / 12.0 + 40.0**2) / VOLT.counts_per_rad
     settings, level = tune(DRY, noisy), friction_level_v(DRY, VOLT)

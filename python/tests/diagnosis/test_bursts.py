@@ -14,7 +14,7 @@ from slides import STEP_S, Array, Mask, numbers_in, steady_slides
 
 N = 2000
 UNIT = 0.6745
-"""Innovations that all have this magnitude have a robust standard deviation of one."""
+"""Innovations of this constant magnitude have a robust standard deviation of one."""
 SHARE_8 = 4 * 8.0**2 / (4 * 8.0**2 + (N - 4) * UNIT**2)
 """Share of the mean square of four innovations of eight standard deviations."""
 
@@ -22,12 +22,12 @@ campaign_of = cache(steady_slides)
 
 
 def quiet() -> Array:
-    """Innovations with a standard deviation of one whose neighbours cancel: + + - -."""
+    """Innovations with the sign pattern + + - -, whose neighbours are uncorrelated on average."""
     return np.asarray(UNIT * np.where(np.arange(N) % 4 < 2, 1.0, -1.0))
 
 
 def with_bursts(bursts: dict[int, float], length: int = 4) -> Array:
-    """Quiet innovations with bursts of constant size (first sample to size)."""
+    """Innovations of constant magnitude with bursts of constant size (first sample to size)."""
     signal = quiet()
     for start, size in bursts.items():
         signal[start : start + length] = size
@@ -47,7 +47,7 @@ def bursts_in(
 
 
 def times(found: Remainder) -> list[tuple[float, str]]:
-    """Time (s) and run of each burst in the description, in its order."""
+    """Time (s) and run of each burst, in the order of the description."""
     return [(float(t), run) for t, run in re.findall(r"([\d.]+) s in (\w)", found.where)]
 
 
@@ -87,7 +87,7 @@ def test_large_innovations_of_alternating_sign_are_not_a_burst() -> None:
 
 @pytest.mark.parametrize(("part", "found"), [(0.9, False), (1.1, True)])
 def test_burst_requires_a_significant_correlation_of_neighbours(part: float, found: bool) -> None:
-    """Four values clipped to three: three pairs with product 9, and two pairs at the edges."""
+    """Four values clipped at three: three pairs with the product 9, and two pairs at the edges."""
     mean_square = (4 * 9.0 + (N - 4) * UNIT**2) / N
     product = 3 * 9.0 + 3.0 * (quiet()[999] + quiet()[1004])
     probability = float(special.ndtr(-product / np.sqrt(5 * 9.0 * mean_square)))

@@ -1,4 +1,4 @@
-"""`check`: how often diagnoses of simulated campaigns like the given one are right."""
+"""Rates of correct diagnoses of campaigns that `check` simulates like the given one."""
 
 import json
 from concurrent.futures import ThreadPoolExecutor
@@ -110,7 +110,7 @@ def test_identity_of_a_check_differs_by_model_runs_and_policy() -> None:
 
 @pytest.fixture
 def command(tmp_path: Path) -> list[str]:
-    """`jbf check` of a bare law and two runs, with a file of stored answers."""
+    """Run `jbf check` for a base law and two runs, with a file of stored results."""
     paths = []
     for run in four_runs(coulomb, noise_n=0.1)[:2]:
         paths.append(str(tmp_path / f"{run.name}.csv"))
@@ -146,11 +146,11 @@ def test_interrupted_check_continues_from_its_answers(command: list[str], tmp_pa
     kept = tmp_path / "kept.jsonl"
     assert main([*command, "-n", "1"]) == 0
     first = kept.read_text()
-    # A half-written answer is computed again.
+    # A partially written result is computed again.
     kept.write_text(first[: len(first) // 2])
     assert main([*command, "-n", "1"]) == 0
     assert kept.read_text() == first
-    # The line break of the last answer may be missing.
+    # The line break of the last result may be missing.
     kept.write_text(first.rstrip("\n"))
     assert main([*command, "-n", "2"]) == 0
     assert kept.read_text().startswith(first)
@@ -158,7 +158,7 @@ def test_interrupted_check_continues_from_its_answers(command: list[str], tmp_pa
 
 
 def test_machine_terms_of_a_drive_count_as_identified_effects_in_a_check() -> None:
-    """A model with inertia and weight, on the runs of a joint that is driven to and fro."""
+    """A model with inertia and weight, and the runs of a reciprocating joint."""
     rig = Rig(drive=Drive("rotary", "torque"))
     time = np.arange(0.0, 12.0, 0.02)
     runs = []

@@ -1,4 +1,4 @@
-"""The paired test over independent units: runs or, of few runs, strokes."""
+"""Paired test over independent units: runs, or strokes if there are few runs."""
 
 import numpy as np
 import pytest
@@ -48,7 +48,7 @@ def test_absent_effect_is_not_confirmed() -> None:
 
 
 def test_effect_is_not_confirmed_by_fewer_than_six_units() -> None:
-    """Two runs of less than two strokes each."""
+    """Two runs that contain fewer than two strokes each."""
     found = candidates(2, 1.0, seconds=1.5).confirmation((), OFFSET)
     assert found.units < 6
     assert not found.units_confirm(0.5)

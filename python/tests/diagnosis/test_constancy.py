@@ -1,4 +1,4 @@
-"""Constancy of the parameters between runs: the score test against regressions, and simulations."""
+"""Constancy of the parameters between runs: score test against regressions, and simulations."""
 
 import re
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ from slides import VALUES, Array, numbers_in, slides, solution_with, white_noise
 
 N = 400
 ALTERNATING = np.where(np.arange(N) % 2, 1.0, -1.0)
-"""Noise of variance one that is hardly correlated with any smooth direction."""
+"""Noise of variance one that is nearly uncorrelated with any smooth direction."""
 LEVEL = np.ones(N)
 RAMP = np.linspace(-1.0, 1.0, N)
 SPEED = 0.1 + 0.05 * RAMP
@@ -43,7 +43,7 @@ def explained(design: Array, target: Array) -> float:
 
 
 def by_regression(residuals: Sequence[Array], design: Array) -> tuple[float, list[float]]:
-    """Gain of separate parameters for each run over common ones, and squares explained by run."""
+    """Gain of separate parameters for each run over common ones, and explained squares by run."""
     sigma = [float(np.sqrt(np.mean(r**2))) for r in residuals]
     own = [explained(design, r / s) for r, s in zip(residuals, sigma, strict=True)]
     stacked = np.concatenate([r / s for r, s in zip(residuals, sigma, strict=True)])
@@ -58,7 +58,7 @@ def test_disagreement_of_runs_is_the_gain_of_separate_regressions(unit: float) -
     found = disagreement(*solution_with(one_way(4), residuals))
     gain, own = by_regression(residuals, np.column_stack([LEVEL, RAMP]))
     assert found.gain == pytest.approx(gain)
-    # Two directions in each of four runs, less the two parameters that they share.
+    # Two directions in each of four runs, minus the two common parameters.
     assert found.degrees == 6
     assert found.by_run == pytest.approx(dict(zip("abcd", [0.5 * g for g in own], strict=True)))
     assert list(found.by_run.values()) == sorted(found.by_run.values(), reverse=True)
@@ -85,7 +85,7 @@ def test_single_run_or_run_of_two_samples_causes_no_disagreement(run: int) -> No
 
 @pytest.mark.parametrize(("term", "disagrees"), [("effect", True), ("law", False)])
 def test_disagreement_on_an_effect_excludes_that_on_the_law(term: str, disagrees: bool) -> None:
-    """The sign of the velocity is the law's direction, a constant that of the sensor's offset."""
+    """The law's direction is the sign of the velocity, that of the sensor offset a constant."""
     sign = np.where(np.arange(N) < N // 2, 1.0, -1.0)
     campaign = slides([sign * SPEED] * 3)
     problem = Problem(campaign, "coulomb", "journal", ("sensor_offset",))
@@ -101,7 +101,7 @@ def test_disagreement_on_an_effect_excludes_that_on_the_law(term: str, disagrees
 
 @pytest.mark.parametrize(("deviates", "disagrees"), [("F_c_n", False), ("zero", True)])
 def test_parameter_with_a_random_effect_may_differ_by_run(deviates: str, disagrees: bool) -> None:
-    """The random effects are so small here that they do not change the whitening."""
+    """The random effects are too small to change the whitening."""
     residuals = [ALTERNATING + a for a in (0.5, -0.5, 0.2)]
     between = BetweenRuns((deviates,), tuple(np.full((N, 1), 1e-12) for _ in residuals), 1.0)
     samples = replace(one_way(3).samples, between=between)
@@ -131,7 +131,7 @@ def test_random_effect_of_the_viscosity_covers_both_of_its_parameters(
 
 
 def test_effect_with_many_likelihood_peaks_may_differ_by_run(rig: Rig, runs: list[Run]) -> None:
-    """The runs of a resonant drive may be fitted at different peaks of the likelihood."""
+    """The runs of a drive with a resonance may be fitted at different likelihood maxima."""
     campaign = Campaign.prepare(rig, runs)
     problem = Problem(campaign, "journal", "journal", ("drive_compliance",))
     solution = problem.solution(problem.starts({})[0], campaign.samples, WHITE)
@@ -175,7 +175,7 @@ def test_correlated_noise_that_is_not_modelled_is_not_disagreement() -> None:
 
 
 def solved(other: Friction, noise_n: float) -> tuple[Problem, Solution]:
-    """Four runs with Coulomb friction, the last with another friction, and their common fit."""
+    """Four runs with Coulomb friction, the last with a different value, and their common fit."""
     runs = [*four_runs(coulomb, noise_n=noise_n)[:3], four_runs(other, noise_n=noise_n)[3]]
     problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", ())
     return problem, minimum(problem, [{}])
@@ -183,7 +183,7 @@ def solved(other: Friction, noise_n: float) -> tuple[Problem, Solution]:
 
 @pytest.mark.parametrize(("more", "words"), [(1.0, "higher"), (-1.0, "lower")])
 def test_deviation_of_a_positive_parameter_is_reported_in_percent(more: float, words: str) -> None:
-    """To first order in the logarithm: dry friction of 6 N or 4 N, and the common fit."""
+    """Estimates to first order in the logarithm: dry friction of 6 N or 4 N, and the common fit."""
     problem, solution = solved(lambda t, v, a: coulomb(t, v, a) + more * np.sign(v), 1e-6)
     common = dict(zip(problem.names, solution.values, strict=True))["F_c_n"]
     (change,) = numbers_in(rf"^F_c_n (\S+) % {words}", own_step(problem, solution, "d"))
@@ -193,7 +193,7 @@ def test_deviation_of_a_positive_parameter_is_reported_in_percent(more: float, w
 
 @pytest.mark.parametrize(("more", "words"), [(8.0, "higher"), (-8.0, "lower")])
 def test_deviation_of_a_signed_parameter_is_reported_in_its_unit(more: float, words: str) -> None:
-    """Viscous friction of 8 N s/m more in one of four runs: 6 more than in the common fit."""
+    """One of four runs has 8 N s/m more viscous friction, or 6 more than in the common fit."""
     problem, solution = solved(lambda t, v, a: coulomb(t, v, a) + more * v, 0.05)
     (found,) = find_disagreement(problem, solution, DEFAULT)
     (change,) = numbers_in(rf"run d asks for F_v_n_s_m (\S+) N s/m {words}", found.where)
@@ -202,7 +202,7 @@ def test_deviation_of_a_signed_parameter_is_reported_in_its_unit(more: float, wo
 
 @pytest.mark.parametrize(("step", "size"), [(2.99, "%"), (3.01, "large"), (-3.01, "small")])
 def test_parameter_change_over_twentyfold_is_reported_as_many_times(step: float, size: str) -> None:
-    """The dry friction of 5 N is searched in its logarithm."""
+    """The search variable is the logarithm of the dry friction of 5 N."""
     orthogonal = ALTERNATING - np.mean(ALTERNATING)
     residuals = [orthogonal + step * 5.0 * LEVEL, orthogonal]
     words = own_step(*solution_with(one_way(2), residuals), "a")

@@ -1,4 +1,4 @@
-"""Evidence for an effect and its alternatives, against textbook least squares."""
+"""Evidence for an effect and its alternatives, against least squares."""
 
 from dataclasses import replace
 
@@ -54,7 +54,7 @@ def test_evidence_of_an_effect_without_gain_is_minus_its_threshold() -> None:
 def test_fit_error_and_held_out_error_of_a_step_are_those_of_least_squares(hidden: str) -> None:
     found, book = linear_diagnosis(hidden), Textbook(linear_runs(hidden))
     for step, columns in zip(found.steps, (2, 3), strict=False):
-        # jbf smooths the recorded speed, which changes both errors alike.
+        # jbf smooths the recorded speed, which changes both errors by the same factor.
         assert step.rms_n == pytest.approx(book.rms(columns), rel=1e-3)
         excess = step.holdout_rms_n / step.rms_n - 1.0
         expected = book.held_out_rms(columns) / book.rms(columns) - 1.0
@@ -105,7 +105,7 @@ def test_ratio_of_weights_of_tied_effects_is_their_likelihood_ratio() -> None:
 
 
 def test_effects_with_the_same_derivative_have_equal_weights() -> None:
-    """No run reverses: an offset and a dry level that differs by direction are equivalent."""
+    """Without reversals an offset and a direction-dependent dry friction are equivalent."""
     found = linear_diagnosis("offset and drag")
     assert found.verdict == "ambiguous"
     assert found.alternatives == {"sensor_offset": ("dry_asymmetry",), "quadratic_drag": ()}
@@ -127,7 +127,7 @@ def _offset_runs(offset_n: float) -> list[Run]:
 
 
 def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -> None:
-    """A mass that only one run has: its score varies far more than in white noise."""
+    """A mass in one run only: the variance of its score is far above that in white noise."""
     candidates = coulomb_candidates(linear_runs("mass in one run"))
     simple, rich = candidates.converge(()), candidates.converge(("inertia_leak",))
     gain, price = likelihood_gain(rich, simple), price_of(candidates, 1)
@@ -140,7 +140,7 @@ def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -
 
 
 def test_gain_from_samples_that_an_effect_excludes_is_not_its_evidence() -> None:
-    """Dry friction of the simpler model is 2 % off; the richer model excludes three samples."""
+    """The simpler model has a dry friction 2 % off; the richer model excludes three samples."""
     t = np.arange(0.0, 20.0, 0.02)
     runs = [coulomb_run(t, 0.1 * np.sin((1.0 + 0.2 * i) * t + 0.4), seed=i) for i in range(2)]
     candidates = coulomb_candidates(runs)
@@ -158,7 +158,7 @@ def test_gain_from_samples_that_an_effect_excludes_is_not_its_evidence() -> None
     )
     assert evidence(candidates, rich, simple) > 60.0
     assert evidence_alone(candidates, rich, simple) < 0.0
-    # With the same samples in both the gain counts.
+    # The gain counts if both models use the same samples.
     cost = simple.samples.cost(right.residuals, WHITE)
     same = replace(rich, samples=simple.samples, cost=cost)
     assert evidence_alone(candidates, same, simple) == evidence(candidates, same, simple) > 60.0
@@ -166,7 +166,7 @@ def test_gain_from_samples_that_an_effect_excludes_is_not_its_evidence() -> None
 
 @pytest.mark.parametrize(("step_n", "counts"), [(0.0, True), (0.6, False)])
 def test_gain_below_the_quantisation_error_is_not_evidence(step_n: float, counts: bool) -> None:
-    """An offset of 0.03 N in noise of 0.1 N, exact and read in steps of 0.6 N."""
+    """An offset of 0.03 N in noise of 0.1 N, with exact readings and with steps of 0.6 N."""
     runs = []
     for run in _offset_runs(0.03):
         force = np.asarray(run.friction_n)
@@ -210,7 +210,7 @@ def test_score_test_predicts_likelihood_gain_and_value_of_a_linear_effect() -> N
     place = problem.names.index("sensor_offset.b_n")
     assert stepped[place] == pytest.approx(fitted.values[place], rel=0.1)
     assert (directions.ways[:, 0] @ directions.innovations) ** 2 == pytest.approx(gain, rel=0.1)
-    # The halves of the samples share the gain.
+    # Both halves of the samples contribute to the gain.
     first = [np.arange(len(c)) < len(c) // 2 for c in near.samples.counted]
     halves = [
         score_test(problem, [start], replace(near, samples=half), ("sensor_offset",))[0]

@@ -1,4 +1,4 @@
-"""Candidate motions of a rig: their formulas, and limits that are given or taken from records."""
+"""Candidate motions of a rig: formulas, and limits that are given or taken from records."""
 
 import re
 from functools import cache
@@ -18,7 +18,7 @@ STEP_S = 0.02
 def motions(
     top: float = 0.1, sharp: float = 0.2, duration_s: float = 60.0, **more: Any
 ) -> dict[str, Excitation]:
-    """Motions by their descriptions, which differ."""
+    """Candidate motions by their unique descriptions."""
     found = list(excitations(Limits(top, sharp, duration_s, **more), STEP_S))
     by_words = {x.words: x for x in found}
     assert len(by_words) == len(found)
@@ -38,7 +38,7 @@ def stops(speed: float) -> str:
 
 
 def test_proposed_sines_have_two_periods_and_respect_the_acceleration_limit() -> None:
-    """In 60 s a rate of 0.25 rad/s has two periods; amplitude times rate is 0.2 m/s^2 at most."""
+    """A rate of 0.25 rad/s has two periods in 60 s; amplitude times rate is at most 0.2 m/s^2."""
     found = motions()
     allowed = {
         0.1: (0.25, 0.5, 1.0, 2.0),
@@ -59,7 +59,7 @@ def test_sine_exceeds_the_acceleration_limit_by_at_most_one_percent() -> None:
 
 
 def test_unidirectional_motions_start_with_half_the_acceleration_limit() -> None:
-    """From rest to 0.1 m/s in one second."""
+    """The speed rises from rest to 0.1 m/s in one second."""
     found, t = motions(), time_s()
     start = np.minimum(t, 1.0)
     for w in (0.25, 0.5, 1.0):
@@ -84,7 +84,7 @@ def test_stop_and_go_motion_rests_for_8_s_and_moves_for_3_s(sharp: float, ramp_s
 
 
 def test_mixed_motion_is_stop_and_go_then_a_fast_and_a_short_sine() -> None:
-    """After 26 s of stop and go ten half-waves at 2 rad/s, then the quickest shorter sine."""
+    """Stop and go of 26 s, ten half-waves at 2 rad/s, then the fastest shorter sine."""
     found, t = motions(), time_s()
     for stop_speed in (0.04, 0.1):
         for speed, w in ((0.03, 4.0), (0.01, 16.0), (0.002, 16.0)):
@@ -98,7 +98,7 @@ def test_mixed_motion_is_stop_and_go_then_a_fast_and_a_short_sine() -> None:
 
 
 def test_mixed_motion_requires_a_minimum_duration_and_acceleration() -> None:
-    # 26 s of stop and go, a whole wave of 3.14 s, and as much again.
+    # The motion needs 26 s of stop and go, a period of 3.14 s, and the same time again.
     assert not any(", then " in words for words in motions(duration_s=32.2))
     assert any(", then " in words for words in motions(duration_s=32.4))
     # The slowest full sine needs 0.005 m/s^2.
@@ -139,7 +139,7 @@ def test_motions_are_proposed_under_each_load_and_at_each_temperature() -> None:
 def recorded(
     rate: float, loads: tuple[float, ...] = (), celsius: tuple[float, ...] = ()
 ) -> Campaign:
-    """Two slides at up to 0.2 m/s, the second half as fast."""
+    """Two slides with top speeds of 0.2 m/s and 0.1 m/s."""
     t = np.arange(0.0, 20.0, STEP_S)
     runs = []
     for k, top in enumerate((-0.2, 0.1)):
@@ -162,7 +162,7 @@ def test_missing_motion_limits_are_taken_from_the_records(rate: float, sharp: fl
 def test_given_motion_limits_are_not_changed_by_the_records() -> None:
     given = Limits(0.05, 0.01, 7.0, (1.0, 2.0), (3.0, 4.0))
     assert given.filled(recorded(1.0, (40.0, 100.0), (10.0, 90.0))) == given
-    # The missing acceleration is that of the records.
+    # The default acceleration limit is that of the records.
     slower = Limits(velocity_m_s=0.05).filled(recorded(1.0))
     assert slower.acceleration_m_s2 == pytest.approx(0.2, rel=5e-3)
 
@@ -170,7 +170,7 @@ def test_given_motion_limits_are_not_changed_by_the_records() -> None:
 def test_limits_of_load_and_temperature_are_those_of_records_that_differ() -> None:
     assert Limits().filled(recorded(1.0, (100.0, 40.0))).load_n == (40.0, 100.0)
     assert Limits().filled(recorded(1.0, (100.0, 100.0))).load_n is None
-    # Temperatures differ from 2 K.
+    # Temperatures count as different from 2 K on.
     assert Limits().filled(recorded(1.0, (), (20.0, 21.9))).temperature_c is None
     found = Limits().filled(recorded(1.0, (), (20.0, 22.0))).temperature_c
     assert found == pytest.approx((20.0, 22.0))

@@ -1,4 +1,4 @@
-"""Proposed next runs: their motions, the separation of models, and the best of all motions."""
+"""Proposed next runs: motions, separation of models, and the optimum over all candidates."""
 
 from dataclasses import replace
 from functools import cache
@@ -32,7 +32,7 @@ ANY_EVIDENCE = replace(DEFAULT, least_separation=1e-6)
 
 
 def friction(t: Array, v: Array, a: Array) -> Array:
-    """Coulomb friction with a part of each of four effects."""
+    """Coulomb friction with a share of each of four effects."""
     law = 5.0 * np.sign(v) + 20.0 * v
     effects: Array = 0.3 + 3.0 * a + 0.03 * t + 60.0 * v * np.abs(v)
     return law + effects
@@ -61,7 +61,7 @@ def proposed(pairs: int) -> Experiment:
 def residual_square_after_fit(
     rival: Rival, own: tuple[Array, Array], truth: Array, step_s: float
 ) -> float:
-    """Residual sum of squares of a fit to old and new runs, in units of the noise."""
+    """Residual sum of squares of a fit to old and new runs, relative to the noise variance."""
     noise = rival.solution.noise
     x, gap = noise.innovations(own[1], step_s), noise.innovations(truth - own[0], step_s)
     _, j = rival.solution.stacked()
@@ -72,7 +72,7 @@ def residual_square_after_fit(
 
 @pytest.mark.parametrize("pairs", [1, 2])
 def test_proposed_run_maximises_the_smallest_separation_between_rivals(pairs: int) -> None:
-    """Each model of a pair may be the truth; models of different pairs are not compared."""
+    """Each model of a pair may be the true one; models of different pairs are not compared."""
     tried, groups = four_effects(), (PAIR, OTHER)[:pairs]
     limits, step_s = filled_limits(tried, LIMITS)
     rivals = {effects: rival(tried, effects) for group in groups for effects in group}
@@ -111,7 +111,7 @@ def test_run_with_a_separation_below_the_policy_limit_is_not_proposed() -> None:
 
 
 def test_no_run_is_proposed_for_models_with_the_same_predictions() -> None:
-    """Without a transmitted load the friction in proportion to it is zero."""
+    """Load-proportional friction is zero without a transmitted load."""
     found = propose(four_effects(), [[("torque_proportional",), ()]], LIMITS)
     assert isinstance(found, str)
     assert "torque_proportional" in found
@@ -129,11 +129,11 @@ ONE_WAY = (
     sine("one_way_0.25", 50.3, 0.0595, 0.25, bias=0.0728),
     sine("one_way_1", 25.2, 0.0595, 1.0, bias=0.0728),
 )
-"""Runs in one direction: a drag and an offset of the sensor are equivalent in them."""
+"""Unidirectional runs, in which a drag and a sensor offset are equivalent."""
 
 
 def motion_of(run: jbf.Run) -> Motion:
-    """The motion of a proposed run, for the simulator, through every fifth sample."""
+    """Motion of a proposed run for the simulator, through every fifth sample."""
     knots = zip(run.time_s[::5].tolist(), run.velocity_m_s[::5].tolist(), strict=True)
     return polyline("next", list(knots))
 
@@ -184,11 +184,11 @@ def hidden(noise_n: float) -> tuple[str, ...]:
 
 
 def test_offset_is_reported_as_hidden_if_noise_exceeds_its_detection_level() -> None:
-    """The root of its gain is normal about that of its expectation: 80 % exceed the price."""
+    """The root of the gain is normal about that of its expectation: 80 % exceed the threshold."""
     (usual_n,) = effects()["sensor_offset"].parameters[0].starts
     samples, tried = 2004, 12
     price = stats.chi2.isf(DEFAULT.false_alarms / tried, 1) + DEFAULT.imperfection
-    # There are two runs in each direction, so that the law cannot explain the offset.
+    # Two runs in each direction prevent the law from explaining the offset.
     limit_n = usual_n * np.sqrt(samples) / (np.sqrt(price) + stats.norm.ppf(0.8))
     # Gains are discounted by a long-run variance that is itself estimated.
     assert "sensor_offset" not in hidden(0.6 * limit_n)
@@ -196,7 +196,7 @@ def test_offset_is_reported_as_hidden_if_noise_exceeds_its_detection_level() -> 
 
 
 def test_effect_that_changes_no_prediction_is_not_reported_as_hidden() -> None:
-    """Without a transmitted load the friction in proportion to it is zero in any motion."""
+    """Load-proportional friction is zero in any motion without a transmitted load."""
     tried = no_effect()
     powers = power(tried, ())
     assert "torque_proportional" in {p.effect for p in powers if p.hidden}
@@ -239,7 +239,7 @@ def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> N
 
 
 def test_proposal_names_only_effects_that_its_run_can_detect() -> None:
-    """Friction in proportion to a transmitted load is zero in any motion."""
+    """Load-proportional friction is zero in any motion without a transmitted load."""
     found = propose_to_see(no_effect(), (), ("inertia_leak", "torque_proportional"), LIMITS)
     assert isinstance(found, Experiment)
     assert found.words.endswith("would show inertia_leak")
@@ -260,7 +260,7 @@ STEP_S = 0.02
 
 @pytest.mark.parametrize("linear", [False, True])
 def test_planned_motion_has_the_path_of_its_velocity(linear: bool) -> None:
-    """0.1 m/s^2 for two seconds are 0.2 m; on a shaft the angle is the path over the radius."""
+    """At 0.1 m/s^2 the path after 2 s is 0.2 m; the angle of a shaft is path over radius."""
     rig = Rig() if linear else Rig.thesis()
     t = STEP_S * np.arange(101.0)
     run = played(rig, Excitation("up", 0.1 * t, None), STEP_S, linear=linear)
@@ -307,7 +307,7 @@ def test_planned_run_has_the_median_step_of_the_runs_and_up_to_6000_samples() ->
 
 @pytest.mark.parametrize("position", [False, True])
 def test_every_motion_within_the_limits_is_a_candidate_for_the_next_run(position: bool) -> None:
-    """With a position if the runs have one, else with an angle."""
+    """The run has a position if the recorded runs have one, otherwise an angle."""
     limits = Limits(0.1, 0.2, 20.0)
     found = list(motions(candidates_of(STEP_S, position=position), limits, STEP_S))
     expected = list(excitations(limits, STEP_S, "m/s"))
@@ -330,7 +330,7 @@ def test_noise_and_information_of_a_fitted_model_are_those_of_a_regression(law: 
 
 
 def test_predicted_friction_and_slopes_in_a_motion_are_those_of_the_law(law: Rival) -> None:
-    """Dry friction is searched in its logarithm, viscous friction is not."""
+    """The search variable of dry friction is its logarithm, that of viscous friction its value."""
     t = STEP_S * np.arange(200.0)
     v = 0.1 + 0.05 * np.sin(t)
     friction, slopes = law.at(Campaign.prepare(Rig(), [coulomb_run(t, v, seed=0)]).motions[0])
@@ -343,7 +343,7 @@ def test_predicted_friction_and_slopes_in_a_motion_are_those_of_the_law(law: Riv
 
 @pytest.mark.parametrize("direction", ["dry", "viscous", "new"])
 def test_separation_is_the_residual_after_a_fit_to_all_runs(law: Rival, direction: str) -> None:
-    """The least of |gap - X s|^2 + |K s|^2 over a common step s, by normal equations."""
+    """Minimum of |gap - X s|^2 + |K s|^2 over a common step s, by the normal equations."""
     t = STEP_S * np.arange(400.0)
     v = 0.1 + 0.05 * np.sin(t)
     own = law.at(Campaign.prepare(Rig(), [coulomb_run(t, v, seed=0)]).motions[0])
@@ -353,6 +353,7 @@ def test_separation_is_the_residual_after_a_fit_to_all_runs(law: Rival, directio
     left = float(gap @ gap - explained @ np.linalg.pinv(information) @ explained)
     separation = law.separation(own, (own[0] + gap, own[1]), STEP_S)
     assert separation == pytest.approx(left / law.noise_n**2, rel=1e-6)
-    # The old runs constrain the parameters: a part of the gap remains even along the law's slopes.
+    # The old runs constrain the step: part of the gap remains even along the slopes of the law.
+    # law.
     assert 0.1 * float(gap @ gap) < left < float(gap @ gap)
     assert law.separation(own, own, STEP_S) == pytest.approx(0.0, abs=1e-9)

@@ -68,7 +68,7 @@ def test_weights_of_an_effect_and_its_alternatives_sum_to_one(name: str) -> None
 
 @pytest.mark.parametrize("name", GOLDEN)
 def test_outcomes_of_trials_agree_with_the_sign_and_order_of_their_evidence(name: str) -> None:
-    """No effect without evidence is added or tied; the added one leads its step."""
+    """No effect without evidence is added or tied; the added one has the largest evidence."""
     for step in golden(name).steps:
         evidence = [trial.evidence for trial in step.trials]
         assert evidence == sorted(evidence, reverse=True)

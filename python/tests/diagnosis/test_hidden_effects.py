@@ -1,4 +1,4 @@
-"""Effects hidden in simulated bearings, slides and joints: named by a diagnosis, and fitted."""
+"""Effects of simulated bearings, slides and joints that the base law lacks: diagnosis and fit."""
 
 from dataclasses import replace
 from functools import cache
@@ -43,7 +43,7 @@ def test_effect_hidden_in_a_bearing_is_named_and_the_error_falls_to_the_noise(na
     assert first.rms_n > last.rms_n
     assert first.holdout_rms_n > last.holdout_rms_n
     assert last.rms_n < 1.03 * noise_n
-    # Only one run has rests: the others do not predict its breakaway.
+    # The breakaway friction of the only run with rests is not predicted by the others.
     if name != "dwell_stiction":
         assert last.holdout_rms_n < 1.06 * noise_n
 
@@ -105,7 +105,7 @@ LEVEL_N, PEAK_N, PEAK_M_S, SLOPE_N_S_M = 6.0, 3.0, 0.02, 40.0
 def _slide(
     dry: float = 0.0, peak: float = 0.0, slope: float = 0.0, offset_n: float = 0.0
 ) -> list[Run]:
-    """A Stribeck curve whose parts are larger by a share in positive motion, with rests."""
+    """A Stribeck curve whose parts are larger in positive motion, with rests."""
     records, t = [], np.arange(0.0, 24.0, STEP_S)
     phase = np.mod(t, 6.0)
     for i in range(4):
@@ -130,7 +130,7 @@ def _slide(
         ({"peak": 0.35}, ("stribeck_asymmetry",)),
         ({"slope": 0.2}, ("viscous_asymmetry",)),
         ({"dry": 0.1, "peak": 0.1, "slope": 0.1}, ("direction_asymmetry",)),
-        # Rests separate an offset from an asymmetry.
+        # An offset and an asymmetry can be separated only with rests.
         ({"offset_n": 0.6}, ("sensor_offset",)),
     ],
 )
@@ -148,9 +148,9 @@ REQUIRED: dict[str, tuple[str, ...]] = {
     "cogging_2": ("cogging",),
     "pitch_ripple_2": ("pitch_ripple",),
 }
-"""Effects without which another effect has no influence."""
+"""Effects on which the influence of another effect depends."""
 SWING = 8.0
-"""Factor between the motion of a joint that carries a weight and that of a slide."""
+"""Ratio of the motion of a joint that carries a weight to that of a slide."""
 FAST_FITS = (
     "gravity",
     "torque_proportional",
@@ -175,7 +175,7 @@ def _runs(records: list[AxisRun], path: str) -> list[Run]:
 
 @cache
 def _drive(seed: int, *effects: str) -> tuple[list[Run], dict[str, Any]]:
-    """Runs of a simulated drive and its truth; a joint has an angle, a slide a position."""
+    """Runs and true parameters of a simulated drive; a joint has an angle, a slide a position."""
     swing = SWING if "torque_proportional" in effects else 1.0
     records, truth = axis_campaign(seed, effects, swing=swing)
     joint = "gravity" in effects or seed % 2 == 0
@@ -203,7 +203,7 @@ def test_fit_with_the_true_effects_recovers_the_parameters_of_a_drive(name: str)
     stated = {f"{name}.T_0_c": REFERENCE_C} if name in OF_TEMPERATURE else {}
     stated |= {n: v for n, v in drawn.items() if _page(n).stated}
     true = {n: v for n, v in drawn.items() if n not in stated}
-    # Two waves may be exchanged unless they start at their own pitch.
+    # Two waves may be interchanged unless each starts at its true pitch.
     start = {n: v for n, v in true.items() if name.endswith("_2") and n.endswith("pitch_m")}
     fixed = {"F_s_n": 10.0, **stated}
     found = fit(Rig(), runs, hidden, law="coulomb", fixed=fixed, start=start)
@@ -220,7 +220,7 @@ def test_fit_with_the_true_effects_recovers_the_parameters_of_a_drive(name: str)
         )
 
 
-# No motion separates an asymmetry of a constant dry level from an offset.
+# An asymmetry of a constant dry friction is equivalent to an offset in any motion.
 @pytest.mark.extended
 @pytest.mark.parametrize("name", [n for n in OF_DRIVES if n != "dry_asymmetry"])
 def test_hidden_effect_of_a_drive_is_named_without_alternatives(name: str) -> None:
@@ -243,7 +243,7 @@ def test_running_in_of_a_simulated_drive_is_named_without_alternatives() -> None
 
 
 def test_gear_losses_are_fitted_as_an_efficiency_ratio_and_a_scaled_weight() -> None:
-    """Losses of 0.3 when driving and 0.1 when driven: the weight appears 1.1 times as large."""
+    """Losses of 0.3 when driving and 0.1 when driven multiply the estimated weight by 1.1."""
     records, truth = axis_campaign(17, ("gravity",), swing=SWING)
     hidden: Any = truth["effects"]
     gravity = hidden["gravity"]

@@ -1,4 +1,4 @@
-"""Records without a speed, and records with nothing to fit."""
+"""Records without a speed, and records without a force to fit."""
 
 from pathlib import Path
 

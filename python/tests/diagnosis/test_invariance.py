@@ -1,4 +1,4 @@
-"""Equivalent records of a campaign lead to the same diagnosis."""
+"""Invariance of a diagnosis to equivalent records of a campaign."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -16,7 +16,7 @@ FORCE_UNIT = 100.0
 
 
 def moved(run: Run, *, sign: float = 1.0, later_s: float = 0.0, turned_rad: float = 0.0) -> Run:
-    """A run with another sign of motion and force, first time and first angle."""
+    """A run with a different sign of motion and force, first time and first angle."""
     return replace(
         run,
         time_s=run.time_s + later_s,
@@ -35,7 +35,7 @@ def reordered(runs: list[Run]) -> list[Run]:
 
 
 def later(runs: list[Run]) -> list[Run]:
-    """Times that begin 1000 s later, and angles of seven more turns."""
+    """Times shifted by 1000 s and angles shifted by seven turns."""
     return [moved(run, later_s=1000.0, turned_rad=14.0 * np.pi) for run in runs]
 
 
@@ -48,7 +48,7 @@ def in_other_units(runs: list[Run]) -> list[Run]:
 
 
 def cut(runs: list[Run]) -> list[Run]:
-    """The run with most rests cut at a rest near its middle; without rests, the first run."""
+    """The run with the largest number of rests, cut at a rest near its middle, or the first run."""
     whole = max(runs, key=lambda run: int(np.sum(run.velocity_m_s == 0.0)))
     middle = len(whole) // 2
     resting = np.flatnonzero(whole.velocity_m_s == 0.0)
@@ -81,7 +81,7 @@ CASES = [
 def assert_same(
     changed: Diagnosis, first: Diagnosis, *, within: float, mirror: bool = False
 ) -> None:
-    """Same verdict and effects; estimates within a share of their standard errors, and these."""
+    """Check for equal verdicts and effects, and for estimates within a share of their errors."""
     for name in ("verdict", "effects", "alternatives", "confounders"):
         assert getattr(changed, name) == getattr(first, name)
     assert {r.axis for r in changed.unexplained} == {r.axis for r in first.unexplained}
@@ -114,7 +114,7 @@ def test_diagnosis_is_invariant_to_equivalent_changes_of_records(hidden: str, ch
     changed = diagnose(Rig(), CHANGES[change](linear_runs(hidden)), law="coulomb")
     if change == "in_other_units":
         changed = in_first_units(changed)
-    # Only a cut changes which samples count.
+    # Only a cut changes the set of counted samples.
     within = 0.05 if change == "cut" else 1e-3
     assert_same(changed, first, within=within, mirror=change == "mirrored")
 
@@ -142,7 +142,7 @@ def test_diagnosis_of_a_bearing_is_invariant_to_repeated_and_mirrored_runs() -> 
     changed = diagnose(rig, repeated(later(mirrored(reordered(runs)))))
     assert_same(changed, first, within=0.01)
     assert len([f for f in changed.findings if f.kind == "repeated_run"]) == len(runs)
-    # The film is not settled after a cut, so that the boundary friction is known less well.
+    # After a cut the film is not settled, so that the boundary friction is less well determined.
     halves = diagnose(rig, cut(runs))
     assert (halves.verdict, halves.effects) == (first.verdict, first.effects)
     for name, new in halves.fit.parameters.items():

@@ -14,7 +14,7 @@ SAMPLES, STRETCHES = 4000, 40
 
 
 def alternating(rms: float, stretch_variation: float = 0.0) -> list[Array]:
-    """Errors of two runs; their mean square varies by a share between stretches of the record."""
+    """Errors of two runs whose mean square varies by a share between segments of the record."""
     stretch = (np.arange(SAMPLES) // (SAMPLES // STRETCHES)) % 2
     size = rms * np.sqrt(np.where(stretch, 1.0 + stretch_variation, 1.0 - stretch_variation))
     return list(np.split(size * np.where(np.arange(SAMPLES) % 2, 1.0, -1.0), 2))
@@ -47,7 +47,7 @@ def test_laws_within_half_a_percent_of_error_are_tied(share: float, tied: bool) 
 
 @pytest.mark.parametrize(("share", "tied"), [(0.98, True), (1.02, False)])
 def test_laws_within_two_standard_errors_are_tied(share: float, tied: bool) -> None:
-    """The standard error of a mean of 40 stretches with standard deviation s is s / sqrt(40)."""
+    """The standard error of a mean over 40 segments with standard deviation s is s / sqrt(40)."""
     variation = 0.5
     mean = 1.0 + share * DEFAULT.law_tie * variation / np.sqrt(STRETCHES)
     other = alternating(np.sqrt(mean), variation / mean)
@@ -84,7 +84,7 @@ def test_selected_law_is_the_simulated_one_with_the_noise_as_held_out_rms() -> N
     assert laws["stribeck"].left_out_rms_n == pytest.approx(noise_n, rel=0.05)
     assert not laws["coulomb"].tied
     assert laws["coulomb"].left_out_rms_n > 3.0 * noise_n
-    # Among tied laws the one with the fewest parameters is taken.
+    # The selected one of tied laws is that with the smallest number of parameters.
     assert all(law.parameters >= laws["stribeck"].parameters for law in found.laws if law.tied)
     assert found.to_dict()["laws"][0]["law"] == "stribeck"
 
@@ -98,7 +98,7 @@ def test_offset_of_the_sensor_does_not_change_the_selected_law() -> None:
 
 @pytest.mark.extended
 def test_simpler_law_is_reported_if_it_replaces_two_effects() -> None:
-    """The offset remains an effect: no law has one."""
+    """The offset remains an effect, because no law contains one."""
     found = diagnosis_with_offset("coulomb", 20.0)
     assert set(found.effects) == {"sensor_offset", "stribeck_excess"}
     assert found.laws == ()

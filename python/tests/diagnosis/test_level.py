@@ -1,4 +1,4 @@
-"""The threshold of a gain: its formula, its calibration, decoys, and the policy behind it."""
+"""Threshold of a gain: formula, calibration, decoys, and fields of the policy."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -36,7 +36,7 @@ def test_false_alarm_rate_is_shared_and_minimum_size_grows_with_samples() -> Non
     assert level.chance == 0.02 / 8
     assert level.imperfection == 7.0
     assert level.worth == pytest.approx(0.05**2 * 1000.0)
-    # 1 N is a larger share of 4 N than 5 %, and a smaller one of 40 N.
+    # 1 N is above 5 % of 4 N and below 5 % of 40 N.
     in_newtons = replace(policy, indifference_n=1.0)
     assert Level.shared(in_newtons, 8, 1000.0, 4.0).worth == pytest.approx(1000.0 / 16.0)
     assert Level.shared(in_newtons, 8, 1000.0, 40.0).worth == pytest.approx(2.5)
@@ -67,7 +67,7 @@ def test_threshold_in_a_long_recording_is_the_minimum_effect_size() -> None:
 
 
 def _shapes() -> list[Array]:
-    """Derivatives of the force with respect to eight candidates: waves, a square, bumps."""
+    """Derivatives of the force by eight candidates: waves, a square wave and bumps."""
     waves = [np.sin((0.3 + 0.1 * k) * TIME + k) for k in range(TESTED - 2)]
     bumps: Array = np.exp(-(((TIME % 40.0) - 20.0) ** 2))
     return [*waves, np.sign(np.sin(0.4 * TIME)), bumps]
@@ -84,7 +84,7 @@ def _white(random: np.random.Generator) -> Array:
 
 
 def _slow(random: np.random.Generator) -> Array:
-    """First-order noise with a memory of half a second."""
+    """First-order autoregressive noise with a memory of half a second."""
     return np.asarray(signal.lfilter([1.0], [1.0, -float(np.exp(-STEP_S / 0.5))], _white(random)))
 
 
@@ -104,12 +104,12 @@ def test_direction_of_an_effect_is_of_unit_length_and_orthogonal_to_the_law() ->
         assert ways.shape == own.shape
         np.testing.assert_allclose(ways.T @ LAW, 0.0, atol=1e-9)
         np.testing.assert_allclose(ways.T @ ways, 1.0)
-    # A derivative that the law contains leaves no direction.
+    # No direction remains of a derivative that the law contains.
     assert Directions.of(noise, LAW[:, :1], LAW, SAMPLES, 1.0).ways.shape[1] == 0
 
 
 def test_weight_of_a_score_is_reduced_if_the_noise_is_larger_where_the_effect_acts() -> None:
-    """The effect shows only in a tenth of the samples, where the noise is five times as large."""
+    """The effect acts only at a tenth of the samples, where the noise is five times as large."""
     here = np.arange(RUNS * N) % 400 < 40
     noise: Array = np.where(here, 5.0, 1.0) * _white(np.random.default_rng(2))
     one_run = Samples(("a",), (STEP_S,), (np.ones(RUNS * N, bool),), (np.ones(RUNS * N),))
@@ -163,14 +163,14 @@ def _one_direction(way: Array, noise: Array, blocks: list[int]) -> Directions:
 
 @pytest.mark.parametrize(("rate", "gain"), [(0.1, 16.0), (0.15, 4.0), (0.6, 4.0), (0.7, 0.0)])
 def test_calibrated_level_is_a_quantile_of_random_signs(rate: float, gain: float) -> None:
-    """Four block scores of one: their sum is 4 in 1/8 of the draws, 2 in 1/2, and 0 otherwise."""
+    """Signed sums of four unit scores are 4 in 1/8 of the draws, 2 in 1/2, and 0 otherwise."""
     noise = np.repeat([1.0, 1.0, -1.0, -1.0], 4)
     level = Level(false_alarms=rate, candidates=1, chance=1.0)
     directions = [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])]
     found = calibrated(level, directions)
     assert found.chance == pytest.approx(stats.chi2.sf(gain, 1), rel=1e-3)
     assert found.blocks == 4
-    # A level that is already stricter is not changed.
+    # A stricter level is not changed.
     assert calibrated(replace(level, chance=1e-80), directions).chance == 1e-80
 
 
@@ -212,7 +212,7 @@ def test_gains_of_decoys_in_white_noise_follow_chi_square(k: int) -> None:
 
 @pytest.mark.parametrize("ends", [[300], [0, 300], [300, 300]])
 def test_decoy_is_a_candidate_shifted_cyclically_within_each_run(ends: list[int]) -> None:
-    """Also if a run has no samples."""
+    """One of the runs may have no samples."""
     random = np.random.default_rng(4)
     noise = random.standard_normal(700)
     one = _decoy(random.standard_normal((700, 1)), noise, ends, counted=0.5)
@@ -226,7 +226,7 @@ def test_decoy_is_a_candidate_shifted_cyclically_within_each_run(ends: list[int]
 
 
 def test_decoys_are_named_only_if_their_gain_exceeds_the_threshold() -> None:
-    """Every shift of a constant scores 16 in a residual of 2: a gain of 256."""
+    """Every shift of a constant has a score of 16 in a residual of 2: a gain of 256."""
     one = _one_direction(np.full(64, 0.125), np.full(64, 2.0), [0])
     for threshold, named in ((255.9, DRAWS), (256.1, 0)):
         level = Level(0.01, 1, 1.0, worth=threshold)
@@ -271,7 +271,7 @@ def test_evidence_margin_of_a_tie_is_twice_the_log_odds_of_the_weight(weight: fl
 
 
 def _margins() -> list[Any]:
-    """Values of the constants at which the gain of the weak mass equals its threshold."""
+    """Policy values at which the gain of the weak mass equals its threshold."""
     book = Textbook(linear_runs("weak mass"))
     gain, rms_n = book.gain(), book.rms(2)
     at_chance = stats.chi2.isf(0.01 / CANDIDATES, 1)

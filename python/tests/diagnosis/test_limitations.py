@@ -1,4 +1,4 @@
-"""Conclusions that motions do not allow: one direction, few speeds, no sliding."""
+"""Conclusions that the motions do not support: one direction, few speeds, no sliding."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def said(speed: np.ndarray, **parameters: float) -> str:
 
 
 def to_and_fro(low: float, high: float) -> np.ndarray:
-    """Strokes at constant speeds from low to high, both ways."""
+    """Strokes at constant speeds from low to high in both directions."""
     speeds = np.geomspace(low, high, 12) * (-1.0) ** np.arange(12)
     return np.repeat(speeds, 100)
 

@@ -1,4 +1,4 @@
-"""Weight and inertia of a swinging link, which a diagnosis finds only together."""
+"""Weight and inertia of a swinging link, which a diagnosis identifies only together."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ COULOMB, VISCOUS, INERTIA, WEIGHT, NOISE = 0.12, 0.012, 0.009, 0.3, 0.012
 
 
 def swinging(seed: int) -> Run:
-    """Twelve seconds of a link that is driven to and fro by two sines."""
+    """Run of 12 s of a link that follows the sum of two sines."""
     random = np.random.default_rng(seed)
     time_s = np.arange(0.0, 12.0, 0.02)
     angle = velocity = acceleration = 0.0
@@ -53,7 +53,7 @@ def test_weight_and_inertia_of_a_drive_are_machine_terms_and_not_missing_effects
 
 
 def test_weight_and_inertia_of_a_rig_without_a_drive_are_both_named_as_effects() -> None:
-    """Neither of them alone has evidence; without [drive] they are named."""
+    """Neither effect has evidence without the other; without [drive] they are named as effects."""
     found = diagnose(Rig(), RUNS, law="coulomb")
     assert set(found.effects) == {"inertia_leak", "gravity"}
     assert found.machine == ()
@@ -86,7 +86,8 @@ def test_machine_terms_without_influence_on_the_runs_are_omitted() -> None:
 
 
 def swept(size: float, hertz: float, rng: np.random.Generator) -> Run:
-    """A joint with friction 3 and 12, inertia 5.9, weight 3.9 and an offset of 0.4, noise 0.2."""
+    """A joint with Coulomb friction 3 N m, viscous friction 12 N m s/rad, inertia 5.9 kg m^2,
+    weight 3.9 N m, offset 0.4 N m and noise 0.2 N m."""
     time = 0.01 * np.arange(2400)
     angle = size * np.sin(2.0 * np.pi * hertz * time)
     angle += 0.3 * size * np.sin(2.0 * np.pi * 0.37 * hertz * time + 1.0)
@@ -99,7 +100,7 @@ def swept(size: float, hertz: float, rng: np.random.Generator) -> Run:
 
 
 def test_weight_is_identified_in_the_presence_of_a_large_inertia() -> None:
-    """A search for all terms at once from their starting values ends at a weight of zero."""
+    """A joint search from the starting values of all terms ends at a weight of zero."""
     rng = np.random.default_rng(5)
     plan = ((0.6, 0.3), (0.4, 0.6), (0.8, 0.25), (0.5, 0.5), (0.3, 0.8), (0.7, 0.35))
     found = diagnose(DRIVE, [swept(*motion, rng) for motion in plan], law="coulomb")
@@ -111,7 +112,7 @@ def test_weight_is_identified_in_the_presence_of_a_large_inertia() -> None:
 
 
 def test_friction_that_differs_by_direction_is_an_alternative_of_the_offset() -> None:
-    """5.6 N forward and 4.4 N back are 5 N and an offset of 0.6 N while nothing else varies."""
+    """5.6 N forward and 4.4 N back equal 5 N and an offset of 0.6 N at constant friction."""
     rng = np.random.default_rng(4)
     runs = []
     for k in range(3):

@@ -1,4 +1,4 @@
-"""Many campaigns at once: here, in threads, in other processes, from the command line."""
+"""Many campaigns in one call: sequentially, in threads, in processes, from the command line."""
 
 import json
 import multiprocessing
@@ -19,7 +19,7 @@ SLIDE = '[drive]\nmotion = "linear"\nfriction = "force"\n'
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder of the campaigns `mass` and `without_rig`, of which the second is invalid."""
+    """A folder of the valid campaign `mass` and the invalid campaign `without_rig`."""
     for name in ("mass", "without_rig"):
         (tmp_path / "all" / name).mkdir(parents=True)
         for run in linear_runs("mass"):
@@ -62,7 +62,7 @@ def test_diagnosis_in_a_thread_is_that_of_a_single_call() -> None:
 
 @pytest.mark.parametrize("start", ["fork", pytest.param("spawn", marks=pytest.mark.extended)])
 def test_diagnosis_in_another_process_is_that_of_a_single_call(start: str) -> None:
-    """Also if a process whose threads have worked is forked."""
+    """The processes may be forked from one whose threads have been used."""
     if start not in multiprocessing.get_all_start_methods():
         pytest.skip(f"this system does not {start} processes")
     expected = linear_diagnosis("mass")

@@ -1,4 +1,4 @@
-"""Effects that are significant and too small to be worth reporting."""
+"""Significant effects below the minimum effect size."""
 
 import pytest
 from jbf import Diagnosis, Policy, Rig, diagnose
@@ -8,7 +8,7 @@ NOISE_N = 0.1
 
 
 def diagnosed(offset_n: float) -> Diagnosis:
-    """Six runs with an offset; an effect is worth reporting from 12 % of the noise on."""
+    """Six runs with an offset; the minimum effect size is 12 % of the noise."""
     runs = reversing_runs(
         lambda i, t, f, random: f + offset_n + NOISE_N * random.standard_normal(len(t)),
     )

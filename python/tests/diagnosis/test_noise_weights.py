@@ -39,13 +39,13 @@ def fitted(change: Change, *, seed: int = 0) -> tuple[Problem, Solution]:
 
 
 def weighted_after_fit(change: Change, seed: int = 0) -> tuple[Campaign, Solution]:
-    """The campaign with every accepted term of the residual-error model, and the first fit."""
+    """The campaign with all accepted terms of the residual-error model, and the first fit."""
     problem, solution = fitted(change, seed=seed)
     return weighted(problem, solution), solution
 
 
 def weighted(problem: Problem, solution: Solution) -> Campaign:
-    """The campaign with the accepted terms, one after another."""
+    """The campaign after each accepted term, in the order of acceptance."""
     campaign = problem.campaign
     for term in (variance_by_force, variance_by_run, heavy_tails):
         model = model_of(problem, solution)
@@ -61,14 +61,14 @@ def white(i: int, f: Array, random: np.random.Generator) -> Array:
 
 
 def kinds_of(draw: Callable[[int, Array], Array]) -> list[str]:
-    """Kinds of findings for residuals from the number of the run and its friction."""
+    """Kinds of findings for residuals that depend on the number of the run and its friction."""
     problem, solution = fitted(lambda i, f, random: f)
     residuals = [draw(i, f) for i, f in enumerate(problem.predict(solution.values))]
     return kinds(problem, replace(solution, residuals=residuals, noise=WHITE))
 
 
 def kinds(problem: Problem, solution: Solution) -> list[str]:
-    """Kinds of findings on the variance."""
+    """Kinds of findings that concern the noise variance."""
     found = [w(problem, solution, DEFAULT) for w in (force_weights, run_weights)]
     return [f[1].kind for f in found if f is not None]
 
@@ -83,7 +83,7 @@ def test_samples_with_white_gaussian_noise_get_no_weights(seed: int) -> None:
 
 
 def test_chance_differences_of_noise_between_short_runs_are_rarely_reported() -> None:
-    """Sizes estimated from 260 samples each: the extremes of six often differ by a quarter."""
+    """The extremes of six noise levels from 260 samples each often differ by a quarter."""
     problem, solution = fitted(lambda i, f, random: f)
     samples = solution.samples.within([np.cumsum(c) <= 260 for c in solution.samples.counted])
     differ = uneven = 0
@@ -116,7 +116,7 @@ def test_noise_proportional_to_the_force_is_estimated_and_weighted(share: float)
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0])
 def test_inverse_squared_weights_are_linear_in_the_squared_force(unit: float) -> None:
-    """Noise of the sensor of 0.5 and 5 % of forces up to 25 N, at random phases."""
+    """Sensor noise of 0.5 N plus 5 % of forces up to 25 N, at random phases."""
     t = np.arange(0.0, 60.0, 0.02)
     speeds = [np.sin((1.0 + 0.2 * i) * t + 0.4) for i in range(3)]
     runs = [Run.from_arrays(t, v, coulomb(t, v, v), name=f"{i}") for i, v in enumerate(speeds)]
@@ -148,7 +148,7 @@ def test_ratio_of_noise_between_runs_is_estimated_and_weighted(ratio: float) -> 
     )
     (found,) = campaign.more_findings
     assert (found.kind, found.unit) == ("noise_by_run", "1")
-    # Ratio of the extremes of six sizes, each known to about 4 %.
+    # Ratio of the extremes of six noise levels, each with an error of about 4 %.
     assert found.size == pytest.approx(ratio, rel=0.2)
     samples = campaign.samples
     weights = [w[c] for w, c in zip(samples.weight, samples.counted, strict=True)]
@@ -160,7 +160,7 @@ def test_ratio_of_noise_between_runs_is_estimated_and_weighted(ratio: float) -> 
 
 @pytest.mark.parametrize(("ratio", "expected"), [(1.15, []), (1.4, ["noise_by_run"])])
 def test_runs_are_weighted_if_noise_differs_by_a_quarter(ratio: float, expected: list[str]) -> None:
-    # The same draws in every run: only the ratio differs.
+    # Every run has the same draws, so that only the ratio differs.
     noise = np.random.default_rng(3).standard_normal(10_000)
     assert kinds_of(lambda i, f: (ratio if i == 2 else 1.0) * noise[: len(f)]) == expected
 
@@ -172,7 +172,7 @@ def test_smooth_model_error_in_one_run_is_not_noise_of_that_run() -> None:
 
 
 def test_equal_readings_of_a_coarse_converter_are_not_taken_for_low_noise() -> None:
-    """Steps of ten times the noise: the rounding error is three times the noise of the others."""
+    """In steps of ten times the noise the rounding error is three times the noise of other runs."""
 
     def coarse(i: int, f: Array, random: np.random.Generator) -> Array:
         read = white(i, f, random)
@@ -186,14 +186,14 @@ def test_equal_readings_of_a_coarse_converter_are_not_taken_for_low_noise() -> N
 
 
 def _outliers(count: int, samples: int, unit: float = 1.0) -> Array:
-    """Residuals of robust size one, some of them ten times as large."""
+    """Residuals with a robust standard deviation of one, some of them ten times as large."""
     e = 0.6745 * np.where(np.arange(samples) % 2, 1.0, -1.0)
     e[:count] = 10.0
     return unit * e
 
 
 def _weights_of(residuals: list[Array], heavy: float = 6.0) -> tuple[list[Array], list[float]]:
-    """Huber weights of residuals that all count, and sizes of the findings."""
+    """Huber weights of residuals that are all counted, and the sizes of the findings."""
     time = [0.02 * np.arange(len(e)) for e in residuals]
     runs = [
         Run.from_arrays(t, 0.1 + 0.01 * np.sin(t + i), 5.0 + 0.1 * np.sin(3.0 * t), name=f"{i}")
@@ -221,7 +221,8 @@ def test_weight_of_an_outlier_is_that_of_huber(unit: float) -> None:
         # At least five samples beyond four standard deviations.
         (4, 1000, 6.0, False),
         (5, 1000, 6.0, True),
-        # At least `heavy` times as many as a normal distribution has, here 32.
+        # The outliers must be `heavy` times as frequent as in a normal distribution, here 32
+        # samples.
         (round(0.9 * 20.0 * special.ndtr(-4.0) * 50_000), 50_000, 10.0, False),
         (round(1.1 * 20.0 * special.ndtr(-4.0) * 50_000), 50_000, 10.0, True),
     ],

@@ -1,4 +1,4 @@
-"""One round of trials next to given effects, and the result of an interrupted diagnosis."""
+"""One round of trials in addition to given effects, and results of an interrupted diagnosis."""
 
 from typing import Any
 
@@ -30,7 +30,7 @@ def test_round_with_an_effect_has_the_fit_and_does_not_try_the_effect_again() ->
     assert found.fit.parameters == alone.parameters
     assert found.step.rms_n == found.comparison.rms_n == pytest.approx(alone.rms_n, rel=1e-6)
     assert found.step.noise_n == found.comparison.noise_n
-    # Nothing is missing next to the mass, and the mass is not tried again.
+    # No effect is missing in addition to the mass, which is not tried again.
     assert {trial.outcome for trial in found.step.trials} == {"no gain"}
     tried = {trial.effect for trial in found.step.trials}
     assert {power.effect for power in found.power} <= tried - {"inertia_leak"} == tried
@@ -56,7 +56,7 @@ def test_fit_of_an_interrupted_round_is_reported_before_its_trials() -> None:
 
 
 def test_interrupted_diagnosis_returns_the_model_of_the_last_round() -> None:
-    """Interrupted when the second round tests the first candidate again."""
+    """The interrupt occurs when the second round tests the first candidate again."""
     tested: list[str] = []
 
     def interrupt(text: str, done: int, total: int) -> None:

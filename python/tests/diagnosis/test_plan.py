@@ -1,4 +1,4 @@
-"""Plans of runs and their power: selection, limits, simulated records, and bad requests."""
+"""Plans of runs and their power: selection, limits, simulated records, and invalid requests."""
 
 import json
 from dataclasses import replace
@@ -35,12 +35,12 @@ TIME_S = 0.02 * np.arange(600.0)
 
 @shared
 def planned() -> Plan:
-    """The plan of four runs."""
+    """A plan of four runs."""
     return plan(MODEL, limits=LIMITS, minutes=2.0, noise_n=NOISE_N, step_s=STEP_S)
 
 
 def candidate_runs() -> list[tuple[str, Run]]:
-    """Every motion within the limits: description and run."""
+    """Description and run of every motion within the limits."""
     return [
         (e.words, replace(played(Rig(), e, STEP_S, linear=True), name=f"{k}"))
         for k, e in enumerate(excitations(LIMITS, STEP_S))
@@ -58,7 +58,7 @@ def worth(information: Array, laws: int, prices: Array) -> float:
     left = (own - mixed @ np.linalg.pinv(law, rcond=1e-9) @ mixed.T) * np.outer(
         size[laws:], size[laws:]
     )
-    # An effect that the law explains up to rounding errors has no information and is no rival.
+    # An effect that the law explains up to rounding errors has no information and is not a rival.
     seen = np.diag(left) > 1e-9 * size[laws:] ** 2
     variance = np.where(seen, np.diag(left), 0.0)
     correlation = np.where(seen, left, 0.0) ** 2 / np.outer(
@@ -70,7 +70,7 @@ def worth(information: Array, laws: int, prices: Array) -> float:
 
 
 def test_each_run_of_a_plan_is_the_best_addition_to_the_runs_before_it() -> None:
-    """The criterion is the worth of the plan plus that without its most informative run."""
+    """The criterion is the information of the plan plus that without its most informative run."""
     motions = candidate_runs()
     tried = as_recorded(MODEL, [run for _, run in motions[::3]], NOISE_N, DEFAULT)
     models = [m for name in tried.names if (m := strength_of(tried, (), name)) is not None]
@@ -99,7 +99,7 @@ def test_each_run_of_a_plan_is_the_best_addition_to_the_runs_before_it() -> None
             without = min(worth(total - informations[i], laws, prices) for i in set(together))
             scores.append(worth(total, laws, prices) + without)
         chosen.append(words.index(found))
-        # Noise and fitted values of the law differ a little between the two computations.
+        # The two computations differ slightly in noise and fitted parameters of the law.
         assert scores[chosen[-1]] > np.max(scores) - 0.02 * (np.max(scores) - np.median(scores))
         assert scores[chosen[-1]] - np.min(scores) > 1.0
 
@@ -128,7 +128,7 @@ def test_plan_reports_the_power_of_its_runs() -> None:
 
 
 def test_planned_power_allows_for_uncertain_instants_of_reversals() -> None:
-    """A jump of 10 N in a noise of 0.2 N would show on which side of a reversal a sample lies."""
+    """A jump of 10 N in noise of 0.2 N would reveal the side of a reversal of each sample."""
     found: dict[str, Any] = {p.effect: p.found_80 for p in planned().planned.power}
     assert found["backlash"] > 0.1 * 0.5 * SHARP_M_S2 * STEP_S**2
     assert found["time_delay"] > 0.2 * STEP_S
@@ -136,7 +136,7 @@ def test_planned_power_allows_for_uncertain_instants_of_reversals() -> None:
 
 
 def test_plan_for_a_shaft_has_its_angle_and_the_default_acceleration() -> None:
-    """A missing acceleration is that of a sine at 2 rad/s with the largest speed."""
+    """The default acceleration limit is that of a sine at 2 rad/s with the largest speed."""
     model = Model(Rig(drive=Drive("rotary", "torque")), "coulomb", parameters=MODEL.parameters)
     limits = Limits(2.0, duration_s=15.0)
     found = plan(model, limits=limits, minutes=0.75, noise_n=NOISE_N, step_s=STEP_S)
@@ -211,7 +211,7 @@ def motion(name: str, rate: float = 1.0) -> Run:
 
 @pytest.mark.parametrize("noise_n", [0.01, 0.5])
 def test_planned_runs_have_the_friction_of_the_model_and_white_noise(noise_n: float) -> None:
-    """Friction that a planned run already has is ignored."""
+    """Friction already contained in a planned run is ignored."""
     other = replace(motion("b"), friction_n=7.0 * motion("b").velocity_m_s)
     campaign = as_recorded(MODEL, [motion("a"), other], noise_n, DEFAULT).campaign
     clean = MODEL.predict_many([motion("a"), motion("b")])

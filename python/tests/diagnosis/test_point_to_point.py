@@ -1,4 +1,4 @@
-"""Diagnosis of an axis that a position controller holds between moves."""
+"""Diagnosis of an axis whose position controller holds it between moves."""
 
 from jbf import Rig, diagnose
 from point_to_point import TRUTH, point_to_point

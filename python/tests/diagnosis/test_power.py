@@ -37,7 +37,7 @@ def runs(friction: Friction = coulomb, seed: int = 0) -> list[Run]:
 
 @cache
 def powers() -> dict[str, Any]:
-    """The `Power` of each effect; None as a strength fails in arithmetic."""
+    """`Power` of each effect; arithmetic with a missing strength fails."""
     return {p.effect: p for p in power(coulomb_candidates(runs()), ())}
 
 
@@ -50,7 +50,7 @@ def columns() -> tuple[Array, Array, Array]:
 
 
 def residual_norm(change: Array, *others: Array) -> float:
-    """Norm of what the law, and other columns, do not explain of a change."""
+    """Norm of the part of a change that neither the law nor additional columns explain."""
     v = columns()[0]
     design = np.column_stack([np.sign(v), v, *others])
     return float(np.linalg.norm(change - design @ np.linalg.lstsq(design, change, rcond=None)[0]))
@@ -70,19 +70,19 @@ def test_non_centrality_has_the_given_detection_probability(parameters: int, cha
 
 
 def test_gain_that_counts_for_a_share_requires_a_larger_non_centrality() -> None:
-    """With equal probability a gain counts in full or by a quarter."""
+    """A gain counts in full or by a quarter, each with probability one half."""
     exceeds = stats.ncx2.sf([30.0, 120.0], 1, non_centrality(30.0, 1, 0.8, (1.0, 0.25)))
     assert np.mean(exceeds) == pytest.approx(0.8, abs=1e-4)
     assert non_centrality(30.0, 1, 0.8, (0.5,)) == pytest.approx(non_centrality(60.0, 1, 0.8))
 
 
 def test_detectable_strength_of_a_mass_is_that_of_a_regression() -> None:
-    """Together with dry and viscous friction a mass is a third column."""
+    """The mass is a third column in addition to dry and viscous friction."""
     v, a, _ = columns()
     found = powers()["inertia_leak"]
     for value, chance in ((found.found_80, 0.8), (found.found_95, 0.95)):
         wanted = np.sqrt(non_centrality(price(), 1, chance)) * NOISE_N
-        # The noise is estimated from 2000 samples, to within a few percent.
+        # The noise estimate from 2000 samples has an error of a few percent.
         assert value * residual_norm(a) == pytest.approx(wanted, rel=0.03)
     share = found.found_80 * np.sqrt(np.mean(a**2) / np.mean((5.0 + 20.0 * np.abs(v)) ** 2))
     assert found.share_80 == pytest.approx(share, rel=0.02)
@@ -91,7 +91,7 @@ def test_detectable_strength_of_a_mass_is_that_of_a_regression() -> None:
 
 @pytest.mark.parametrize("effect", ["sensor_offset", "sensor_drift", "viscous_asymmetry"])
 def test_detectable_size_of_a_smooth_change_is_larger_than_in_white_noise(effect: str) -> None:
-    """By 5 to 70 %, since coloured noise can absorb a part of it."""
+    """The size is larger by 5 to 70 %, because coloured noise can absorb a part of the change."""
     v, _, t = columns()
     changes = {"sensor_offset": np.ones(len(v)), "sensor_drift": t, "viscous_asymmetry": np.abs(v)}
     wanted = np.sqrt(non_centrality(price(), 1, 0.8)) * NOISE_N
@@ -121,7 +121,7 @@ def test_effect_is_reported_as_hidden_if_its_usual_strength_is_undetectable() ->
 
 
 def test_effects_with_the_same_signature_are_confounded() -> None:
-    """Without rests a dry friction that differs by direction is an offset of the sensor."""
+    """Without rests a direction-dependent dry friction is equivalent to a sensor offset."""
     offset, dry = powers()["sensor_offset"], powers()["dry_asymmetry"]
     assert offset.found_80 is not None
     assert (offset.alone_80, dry.alone_80) == (None, None)
@@ -137,7 +137,7 @@ def test_effect_with_a_unique_signature_is_distinguishable_if_detectable() -> No
 
 
 def test_distinguishable_strength_is_that_of_a_regression_on_law_and_rival() -> None:
-    """Viscous friction that differs by direction; the nearest rival differs in all friction."""
+    """Viscous friction that depends on direction; in the nearest rival all friction does."""
     found = powers()["viscous_asymmetry"]
     assert found.like[0] == "direction_asymmetry"
     change = np.abs(columns()[0])
@@ -163,7 +163,7 @@ def test_power_is_reported_for_effects_that_are_not_in_the_model() -> None:
 
 
 def test_presliding_is_not_detectable_at_any_stiffness_from_rests() -> None:
-    """Friction at rest balances any force, as a contact of any stiffness does."""
+    """At rest friction balances any force, like a contact of arbitrary stiffness."""
     t = np.arange(0.0, 20.0, 0.02)
     moving = np.mod(t, 6.0) > 2.0
     records = [coulomb_run(t, 0.1 * np.sin((0.6 + 0.2 * k) * t) * moving, seed=k) for k in range(3)]
@@ -228,7 +228,7 @@ def test_effect_of_distinguishable_strength_is_named_in_eighty_percent(correlati
     draws = np.array([times * size, 0.0]) + np.random.default_rng(2).standard_normal((40_000, 2))
     own, rival = draws[:, 0] ** 2, (draws @ [correlation, unexplained]) ** 2
     alone = float(np.mean((own > PRICE) & (own - rival > TIE)))
-    # The two events are treated as independent, which requires slightly more than necessary.
+    # Independence of the two events is assumed, which requires a slightly larger strength.
     assert CHANCE - 0.01 < alone < CHANCE + 0.06
 
 
@@ -253,7 +253,7 @@ def test_square_of_a_change_is_clipped_at_three_sigma_per_sample() -> None:
 
 
 def swings(velocity_noise: float = 0.0) -> Candidates:
-    """Reversing slides with a noise of a hundredth of the friction."""
+    """Reversing slides whose noise is a hundredth of the friction."""
     runs, t = [], np.arange(0.0, 30.0, 0.02)
     for k, rate in enumerate((1.1, 1.7, 2.3)):
         v = 0.1 * np.sin(rate * t)
@@ -278,7 +278,7 @@ def test_part_of_a_change_beyond_a_rival_is_a_regression_residual() -> None:
 
 
 def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None:
-    """A rival without weight in the second half is compared in the first half only."""
+    """A rival without weight in the second half is compared only in the first half."""
     at_hand = RunsAtHand(swings(), ())
     lengths = [len(f) for f in at_hand.now]
     random = np.random.default_rng(5)
@@ -294,7 +294,7 @@ def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None
 
 @pytest.mark.parametrize("velocity_noise", [0.0, 1e-3])
 def test_delay_and_lag_are_confounded_if_reversals_are_uncertain(velocity_noise: float) -> None:
-    """With an exact velocity they differ within a sample of 20 ms."""
+    """With an exact velocity the two effects differ only within a sample of 20 ms."""
     names = ["time_delay", "sensor_lag"]
     found: dict[str, Any] = {p.effect: p for p in power(swings(velocity_noise), (), names)}
     for name, other in (names, names[::-1]):

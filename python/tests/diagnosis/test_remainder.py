@@ -1,4 +1,4 @@
-"""Residual structure as a whole: which kinds are reported, in which order, and with which size."""
+"""Residual structure: reported kinds, their order and their sizes."""
 
 from dataclasses import replace
 from functools import cache
@@ -34,7 +34,7 @@ TONE = 0.6 * np.sin(2.0 * np.pi * 7.3 * TIME_S)
 
 
 def stroke_levels() -> list[Array]:
-    """A relative friction level of 0.15 RMS for each stroke."""
+    """Relative friction levels of the strokes, 0.15 RMS."""
     random = np.random.default_rng(1)
     strokes = [np.cumsum(np.diff(np.sign(v), prepend=0.0) != 0.0) for v in VELOCITIES]
     levels = [0.15 * random.standard_normal(int(k.max()) + 1)[k] for k in strokes]
@@ -42,7 +42,7 @@ def stroke_levels() -> list[Array]:
 
 
 def axes_of(residuals: list[Array]) -> dict[str, float]:
-    """Axis to share of the structure that is found in residuals."""
+    """Shares of the residual structure by axis."""
     return {r.axis: r.share for r in find_remainder(*solution_with(sines(), residuals))}
 
 
@@ -92,7 +92,7 @@ def test_residual_by_direction_is_reported_with_its_share_and_sign(size_n: float
     found = {f.axis: f for f in find_patterns(problem, solution, residuals, residuals, DEFAULT)}
     direction = found["direction"]
     assert direction.share == pytest.approx(0.3**2 / (1.0 + 0.3**2), rel=0.25)
-    # Bins are backwards, forwards: the mean is in the direction of motion where it is positive.
+    # The bins are backward and forward: the mean has the direction of motion where it is positive.
     assert direction.means_n == pytest.approx([-size_n, size_n], abs=0.1)
     for part, there in ((0.99, True), (1.01, False)):
         policy = replace(DEFAULT, pattern_share=part * direction.share)
@@ -101,7 +101,7 @@ def test_residual_by_direction_is_reported_with_its_share_and_sign(size_n: float
 
 
 def test_size_of_a_pattern_is_that_of_the_residual_and_not_of_the_innovations() -> None:
-    """The innovations of correlated noise contain a tenth of an error of 2 N."""
+    """The innovations of correlated noise contain a tenth of a constant error of 2 N."""
     noise = Noise(0.2, 0.9)
     residuals = [
         noise.coloured(0.3 * e, 0.02) + 2.0 * np.sign(v)
@@ -125,7 +125,7 @@ def test_burst_is_detected_even_if_robust_weights_reduce_it() -> None:
 
 
 def test_random_effect_in_the_model_is_not_residual_structure() -> None:
-    """It is also excluded from the share of other structure: a tone has 0.18 of 1.18 N^2."""
+    """The random effect is also excluded from other shares: a tone has 0.18 of 1.18 N^2."""
     first, second = white_noise(sines(), 5)
     residuals = [first + TONE + 5.0, second + TONE - 5.0]
     assert "run" in axes_of(residuals)

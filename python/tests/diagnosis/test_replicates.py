@@ -1,4 +1,4 @@
-"""Errors that recur with each period of the motion: lack of fit with replicates."""
+"""Errors that recur in each period of the motion: lack of fit with replicates."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -30,12 +30,12 @@ def periodic(*counts: int, step_s: float = 0.05) -> Campaign:
 
 
 def wave(n: int, harmonic: int = 7) -> Array:
-    """A recurring error of mean square one; of opposite sign half a period later."""
+    """A recurring error of mean square one, of opposite sign half a period later."""
     return np.asarray(np.sqrt(2.0) * np.sin(2.0 * np.pi * harmonic * np.arange(n) / PERIOD + 0.3))
 
 
 def not_recurring(n: int) -> Array:
-    """A wave of mean square one whose product with itself one period later averages to zero."""
+    """A wave of mean square one whose autocorrelation at one period is zero."""
     signs = np.resize([1.0, 1.0, -1.0, -1.0], n // PERIOD + 1)
     return np.asarray(wave(n, 9) * np.repeat(signs, PERIOD)[:n])
 
@@ -58,7 +58,7 @@ def runs_named(found: Remainder) -> list[str]:
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
 def test_error_that_recurs_with_the_motion_is_reported_with_its_share(unit: float) -> None:
-    """1.44 of a mean square of 2.44 recurs: 77 % of the RMS."""
+    """The recurring part has 1.44 of a mean square of 2.44, or 77 % of the RMS."""
     residual = unit * (1.2 * wave(N) + not_recurring(N))
     (found,) = recurring_in(residual)
     assert found.axis == "period"
@@ -71,14 +71,14 @@ def test_error_that_recurs_with_the_motion_is_reported_with_its_share(unit: floa
 
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
 def test_significance_of_a_recurring_error_is_the_root_of_the_pairs(unit: float) -> None:
-    """Products of white noise have a standard deviation of the mean square."""
+    """Products of white noise have a standard deviation equal to the mean square."""
     for part, found in ((0.99, True), (1.01, False)):
         sigma = part * float(np.sqrt(N - PERIOD))
         assert bool(recurring_in(unit * wave(N), replicate_sigma=sigma)) == found
 
 
 def test_significance_of_a_recurring_error_is_lower_if_it_covers_part_of_the_record() -> None:
-    """The products then have a long-run variance above that of white noise."""
+    """The products have a long-run variance above that of white noise."""
     residual = wave(9 * PERIOD) * np.repeat([1.0] * 6 + [0.0] * 3, PERIOD)
     (found,) = recurring_in(residual, replicate_sigma=1.0)
     white = found.share * float(np.sqrt(8 * PERIOD))
@@ -86,7 +86,7 @@ def test_significance_of_a_recurring_error_is_lower_if_it_covers_part_of_the_rec
 
 
 def test_constant_residual_is_not_reported_as_a_recurring_error() -> None:
-    """A level correlates also half a period later, where the wave has the opposite sign."""
+    """A constant is also correlated half a period later, where the wave has the opposite sign."""
     assert recurring_in(np.full(N, 1.5)) == []
     (found,) = recurring_in(1.5 + wave(N))
     assert found.share == pytest.approx(2.0 / 3.25, rel=1e-6)
@@ -94,7 +94,7 @@ def test_constant_residual_is_not_reported_as_a_recurring_error() -> None:
 
 @pytest.mark.parametrize("lag", [0.5, 0.6, 0.7, 0.8, 0.9])
 def test_share_of_a_recurring_error_excludes_the_correlation_of_the_noise(lag: float) -> None:
-    """The mean product of 1 + cos is 1 - 1/2 at its least, 1 + cos(pi / lag) / 2 a period later."""
+    """The mean product of 1 + cos is at least 1 - 1/2, and 1 + cos(pi / lag) / 2 a period later."""
     residual = 1.0 + np.cos(np.pi * np.arange(20_000) / (lag * PERIOD))
     (found,) = recurring_in(residual, replicate_share=1e-3, replicate_sigma=1e-6)
     expected = 0.5 * (1.0 + np.cos(np.pi / lag)) / 1.5
@@ -103,7 +103,7 @@ def test_share_of_a_recurring_error_excludes_the_correlation_of_the_noise(lag: f
 
 @pytest.mark.parametrize("memory_s", [0.2, 4.0, 20.0])
 def test_coloured_noise_is_not_reported_as_a_recurring_error(memory_s: float) -> None:
-    """Also if its memory is longer than a period of five seconds."""
+    """The memory of the noise may be longer than a period of five seconds."""
     keep = float(np.exp(-0.05 / memory_s))
     campaign = periodic(3000, 3000)
     for seed in range(5):

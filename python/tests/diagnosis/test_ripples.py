@@ -1,4 +1,4 @@
-"""Waves along the path that have another phase in each run: pitch, size, share and significance."""
+"""Ripples along the path with a random phase in each run: pitch, size, share, significance."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -22,7 +22,7 @@ SPEEDS_M_S = (0.1, 0.137, 0.171, 0.229, 0.083)
 
 @cache
 def reversing(speeds: tuple[float, ...] = SPEEDS_M_S) -> Campaign:
-    """Slides that reverse once, in the middle."""
+    """Slides that reverse once, in the middle of the run."""
     return slides([np.where(np.arange(N) < N // 2, v, -v) for v in speeds])
 
 
@@ -58,13 +58,13 @@ def waves(
 
 
 def ripples_in(campaign: Campaign, signals: list[Array], share: float = 1e-6) -> list[Remainder]:
-    """Ripples where these signals are innovations and residuals."""
+    """Ripples of the given innovations and residuals."""
     policy = replace(DEFAULT, tone_share=share)
     return find_ripples(campaign, campaign.samples, signals, signals, policy)
 
 
 def pitch_and_size(found: Remainder) -> tuple[float, float]:
-    """Pitch (m) and amplitude (N) in a description."""
+    """Pitch (m) and amplitude (N) stated in a description."""
     pitch_m, size_n = numbers_in(r"every ([\d.e+-]+) m.*?, ([\d.e+-]+) N,", found.where)
     return pitch_m, size_n
 
@@ -124,7 +124,7 @@ def test_ripple_requires_three_runs(runs: int, found: int) -> None:
 
 
 def exact_waves(campaign: Campaign, amplitudes: Sequence[float], seed: int) -> list[Array]:
-    """Waves in noise of mean square one that has no component at their pitch."""
+    """Waves in noise of mean square one without a component at their pitch."""
     signals, noise = [], waves(campaign, [0.0] * len(amplitudes), seed=seed)
     for i, (e, path) in enumerate(zip(noise, paths(campaign), strict=True)):
         angle = 2.0 * np.pi * path / PITCH_M
@@ -150,10 +150,10 @@ def test_significance_of_a_ripple_is_chi_square_over_its_runs(part: float, found
 
 @pytest.mark.parametrize(("part", "found"), [(0.8, 0), (1.25, 1)])
 def test_ripple_requires_significance_in_two_thirds_of_the_runs(part: float, found: int) -> None:
-    """Of three runs the two weakest: twice their ordinates is chi-square with four degrees."""
+    """Twice the ordinates of the two weakest of three runs is chi-square with four degrees."""
     campaign = one_way(SPEEDS_M_S[:3])
     least = stats.chi2.isf(IN_MOST_CHANCE, 4)
-    # In a run of mean square m the ordinate of a wave of amplitude A is A^2 n / (2 m).
+    # The ordinate of a wave of amplitude A in a run of mean square m is A^2 n / (2 m).
     ordinate = 0.5 * part * least
     square = 2.0 * ordinate / N / (1.0 - ordinate / N)
     weak = float(np.sqrt(square))
@@ -169,7 +169,7 @@ def test_ripple_requires_eight_periods_in_each_of_three_runs(third_m_s: float, f
 
 @pytest.mark.parametrize(("steps", "found"), [(3.6, 0), (4.4, 1)])
 def test_ripple_requires_a_pitch_of_four_steps_of_the_path(steps: float, found: int) -> None:
-    """The step of the path is the median of all runs: that at 0.1 m/s, 2 mm."""
+    """The step of the path is the median over all runs, that at 0.1 m/s: 2 mm."""
     campaign = one_way((0.1, 0.099, 0.101))
     seen = ripples_in(campaign, waves(campaign, [2.0] * 3, pitch=steps * 0.1 * STEP_S))
     assert [pitch_and_size(x)[0] for x in seen] == pytest.approx([steps * 0.002] * found, rel=0.01)

@@ -32,19 +32,19 @@ def fitted(extra: Extra, *, runs: int = 6) -> tuple[Problem, Solution]:
 
 
 def clearest(problem: Problem, solution: Solution) -> Any:
-    """The accepted proposal of a random effect, or None."""
+    """Accepted random effect, or None."""
     model = model_of(problem, solution)
     found = random_effect(model)
     return found if is_accepted(found, model) else None
 
 
 def finding(found: Proposal) -> Finding:
-    """The finding on the random effect."""
+    """Finding of the random effect."""
     return found.campaign.more_findings[-1]
 
 
 def deviates(sd: float) -> Array:
-    """Six values with mean zero and this standard deviation."""
+    """Six values with mean zero and the given standard deviation."""
     raw = np.array([0.4, -1.3, 0.9, -0.2, 1.5, -1.1])
     return np.asarray(sd * (raw - raw.mean()) / raw.std(ddof=1))
 

@@ -1,4 +1,4 @@
-"""Diagnoses of simulated servo drives: closed-loop motions, recorded by imperfect loggers."""
+"""Diagnoses of simulated servo drives: closed-loop motions recorded by loggers with artefacts."""
 
 import sys
 import tempfile
@@ -66,7 +66,7 @@ def test_friction_level_that_differs_by_stroke_gives_an_unexplained_verdict() ->
 
 
 def test_effects_that_filter_a_force_are_not_tried_if_the_acceleration_is_uncertain() -> None:
-    """A delay or a lag would smooth the errors of the acceleration."""
+    """A delay or a lag would average the errors of the acceleration."""
     reasons = diagnosed(4010).not_tried
     for name in ("sensor_lag", "time_delay", "sensor_hysteresis", "backlash", "drive_compliance"):
         assert "errors of the acceleration" in reasons[name]
@@ -77,7 +77,7 @@ def test_law_without_memory_is_selected_for_coulomb_friction() -> None:
 
 
 def test_held_out_errors_of_a_law_include_samples_of_the_initial_state_transient() -> None:
-    """An elastic law does not predict them; a model in use must."""
+    """The model in use predicts samples that an elastic law excludes as initial transient."""
     rng = np.random.default_rng(4)
     time = 0.01 * np.arange(600)
     runs = []
@@ -103,7 +103,7 @@ def campaign_of(seed: int) -> tuple[servosim.Campaign, Campaign]:
 
 
 def test_force_noise_is_estimated_separately_from_the_motion_errors() -> None:
-    """A smooth motion between corners, whose errors the smoother overestimates."""
+    """A smooth motion between corners, for which the smoother overestimates the motion errors."""
     simulated, campaign = campaign_of(4013)
     problem = Problem(campaign, "coulomb", "journal", ["inertia_leak"])
     _, solution = with_motion_errors(problem, minimum(problem, [{}]))
@@ -132,7 +132,7 @@ def test_scale_of_the_motion_errors_is_that_of_the_true_errors_of_the_accelerati
 
 
 def test_acceleration_error_of_a_hand_guided_drive_is_below_7_percent_of_its_jumps() -> None:
-    """Friction jumps by twice its Coulomb level, and the acceleration with it."""
+    """Friction jumps by twice the Coulomb friction at a reversal, and the acceleration with it."""
     simulated, campaign = campaign_of(4012)
     plant = simulated.drawn.plant
     jump = 2.0 * plant.coulomb / plant.inertia

@@ -1,4 +1,4 @@
-"""Effects as functions of strength, and the part of a change that the law does not explain."""
+"""Effects as functions of strength, and the part of a change beyond the law."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,8 @@ def test_parameter_moves_from_its_null_with_strength(name: str, candidates: Cand
     for times in (0.5, 1.0, 2.0):
         value = float(model.values(times)[model.which])
         if page.null == np.inf:
-            # An infinite stiffness has no effect: twice as strong is half as stiff.
+            # The null of a contact is an infinite stiffness: twice the strength is half the
+            # stiffness.
             assert value == pytest.approx(page.starts[0] / times)
         else:
             assert page.null is not None
@@ -55,7 +56,7 @@ def test_effect_parameter_stays_within_its_bounds_at_any_strength(candidates: Ca
 
 
 def test_all_coefficients_of_an_effect_grow_with_its_strength(candidates: Candidates) -> None:
-    """A curve of six knots grows as a whole."""
+    """All six knots of a curve grow by the same factor."""
     model = model_of(candidates, "stroke_dependence")
     knots = [i for i, name in enumerate(model.problem.names) if ".a_" in name]
     assert len(knots) == 6
@@ -112,7 +113,7 @@ def test_weight_of_samples_next_to_jumps_is_reduced_if_an_effect_moves_the_jumps
 
 
 def test_gain_of_a_fast_change_in_white_noise_counts_in_full(at_hand: RunsAtHand) -> None:
-    """The long-run variance is estimated: a gain never counts more, and less by chance."""
+    """Because the long-run variance is estimated, a gain may by chance count in part."""
     count = sum(int(np.count_nonzero(w > 0.0)) for w in at_hand.samples.weight)
     fast = at_hand.counts(np.where(np.arange(count) % 2, 1.0, -1.0))
     slow = at_hand.counts(np.sin(2.0 * np.pi * np.arange(count) / count))
@@ -129,7 +130,7 @@ def waves(at_hand: RunsAtHand, size: float, rate: float) -> list[Array]:
 def test_share_of_a_change_not_absorbed_by_noise_is_a_likelihood_ratio(
     candidates: Candidates, at_hand: RunsAtHand, size: float, rate: float
 ) -> None:
-    """Loss of likelihood with the noise estimated again, over that with the previous noise."""
+    """Loss of likelihood with the re-estimated noise, relative to that with the previous noise."""
     signs = [np.sign(f) for f in at_hand.now]
     velocities = [p.motion.velocity_m_s for p in candidates.campaign.prepared]
     designs = [np.column_stack(columns) for columns in zip(signs, velocities, strict=True)]

@@ -1,4 +1,4 @@
-"""Friction levels that differ from stroke to stroke, against an analysis of variance."""
+"""Friction levels of strokes, against an analysis of variance."""
 
 from dataclasses import replace
 from functools import cache
@@ -17,7 +17,7 @@ FRICTION_N = 7.0
 
 
 def square_wave(lengths: list[int]) -> Array:
-    """Strokes at 0.1 m/s forwards and backwards with these numbers of samples."""
+    """Forward and backward strokes at 0.1 m/s with the given numbers of samples."""
     return np.concatenate([np.full(n, 0.1 * (-1.0) ** k) for k, n in enumerate(lengths)])
 
 
@@ -28,7 +28,7 @@ def strokes(*lengths: int) -> Campaign:
 
 @cache
 def sines() -> Campaign:
-    """Strokes whose friction differs between and within them."""
+    """Strokes with different friction, which also varies within each stroke."""
     t = 0.02 * np.arange(1500)
     envelope = 1.0 + 0.6 * np.sin(0.23 * t)
     return slides([0.1 * envelope * np.sin(w * t) for w in (1.1, 1.7)])
@@ -51,7 +51,7 @@ def level_residuals(shares: list[float], wobble: float, each: int = 40) -> list[
 
 
 def anova(campaign: Campaign, residuals: list[Array]) -> tuple[float, float, int]:
-    """F ratio, share of the mean square, and degrees of freedom between the strokes."""
+    """F ratio, share of the mean square and degrees of freedom between strokes."""
     between, within, degrees = 0.0, 0.0, 0
     friction, counted = friction_of(campaign), campaign.samples.counted
     for p, f, r, c in zip(campaign.prepared, friction, residuals, counted, strict=True):
@@ -70,7 +70,7 @@ def anova(campaign: Campaign, residuals: list[Array]) -> tuple[float, float, int
 
 
 def with_levels(campaign: Campaign, share: float, seed: int, memory: float = 0.0) -> list[Array]:
-    """Noise of 0.3 N, and a random relative level for each stroke."""
+    """White noise of 0.3 N and a random relative friction level for each stroke."""
     random = np.random.default_rng(seed)
     residuals, noise = [], white_noise(campaign, seed, 0.3)
     for p, f, e in zip(campaign.prepared, friction_of(campaign), noise, strict=True):
@@ -100,7 +100,7 @@ def test_sample_at_rest_belongs_to_no_stroke_and_does_not_end_one() -> None:
 
 
 def test_stroke_levels_agree_with_a_weighted_analysis_of_variance() -> None:
-    """If the friction varies, a level is weighted by the sum of squares of the friction."""
+    """With a varying friction the weight of a level is the sum of squares of the friction."""
     campaign = sines()
     residuals = with_levels(campaign, 0.08, 1)
     ratio, share, degrees = anova(campaign, residuals)

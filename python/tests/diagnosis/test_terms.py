@@ -1,4 +1,4 @@
-"""Terms of the observation model: their gains against likelihoods of SciPy; their acceptance."""
+"""Terms of the observation model: gains against likelihoods by SciPy, and acceptance."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -27,7 +27,7 @@ Draw = Callable[[int, int, np.random.Generator], Array]
 
 
 def model(draw: Draw, *, seed: int = 0) -> Model:
-    """Coulomb friction with this noise, fitted."""
+    """Coulomb friction with the given noise, and its fit."""
     runs = reversing_runs(lambda i, t, f, random: f + draw(i, len(t), random), seed=seed)
     return model_of(*fit_from_truth(Campaign.prepare(Rig(), runs)))
 
@@ -37,7 +37,7 @@ def white(i: int, n: int, random: np.random.Generator) -> Array:
 
 
 def residuals(fitted: Model) -> list[Array]:
-    """Residuals at the samples that count, one array a run."""
+    """Residuals at the counted samples, one array for each run."""
     solution = fitted.solution
     return [r[c] for r, c in zip(solution.residuals, solution.samples.counted, strict=True)]
 
@@ -60,7 +60,7 @@ def test_gain_of_variances_by_run_is_that_of_normal_likelihoods() -> None:
     every = np.concatenate(own)
     by_run = sum(float(np.sum(stats.norm.logpdf(r, scale=np.std(r)))) for r in own)
     pooled = float(np.sum(stats.norm.logpdf(every, scale=np.std(every))))
-    # The variances are estimated robustly, from differences.
+    # The variances are robust estimates from differences.
     assert proposed(variance_by_run(fitted)).gain == pytest.approx(
         2.0 * (by_run - pooled), rel=0.05
     )
@@ -90,7 +90,7 @@ def test_random_effect_is_removed_if_the_runs_do_not_have_it() -> None:
     assert between is not None
     problem, solution = fit_from_truth(found.campaign)
     assert without_random_effect(model_of(problem, solution)) is None
-    # With a gain by run as well, which these runs do not have.
+    # The campaign has a gain by run in addition, which the runs do not have.
     force = problem.predict(solution.values)
     directions = tuple(
         np.column_stack([d, 0.3 * f]) for d, f in zip(between.directions, force, strict=True)
@@ -122,7 +122,7 @@ def test_no_term_is_accepted_in_white_noise(seed: int) -> None:
 
 
 def test_term_is_not_accepted_if_held_out_runs_are_predicted_worse() -> None:
-    """A fit that is off by the noise in every run has 1.4 times the error."""
+    """A fit with an error equal to the noise in every run has 1.4 times the held-out error."""
     fitted = model(white)
     found = replace(
         proposed(variance_by_run(model(lambda i, n, random: (1.0 + i) * white(i, n, random)))),

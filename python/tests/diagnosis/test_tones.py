@@ -23,7 +23,7 @@ def tones_in(
     share: float = SMALLEST_SHARE,
     counted: list[Mask] | None = None,
 ) -> list[Remainder]:
-    """Tones found where these signals are the innovations and, by default, the residuals."""
+    """Tones detected in the given innovations and, by default, equal residuals."""
     campaign = campaign_of(*(len(s) for s in signals))
     samples = campaign.samples if counted is None else campaign.samples.within(counted)
     policy = replace(DEFAULT, tone_share=share)
@@ -36,7 +36,7 @@ def pairs_in(tone: Remainder) -> list[tuple[float, float]]:
 
 
 def flat_spectrum(n: int, lines: dict[int, float], seed: int = 0) -> Array:
-    """A signal whose spectral power is 1 at every line except these (line to power)."""
+    """A signal of spectral power 1 except at the given lines (line to power)."""
     phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, n // 2 + 1)
     size = np.ones(n // 2 + 1)
     size[0] = 0.0
@@ -57,7 +57,7 @@ def test_no_tone_is_reported_in_white_noise() -> None:
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
 def test_tone_is_significant_above_a_quantile_of_exponential_power(unit: float) -> None:
-    """The power of a line of white noise is exponential with median log 2 (Fisher 1929)."""
+    """Power of a spectral line of white noise: exponential with median log 2 (Fisher 1929)."""
     lines = 1024 // 2 - 8
     height = np.log(lines / DEFAULT.tone_chance) / np.log(2.0)
     for part, significant in ((0.98, False), (1.02, True)):

@@ -44,15 +44,15 @@ def test_effect_is_named_if_its_gain_exceeds_20_times_the_disagreement() -> None
 @pytest.mark.parametrize(
     ("evidence", "gains", "rms_ratio", "confirmed"),
     [
-        # Weak evidence: more than half of the gain must appear in the predictive density.
+        # Weak evidence: the predictive density must contain more than half of the gain.
         (DEFAULT.weak, (0.5, 1.0, 1.0), 1.0, False),
         (DEFAULT.weak, (0.51, -1.0, 0.0), 1.0, True),
         (DEFAULT.weak + 0.1, (0.51, -1.0, 0.0), 1.0, False),
-        # Strong evidence: any gain in mean square, or a gain in two runs of three.
+        # Strong evidence: any gain in mean square, or a gain in two of three runs.
         (STRONG, (0.0, 1e-9, 0.0), 1.0, True),
         (STRONG, (0.0, 0.0, 0.65), 1.0, False),
         (STRONG, (0.0, 0.0, DEFAULT.least_better_runs), 1.0, True),
-        # Held-out RMS may grow by a quarter at most.
+        # The held-out RMS may increase by up to a quarter.
         (STRONG, (0.0, 1.0, 1.0), DEFAULT.left_out_worse, True),
         (STRONG, (0.0, 1.0, 1.0), DEFAULT.left_out_worse + 0.01, False),
         (DEFAULT.weak, (0.9, 1.0, 1.0), DEFAULT.left_out_worse + 0.01, False),
@@ -61,7 +61,7 @@ def test_effect_is_named_if_its_gain_exceeds_20_times_the_disagreement() -> None
 def test_weak_evidence_requires_a_larger_held_out_gain_than_strong_evidence(
     evidence: float, gains: tuple[float, float, float], rms_ratio: float, confirmed: bool
 ) -> None:
-    """Gains in predictive density and in mean square, and the share of runs that are better."""
+    """Gains in predictive density and in mean square, and the share of improved runs."""
     assert left_out_confirms(evidence, *gains, DEFAULT, rms_ratio) == confirmed
 
 
@@ -74,7 +74,7 @@ def test_strong_evidence_is_confirmed_by_any_held_out_gain(gained_in_fit: float)
 
 
 def test_confirmation_has_held_out_errors_with_and_without_the_effect() -> None:
-    """Offset of 0.5 N in all runs but the third: four of five are better."""
+    """An offset of 0.5 N in all runs except the third: four of five runs improve."""
     offsets_n = (0.5, 0.5, 0.0, 0.5, 0.5)
     candidates = _candidates(lambda i, t: offsets_n[i], runs=5)
     found = candidates.confirmation((), OFFSET)
@@ -89,7 +89,7 @@ def test_confirmation_has_held_out_errors_with_and_without_the_effect() -> None:
 
 
 def _candidates(extra: Callable[[int, Array], Array | float], runs: int = 4) -> Candidates:
-    """Coulomb friction under reversing motions, 0.1 N of noise, and an extra force."""
+    """Coulomb friction in reversing motions, noise of 0.1 N and an additional force."""
     records = reversing_runs(
         lambda i, t, f, random: f + 0.1 * random.standard_normal(len(t)) + extra(i, t),
         runs=runs,
@@ -117,7 +117,7 @@ def test_weak_effect_is_a_confounder_if_the_unexplained_structure_exceeds_its_ga
     assert confounders(candidates, (OFFSET,), remains) == (OFFSET,)
     assert confounders(candidates, (OFFSET,), remains[:1]) == ()
     assert confounders(candidates, (OFFSET,)) == ()
-    # A strong effect is not a confounder, whatever structure remains.
+    # A strong effect is not a confounder, regardless of the residual structure.
     assert confounders(_candidates(lambda i, t: 0.08), (OFFSET,), remains) == ()
 
 
@@ -127,7 +127,7 @@ def test_weak_effect_is_a_confounder_if_the_unexplained_structure_exceeds_its_ga
 def test_confounder_stays_in_the_model_if_held_out_error_falls(
     offsets_n: tuple[float, ...], kept: tuple[str, ...]
 ) -> None:
-    """The mean of three alternating offsets predicts the fourth with the wrong sign."""
+    """Alternating offsets: the mean of three predicts the fourth with the wrong sign."""
     assert best_predicting(_candidates(lambda i, t: offsets_n[i]), (OFFSET,), ()) == kept
 
 

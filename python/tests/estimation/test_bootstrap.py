@@ -34,7 +34,7 @@ MIDDLE = 0.84134 - 0.15866
 
 @pytest.mark.parametrize("shift", [-3.0, 100.0])
 def test_bootstrap_error_is_half_the_central_68_percent_width_of_estimates(shift: float) -> None:
-    """Fifty of 100,051 estimates on a distant peak of the likelihood do not change it."""
+    """Fifty of 100,051 estimates at a distant likelihood maximum do not change the error."""
     estimates = 5.0 + shift + np.append(np.linspace(0.0, 1.0, 100_001), np.full(50, 1e6))
     found = with_error(ParameterValue(5.0, 1e-3), estimates, PAGE)
     assert found.stderr == pytest.approx(0.5 * MIDDLE, rel=2e-3)
@@ -88,7 +88,7 @@ def test_bootstrap_of_a_linear_fit_gives_regression_errors(fitted: Fit, runs: li
     v = np.concatenate([r.velocity_m_s for r in runs])
     x = np.column_stack([np.sign(v), v, np.ones(len(v))])
     errors = 0.2 * np.sqrt(np.diag(np.linalg.inv(x.T @ x)))
-    # The errors of the fit are divided by 1000, so that the estimates determine the result.
+    # The errors of the fit are divided by 1000 so that the estimates determine the result.
     values = fitted.parameters.items()
     precise = {name: replace(p, stderr=p.stderr and p.stderr / 1e3) for name, p in values}
     steps: list[Any] = []
@@ -184,7 +184,7 @@ def test_resampled_encoder_position_has_the_recorded_step_at_another_phase() -> 
 
 
 def wild_errors(model: Model, runs: list[Run], hidden: tuple[str, ...], draw: int) -> list[Array]:
-    """Noise of new records: record minus the law with the hidden effects."""
+    """Noise of simulated records: record minus the law with the simulated effects."""
     known = {n: p for n, p in model.parameters.items() if n.partition(".")[0] in (n, *hidden)}
     some = Model(model.rig, model.law, hidden, known)
     again = recorded_by(model, runs, hidden, draw)

@@ -1,4 +1,5 @@
-"""A rig and its prepared runs: quantities available to effects, time columns, quantisation."""
+"""A campaign, that is a rig and its prepared runs: quantities for effects, time columns,
+quantisation."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -128,9 +129,9 @@ def test_quantisation_rms_follows_from_step_and_noise_of_the_readings() -> None:
     raw = replace(campaign, prepared=(replace(p, friction_n=p.readings_n),))
     noise_n = noise_before(step, np.diff(p.readings_n)[counted[1:] & counted[:-1]])
     assert raw.steps_rms_n(2.0) == pytest.approx(curve_rms_n(step, noise_n), rel=1e-6)
-    # A residual is no smaller than the noise.
+    # The residual is not smaller than the noise.
     assert raw.steps_rms_n(0.5 * noise_n) == pytest.approx(curve_rms_n(step, 0.5 * noise_n))
-    # If a bias was already corrected, three tenths of the correction are assumed to remain.
+    # After a bias correction three tenths of the correction are assumed to remain.
     corrected = replace(campaign, prepared=(replace(p, friction_n=p.readings_n - 0.25 * step),))
     assert corrected.steps_rms_n(2.0) == pytest.approx(0.3 * 0.25 * step)
     plain = prepared(run(force=5.0 * np.sign(SPEED) + noise))
@@ -170,7 +171,7 @@ def test_prepared_run_uses_the_largest_step_and_rate_of_its_findings(ready: Prep
 
 
 def test_force_with_a_separate_time_column_is_compared_at_its_reading_instants() -> None:
-    """Readings before the motion begins and after it ends are not used; at its ends they are."""
+    """Readings outside the recorded motion are dropped; those at its ends are used."""
     instants, force = INSTANTS[10:301], INSTANTS[::5]
     channels = {
         "velocity_m_s": (instants, speed(instants)),
@@ -185,7 +186,7 @@ def test_force_with_a_separate_time_column_is_compared_at_its_reading_instants()
 
 
 def interpolated(rate_hz: float, seed: int, length: int = 3000) -> Run:
-    """A force that was sampled at this rate and interpolated to 50 Hz."""
+    """A force sampled at this rate and interpolated to 50 Hz."""
     t = 0.02 * np.arange(length)
     ticks = np.arange(-0.3 / rate_hz, t[-1] + 2.0 / rate_hz, 1.0 / rate_hz)
     force = np.interp(t, ticks, reversing_force(ticks, seed))
@@ -211,7 +212,7 @@ def test_short_run_takes_the_interpolation_rate_of_the_other_runs() -> None:
 
 @pytest.mark.parametrize(
     ("steps", "drift", "first", "last"),
-    # Readings at the ends of the motion can be compared; a drift is zero in mid-run.
+    # Readings at the ends of the motion can be compared; the drift is zero at mid-run.
     [(2.0, 0.0, 2, 400), (-3.0, 0.0, 0, 397), (2.5, 0.0, 3, 400), (0.0, -(2.0**-7), 2, 398)],
 )
 def test_shift_compares_the_force_with_the_motion_at_the_shifted_instants(

@@ -1,5 +1,4 @@
-"""Correction of delays and clock drifts: when runs are shifted, by how much, and when they are
-not."""
+"""Correction of delays and clock drifts: acceptance, size, and cases without a correction."""
 
 from dataclasses import replace
 
@@ -37,7 +36,7 @@ EXTENDED = pytest.mark.extended
 
 
 PRICE_OF_EFFECT = 30.0
-"""Typical gain in twice the log likelihood that an effect needs."""
+"""Typical threshold of an effect in twice the log likelihood."""
 
 
 def corrected(
@@ -60,7 +59,7 @@ def unshifted(problem: Problem, solution: Solution) -> shifts.Shifted:
 
 
 def sizes(campaign: Campaign | None, kind: str) -> list[float]:
-    """Sizes of the findings of a corrected campaign, all of one kind."""
+    """Sizes of the findings of a corrected campaign, which must all be of one kind."""
     assert {f.kind for f in campaign.more_findings} == {kind}
     assert [f.run for f in campaign.more_findings] == [p.run.name for p in campaign.prepared]
     assert {f.done for f in campaign.more_findings} == {"shifted"}
@@ -94,7 +93,7 @@ def test_shifted_force_is_compared_at_the_instant_at_which_it_acted() -> None:
 def test_delay_above_a_tenth_of_a_run_or_drift_above_0_2_percent_is_impossible(
     late_s: tuple[float, float], drift: float, possible: bool
 ) -> None:
-    """Runs of 10 s and 20 s; at its ends a drift adds half the duration times the drift."""
+    """Runs of 10 s and 20 s; at the ends of a run a drift adds half of duration times drift."""
     problem = fitted(one_way_campaign((0.0, 0.0), durations_s=(10.0, 20.0)))[0]
     assert shifts.possible_clocks(problem, np.array(late_s), drift) == possible
 
@@ -122,7 +121,7 @@ def test_delay_effect_is_replaced_by_run_delays_if_the_runs_differ_in_delay() ->
 
 
 def test_mass_in_one_run_is_not_corrected_as_a_delay_of_100_ms() -> None:
-    """At F_v = 20 N s/m an additional mass of 2 kg has the force of a delay of -100 ms."""
+    """At F_v = 20 N s/m an additional mass of 2 kg is equivalent to a delay of -100 ms."""
     random, runs = np.random.default_rng(0), []
     t = np.arange(0.0, 20.01, 0.02)
     for i in range(4):
@@ -138,7 +137,7 @@ def test_mass_in_one_run_is_not_corrected_as_a_delay_of_100_ms() -> None:
 
 @pytest.mark.parametrize("drift", [1.2e-4, pytest.param(1.8e-3, marks=pytest.mark.extended)])
 def test_clock_drift_is_estimated_jointly_with_the_law(drift: float) -> None:
-    """At the end of the longer run the error is 2.4 ms or 36 ms, of at most 8 ms a step."""
+    """At the end of the longer run the error is 2.4 ms or 36 ms; a step removes at most 8 ms."""
     durations = (20.0, 10.0)
     problem, solution = fitted(one_way_campaign((0.0, 0.0), drift, durations_s=durations))
     found = shifts.fit_clock_drift(problem, unshifted(problem, solution))
@@ -195,7 +194,7 @@ def test_delay_equal_in_all_runs_is_not_corrected(delay_s: float, effects: tuple
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(s, marks=EXTENDED) for s in (1, 2))])
 def test_common_delay_beyond_the_linear_range_is_not_corrected(seed: int) -> None:
-    """Intermediate estimates on the way to 30 ms differ between the runs."""
+    """Intermediate estimates of a common delay of 30 ms differ between the runs."""
     assert corrected(*fitted(one_way_campaign((30e-3,) * 4, seed=seed))) is None
 
 
@@ -230,13 +229,13 @@ def test_accurate_clocks_are_never_corrected_in_forty_simulated_campaigns() -> N
         there = fitted(one_way_campaign((0.0, 0.0), seed=seed, durations_s=(20.0, 10.0)))
         squares.append(drift_step(*there).square)
         assert corrected(*there) is None
-    # Wald's statistic is chi-square of one degree: its mean is 1, its median 0.45.
+    # Wald's statistic is chi-square with one degree of freedom: its mean is 1, its median 0.45.
     assert 0.5 < np.mean(squares) < 1.7
     assert 0.2 < np.median(squares) < 0.9
 
 
 def test_delays_of_a_second_correction_are_added_to_those_already_reported() -> None:
-    """The first correction was estimated with a wrong model and is off by up to 3 ms."""
+    """The first correction was estimated with a wrong model and has errors of up to 3 ms."""
     campaign = one_way_campaign(LARGE_DELAYS_S)
     problem = fitted(campaign)[0]
     wrong = np.array(LARGE_DELAYS_S) - np.array((3e-3, -2e-3, 1e-3, 0.0))
@@ -256,7 +255,7 @@ def test_runs_are_shifted_instead_of_a_delay_effect_only_if_their_delays_differ(
 
 
 def test_delays_that_differ_are_not_corrected_if_a_sensor_lag_explains_them_as_well() -> None:
-    """The runs differ by a hundredth of a sample from a common delay."""
+    """The delays of the runs differ from a common delay by a hundredth of a sample."""
     delays_s = 5e-3 + 2e-4 * np.array([1.0, -1.0, 1.0, -1.0])
     campaign = one_way_campaign(delays_s.tolist())
     assert corrected(*fitted(campaign), fitted(campaign, ("sensor_lag",))[1]) is None
@@ -264,7 +263,7 @@ def test_delays_that_differ_are_not_corrected_if_a_sensor_lag_explains_them_as_w
 
 @pytest.mark.parametrize("explained", [True, False])
 def test_runs_are_not_shifted_if_known_random_effects_explain_the_delays(explained: bool) -> None:
-    """The random effects have the shape of a delay, or are offsets, which explain no delay."""
+    """The random effects have the shape of a delay, or are offsets, which explain no delays."""
     problem, solution = fitted(one_way_campaign((3e-3, -2e-3, 4e-3, -1e-3)))
     times = [p.run.time_s for p in problem.campaign.prepared]
     offsets = [np.ones_like(t) for t in times]

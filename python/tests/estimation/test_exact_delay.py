@@ -32,7 +32,7 @@ EXTENDED = pytest.mark.extended
 def delayed_runs(
     seed: int, count: int = 4, duration_s: float = 20.0, speed_noise_m_s: float = 1e-4
 ) -> list[Run]:
-    """Coulomb friction with a delay and white noise, in runs that reverse often."""
+    """Coulomb friction with a delay and white noise, in runs with many reversals."""
     random = np.random.default_rng(seed)
     time = np.arange(0.0, duration_s, STEP_S)
     runs = []
@@ -55,7 +55,7 @@ def rms(values: Array) -> float:
 
 @cache
 def solved(held: bool = False, speed_noise_m_s: float = 1e-4) -> tuple[Problem, Solution, Spread]:
-    """A fit by least squares, whose delay is determined by the samples between the jumps."""
+    """Least-squares fit whose delay is determined by the samples between the jumps."""
     known = {**LAW, "F_s_n": 5.0, TAU: 0.045}
     fixed = {"F_s_n": 5.0, **({TAU: TAU_S} if held else {})}
     campaign = Campaign.prepare(Rig(), delayed_runs(3, 2, 12.0, speed_noise_m_s))
@@ -93,7 +93,7 @@ def test_law_parameters_follow_a_change_of_delay_as_in_a_regression() -> None:
     problem, solution = fitted(Campaign.prepare(Rig(), runs), DELAY)
 
     def regression(delay_s: float) -> Array:
-        # Without the first samples, whose force acted before the recorded motion begins.
+        # Exclude the first samples, whose force acted before the recorded motion begins.
         v = np.concatenate([speed(i, delay_s)[5:] for i in (0, 1)])
         x = np.column_stack([np.ones(len(v)), v])
         y = np.concatenate([p.friction_n[5:] for p in problem.campaign.prepared])
@@ -183,7 +183,7 @@ def test_fitted_delay_is_within_its_error_and_the_rms_equals_the_noise(seed: int
     assert tau.stderr < 0.05 * STEP_S
     assert abs(tau.value - TAU_S) < 4.0 * tau.stderr
     assert found.rms_n == pytest.approx(NOISE_N, rel=0.05)
-    # One sample on the wrong side of a reversal among 4,000 would make the RMS 1.3 times as large.
+    # One of 4,000 samples on the wrong side of a reversal would multiply the RMS by 1.3.
     fresh = delayed_runs(seed + 100)
     errors = [(r.friction_n - found.model.predict(r))[r.time_s > TAU_S] for r in fresh]
     assert rms(np.concatenate(errors)) < 1.15 * NOISE_N
@@ -243,7 +243,7 @@ def test_sensor_drift_is_not_delayed_in_a_model_with_a_time_delay() -> None:
 
 
 def test_mean_force_near_a_reversal_is_blurred_by_the_errors_of_instant_and_delay() -> None:
-    """`F_c (2 Phi(t / sd) - 1)`, sd the root of both variances."""
+    """`F_c (2 Phi(t / sd) - 1)`, where sd is the root of the sum of both variances."""
     time = np.arange(0.0, 2.0, STEP_S)
     tau_s, turn_s, slope, error, delay_sd_s = 0.0471, 1.0071, 0.1, 2e-4, 3e-3
     v = slope * (time - turn_s)
@@ -276,6 +276,6 @@ def test_start_or_stop_between_samples_follows_acceleration(begins_s: float, way
     interpolated = motion.at(time, there)
     np.testing.assert_allclose(interpolated.velocity_m_s, speed(there), atol=1e-12)
     np.testing.assert_array_equal(interpolated.resting, speed(there) == 0.0)
-    # The instant does not depend on the samples around it.
+    # The instant is independent of the samples around it.
     (turn_s,) = reversals(there + 0.4e-3, motion.at(time, there + 0.4e-3)).at_s
     assert turn_s == pytest.approx(begins_s, abs=1e-9)

@@ -1,4 +1,4 @@
-"""Films that are too fast for the sampling of the records, and the reuse of computed film paths."""
+"""Films that respond too fast for the sampling rate, and the reuse of computed film paths."""
 
 from contextlib import nullcontext
 from typing import Any

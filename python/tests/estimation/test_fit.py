@@ -25,23 +25,23 @@ LAW_NAMES = {"f_m": "f_m", "U_tr_m_s": "U_tr", "K0": "K0", "gamma": "gamma"}
 LOADS = (("two_way_0.25", 0.7), ("stop_and_go", 0.7), ("two_way_2", 1.35))
 """Shares of the rig's load by run, for effects that require different loads."""
 POORLY_KNOWN = ("thermal_thinning.tau_s", "dwell_stiction.t_0_s")
-"""Time constants that these short runs determine only to within a factor."""
+"""Time constants that these short runs determine only within a factor."""
 
 
 def fast(names: list[str], chosen: tuple[str, ...]) -> list[Any]:
-    """All names as parameters; the chosen ones run in the fast suite."""
+    """All names as test parameters; the selected ones run in the default suite."""
     return [n if n in chosen else pytest.param(n, marks=EXTENDED) for n in names]
 
 
 @cache
 def simulated(effect: str) -> tuple[Rig, list[Run], dict[str, Any]]:
-    """A campaign with an effect; its seed does not change with other effects."""
+    """A campaign with an effect; its seed is independent of the other effects."""
     loads = LOADS if "loads" in CATALOGUE[effect].needs else ()
     return campaign(crc32(effect.encode()) % 1000, (effect,), loads=loads)
 
 
 def truth_of(effect: str, truth: dict[str, Any]) -> dict[str, float]:
-    """The true parameters by jbf's names, which are the simulator's with a unit."""
+    """True parameters by their names in jbf, which are those of the simulator with a unit."""
     found = {name: truth["base"][short] for name, short in LAW_NAMES.items()}
     own = truth["effects"][effect]
     for page in CATALOGUE[effect].parameters:
@@ -52,7 +52,7 @@ def truth_of(effect: str, truth: dict[str, Any]) -> dict[str, float]:
 
 
 def error_of(p: ParameterValue) -> float:
-    """The standard error, or the one in the note of a held scale."""
+    """Standard error, or that in the note of a held scale."""
     if p.stderr is not None:
         return p.stderr
     stated = re.match(r"its error, (\S+),", p.note or "")
@@ -71,7 +71,7 @@ def test_fit_of_the_simulated_effect_recovers_its_parameters(effect: str) -> Non
     for name, value in truth_of(effect, truth).items():
         p = found.parameters[name]
         assert name in POORLY_KNOWN or not p.held, name
-        # Stick and slip of a drive amplify the encoder's steps, which no error includes.
+        # Stick-slip of a drive amplifies the quantisation of the encoder, which no error includes.
         allowance = 0.05 if CATALOGUE[effect].stage == "drive" else 0.01
         assert abs(p.value - value) < 4.5 * error_of(p) + allowance * abs(value), name
 
@@ -79,7 +79,7 @@ def test_fit_of_the_simulated_effect_recovers_its_parameters(effect: str) -> Non
 @pytest.mark.parametrize("effect", fast(ON_BEARINGS, ("presliding", "sensor_lag")))
 def test_derivatives_with_an_effect_match_finite_differences(effect: str) -> None:
     rig, runs, _ = simulated(effect)
-    # A reversing run; if it does not determine a parameter, one with rests or another load.
+    # A reversing run, or a run with rests or another load if that does not determine a parameter.
     for shown in (runs[1:2], runs[4:5]):
         problem = Problem(Campaign.prepare(rig, shown), "journal", "journal", (effect,))
         values = problem.starts({})[0]
@@ -93,7 +93,7 @@ def test_derivatives_with_an_effect_match_finite_differences(effect: str) -> Non
         up, down = (problem.predict(values + s * step)[0] for s in (1.0, -1.0))
         slope = (up - down) / (2.0 * h) * (values[i] if log else 1.0)
         gap = np.abs(jacobian[:, column] - slope)
-        # Kinks (stick, reversal) lie between the two sides of some differences.
+        # Some differences span a discontinuity of the derivative (stick, reversal).
         assert np.median(gap) < 1e-6 * np.max(np.abs(slope)), problem.names[i]
         assert np.quantile(gap, 0.95) < 1e-3 * np.max(np.abs(slope)), problem.names[i]
 

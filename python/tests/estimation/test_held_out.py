@@ -1,6 +1,7 @@
 """Held-out errors: runs predicted from fits that did not use them, and confirmation by them.
 
-Coulomb's law on one-way runs is linear, so that every fit without a run is a linear regression.
+Coulomb's law is linear in unidirectional runs, so that every fit without a run is a linear
+regression.
 """
 
 from collections.abc import Iterator, Sequence
@@ -37,7 +38,7 @@ PUSH_N = 3.0
 
 
 def pushed(push: Array, k_n: float) -> Array:
-    """A force in proportion to a recorded column; runs in which it is zero do not determine it."""
+    """A force proportional to a recorded column; runs in which it is zero do not determine it."""
     return k_n * push
 
 
@@ -67,7 +68,7 @@ def pushed_runs(others: float = 0.0, second_half: float = 1.0) -> list[Run]:
 
 @pytest.mark.parametrize("off_n", [0.0, 3.0])
 def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) -> None:
-    """Also if one run differs so much from the others that one Gauss-Newton step is too few."""
+    """One run may differ from the others too far for a single Gauss-Newton step."""
     runs = four_runs(coulomb, noise_n=NOISE_N)
     force = np.asarray(runs[0].friction_n) + off_n * np.sign(runs[0].velocity_m_s)
     problem, solution = solved([replace(runs[0], friction_n=force), *runs[1:]])
@@ -80,8 +81,8 @@ def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) 
         x = np.concatenate([design[k] for k in rest])
         values = np.linalg.lstsq(x, np.concatenate([forces[k] for k in rest]), rcond=None)[0]
         expected.append(forces[i] - design[i] @ values)
-    # The colour of the noise, known from the common solution, changes the regression a little; a
-    # single step in the logarithm of the friction would be off by half of the noise.
+    # The colour of the noise of the common solution changes the regression slightly. A
+    # single step in the logarithm of the friction would have an error of half of the noise.
     atol = (0.03 if off_n == 0.0 else 0.3) * NOISE_N
     for found, wanted in zip(left_out_by_run(problem, solution), expected, strict=True):
         np.testing.assert_allclose(found, wanted, atol=atol)
@@ -92,7 +93,7 @@ def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) 
 
 
 def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> None:
-    """Every other tenth of the run has 1 N more, so that each half misses by 1 N."""
+    """Alternate tenths of the run have an additional 1 N, so that each half has an error of 1 N."""
     run = one_way("only", coulomb, rate=2.0 * np.pi, noise_n=NOISE_N)
     count = len(run.time_s)
     odd = (np.arange(count) * 10 // count) % 2 == 1
@@ -117,7 +118,7 @@ def test_fourteen_runs_are_held_out_in_twelve_groups_whatever_their_order() -> N
 
 
 def test_runs_of_one_speed_are_held_out_in_different_groups() -> None:
-    """Two fast and twelve slow runs: no fit lacks both of the fast ones."""
+    """Two fast and twelve slow runs: every fit contains at least one of the fast runs."""
     fast = {0, 12}
     runs = [staged(3.0 if k in fast else 1.0, f"{k:02d}", k) for k in range(14)]
     for part in left_out(*solved(runs)):
@@ -133,7 +134,7 @@ def staged(top: float, name: str, seed: int) -> Run:
 
 
 def test_faster_run_is_held_out_in_parts_and_its_extrapolation_reported_separately() -> None:
-    """A quadratic drag of 4 N s^2/m^2 that no slow run tells: 14 N at the top speed."""
+    """A quadratic drag of 4 N s^2/m^2, or 14 N at the top speed, is not detectable in slow runs."""
     runs = [staged(0.2, f"slow{k}", k) for k in range(3)] + [staged(2.0, "fast", 9)]
     result = diagnose(Rig(), runs, law="coulomb")
     assert result.model.effects == ("quadratic_drag",)
@@ -154,7 +155,7 @@ def test_runs_of_equal_range_have_no_extrapolation() -> None:
 @pytest.mark.usefixtures("push_effect")
 @pytest.mark.parametrize("others", [0.0, 1e-3])
 def test_parameter_is_at_its_null_if_only_the_held_out_run_determines_it(others: float) -> None:
-    """Also if the others have a thousandth of the push, from which noise allows no estimate."""
+    """The other runs may have a thousandth of the push, too little for an estimate."""
     problem, solution = solved(pushed_runs(others), "pushed")
     value = solution.values[problem.names.index("pushed.k_n")]
     assert value == pytest.approx(PUSH_N, rel=0.01)
@@ -170,7 +171,7 @@ def test_parameter_is_at_its_null_if_only_the_held_out_run_determines_it(others:
 def test_run_with_nearly_all_information_on_a_parameter_is_its_only_source(
     share: float, witnesses: set[int]
 ) -> None:
-    """The other three have this share of the least information, a sum of squared derivatives."""
+    """Share of the minimum information, a sum of squared derivatives, in the other three runs."""
     others = float(np.sqrt(share * INSENSITIVE / 3.0))
     assert only_witnesses(*solved(pushed_runs(others), "pushed")) == witnesses
 
@@ -178,7 +179,7 @@ def test_run_with_nearly_all_information_on_a_parameter_is_its_only_source(
 @pytest.mark.usefixtures("push_effect")
 @pytest.mark.parametrize(("factor", "off_n"), [(1.0, 0.0), (3.0, 2.0 * PUSH_N)])
 def test_halves_of_the_only_informative_run_predict_each_other(factor: float, off_n: float) -> None:
-    """If the push is three times as large in the second half, each half misses the difference."""
+    """The push is three times as large in one half: the error of each half is the difference."""
     problem, solution = solved(pushed_runs(0.0, factor), "pushed")
     parts = halves_left_out(problem, solution, 0)
     assert all(part.told.all() for part in parts)
@@ -230,7 +231,7 @@ def test_held_out_part_without_a_run_keeps_the_residuals_of_its_other_runs() -> 
 
 
 def test_random_effects_of_runs_are_removed_from_held_out_errors_on_request() -> None:
-    """No model predicts the offset of a single run; here 2 N in noise of 0.1 N."""
+    """The offset of a single run, here 2 N in noise of 0.1 N, is not predictable by any model."""
     runs = four_runs(coulomb, noise_n=NOISE_N)
     offsets = (2.0, -2.0, 2.0, -2.0)
     off = [replace(r, friction_n=r.friction_n + b) for r, b in zip(runs, offsets, strict=True)]
@@ -249,11 +250,11 @@ EVERY = np.ones(COUNT, dtype=bool)
 SAMPLES = Samples(tuple("abcde"), (0.02,) * RUNS, (EVERY,) * RUNS, (np.ones(COUNT),) * RUNS)
 WEAK = DEFAULT.weak
 Linear = tuple[list[Array], list[Array], list[Array]]
-"""Derivatives by the parameters of the law and of the effect, and noise; one array for each run."""
+"""Derivatives by the parameters of law and effect, and noise; one array for each run."""
 
 
 def fitted(design: Sequence[Array], force: Sequence[Array]) -> tuple[Solution, list[LeftOut]]:
-    """Least squares of all runs, and without each run."""
+    """Least-squares solutions of all runs, and without each run."""
 
     def values(runs: Sequence[int]) -> Array:
         x = np.concatenate([design[i] for i in runs])
@@ -272,7 +273,7 @@ def fitted(design: Sequence[Array], force: Sequence[Array]) -> tuple[Solution, l
 
 
 def confirmation(law: list[Array], own: list[Array], force: list[Array]) -> Confirmation:
-    """An effect with derivatives `own` added to a law."""
+    """Add an effect with the derivatives `own` to a law."""
     simpler, held_out = fitted(law, force)
     both = [np.column_stack(columns) for columns in zip(law, own, strict=True)]
     richer, richer_held_out = fitted(both, force)
@@ -280,7 +281,7 @@ def confirmation(law: list[Array], own: list[Array], force: list[Array]) -> Conf
 
 
 def linear(seed: int, times: int) -> list[Linear]:
-    """Laws of two parameters, the second of which only the first run determines well."""
+    """Laws with two parameters, the second of which is well determined by the first run only."""
     random = np.random.default_rng(seed)
     made = []
     for _ in range(times):
@@ -304,7 +305,7 @@ def test_effect_is_confirmed_even_if_one_run_is_needed_to_determine_the_law() ->
         confirmed += found.confirms(WEAK, np.inf, DEFAULT)
         better += found.after_n < found.before_n
     assert confirmed >= 54
-    # The held-out RMS does not decrease in many of them.
+    # The held-out RMS does not decrease in many of the cases.
     assert better < 50
 
 

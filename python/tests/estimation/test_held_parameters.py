@@ -1,4 +1,4 @@
-"""Parameters that are not identifiable: the criterion, and the value at which they are held."""
+"""Parameters that are not identifiable: criterion, and the value at which they are held."""
 
 import math
 from collections.abc import Callable
@@ -31,7 +31,7 @@ RUNS = there_and_back(coulomb, noise_n=0.1)
 
 
 def notes_of(found: Fit) -> dict[str, str]:
-    """Notes of the held parameters; asserts that the fit is consistent with them."""
+    """Notes of the held parameters, after a check that the fit is consistent with them."""
     notes = {n: str(p.note) for n, p in found.parameters.items() if p.held}
     for name, p in found.parameters.items():
         assert (p.stderr is None) is (name in notes)
@@ -64,7 +64,7 @@ def test_fixed_parameter_is_held_at_the_value_given_by_the_user() -> None:
 def test_only_confounded_parameters_and_those_without_influence_are_held() -> None:
     found = fit(Rig(), RUNS, law="seven_parameter")
     notes = notes_of(found)
-    # The end of the search in its flat valley decides between the two notes.
+    # The last point of the search in its flat valley determines which of two notes is given.
     assert notes["v_s_m_s"] == NOT_SEPARATE or "larger than itself" in notes["v_s_m_s"]
     assert notes["gamma_s"] == notes["k_t_n_m"] == NEVER_MOVED
     friction = found.parameters["F_c_n"]
@@ -95,7 +95,7 @@ def test_asymmetry_ends_at_its_upper_bound_if_the_true_value_is_larger() -> None
     [
         ("presliding", {"sigma_1_m": 1e12}, {"sigma_1_m": math.inf}),
         ("quadratic_drag", {"c_n_s2_m2": 0.0}, {"c_n_s2_m2": 0.0}),
-        # Parameters without a null go to their start: a slow speed of these runs.
+        # Parameters without a null move to their starting values: a slow speed of these runs.
         (
             "stribeck_excess",
             {"a": 0.0, "v_s_m_s": 2e-5, "n": 7.9},
@@ -123,7 +123,7 @@ WALL = [
 
 @pytest.fixture
 def walled(request: pytest.FixtureRequest) -> Walled:
-    """A law that changes by a jump (N) where p or q is below a wall, and is flat elsewhere."""
+    """A law that changes by a jump (N) where p or q is below a limit, and is constant elsewhere."""
 
     def law(jump_n: float, wall_p: float, wall_q: float) -> str:
         def walled_law(velocity_m_s, F_c_n, p, q):  # type: ignore[no-untyped-def]
@@ -139,7 +139,7 @@ def walled(request: pytest.FixtureRequest) -> Walled:
 def moved_back(
     law: str, p: float, q: float, start: dict[str, float] | None = None
 ) -> tuple[float, float, dict[str, str]]:
-    """Values at which p and q are held after a search that ended at p and q, and the notes."""
+    """Held values of p and q after a search that ended at p and q, and the notes."""
     problem = Problem(Campaign.prepare(Rig(), RUNS), law, "journal", ())
     here = np.array([5.0, p, q])
     solution = problem.solution(here, problem.campaign.samples, WHITE)
@@ -153,12 +153,12 @@ def moved_back(
     ("wall_p", "wall_q", "there_p", "there_q"),
     [
         (0.0, 0.0, 4.0, 0.01),
-        # Half of the distance from 900 to 4 is 452, a quarter leaves 676, an eighth 788.
+        # Halving the distance from 900 to 4 reaches 452, a quarter of it 676, an eighth 788.
         (400.0, 0.0, 452.0, 0.01),
         (500.0, 0.0, 676.0, 0.01),
         (700.0, 0.0, 788.0, 0.01),
         (800.0, 0.0, 900.0, 0.01),
-        # From 100 to 0.01 in the logarithm.
+        # The move is from 100 to 0.01 in the logarithm.
         (0.0, 0.5, 4.0, 1.0),
         (0.0, 20.0, 4.0, 10.0**1.5),
     ],
@@ -202,9 +202,9 @@ SHARE = Parameter("share", lower=0.0, upper=1.0, null=1.0, starts=(0.5,))
         (PLAIN, 0.003, 0.001),
         (PLAIN, 3.0, 3.0),
         (SCALE, 0.02, 0.019),
-        # A signed parameter may be zero within its error.
+        # The estimate of a signed parameter may be zero within its error.
         (SIGNED, -0.01, 0.1),
-        # Off its bound by more than a millionth of the logarithmic width, which is 23.
+        # The distance to the bound exceeds a millionth of the logarithmic width, which is 23.
         (SCALE, 1e-7 * math.exp(2.4e-5), 1e-12),
     ],
 )
@@ -246,7 +246,8 @@ def test_parameter_bound_is_reached_within_1e_6_of_the_error(share: float, at_bo
     [
         (PLAIN, 3.0, 4.0, 11.0),
         (PLAIN, 2e6, 3.9e6, 9.8e6),
-        # Two errors reach the upper bound; the error of a logarithm is no interval.
+        # Two errors reach the upper bound; the error of a logarithm does not define an interval
+        # there.
         (PLAIN, 2e6, 4e6, None),
         (SCALE, 1e-4, 28.0, None),
         (SCALE, 1.0, math.inf, None),
@@ -270,11 +271,11 @@ def test_parameter_without_influence_or_confounded_is_not_determined() -> None:
     ("page", "there", "elsewhere"),
     [
         (DRAG, (0.0, 1e-9), (0.01,)),
-        # The bound next to an infinite null.
+        # The bound adjacent to an infinite null.
         (STIFF, (1e12, math.inf), (1e11, 1.0)),
         # A null at the upper bound.
         (SHARE, (1.0, 1.0 - 1e-9), (0.5, 0.0)),
-        # A null between the bounds does not stop a search; the last page has no null.
+        # A null between the bounds does not stop a search; the last parameter is without a null.
         (SIGNED, (), (0.0,)),
         (FACTOR, (), (1.0,)),
         (PLAIN, (), (0.0,)),

@@ -25,7 +25,7 @@ from jbf.models.chain import core_motion
 
 NOISE_N = 0.05
 SLOW, FAST = (1e-3, 6.0), (1.0, 6.0)
-"""Motion before a record: a share of the top speed, and its duration in seconds."""
+"""Motion before the record: a share of the top speed, and its duration in seconds."""
 DRY_N, VISCOUS_N_S_M, HALF_WIDTH_N, PLAY_NOISE_N = 5.0, 40.0, 0.6, 0.1
 PLAY = ("sensor_hysteresis",)
 
@@ -64,7 +64,7 @@ def masks(*runs: Run, noise_n: float = NOISE_N) -> list[Array]:
 
 @cache
 def two_starts() -> Campaign:
-    """A run after slow and one after fast motion, without the transient of the law's film."""
+    """A run after slow motion and one after fast motion, without the film transient of the law."""
     runs = [after(journal_run("a", None), SLOW, 0), after(journal_run("b", 2.0), FAST, 1)]
     return settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
 
@@ -83,7 +83,7 @@ def two_starts() -> Campaign:
 def test_models_with_a_film_contact_or_play_have_a_memory_of_the_initial_state(
     law: str, names: tuple[str, ...], directions: list[bool]
 ) -> None:
-    """A contact or a load cell remembers the direction of motion, a film only its speed."""
+    """A contact or a load cell depends on past directions of motion, a film only on past speeds."""
     found = memories(law, names)
     assert [min(memory.speeds) < 0.0 for memory in found] == directions
     assert all(memory.longer > 1.0 for memory in found)
@@ -109,7 +109,7 @@ def test_run_start_in_motion_is_excluded_until_the_film_does_not_depend_on_it() 
     assert mask[0]
     assert 0.1 < run.time_s[mask][-1] < 3.0
     assert np.count_nonzero(np.diff(mask.astype(int))) == 1
-    # The same holds after a motion at half of the top speed.
+    # A previous motion at half of the top speed leads to an equal exclusion.
     slow, half = (after(run, before).friction_n for before in (SLOW, (0.5, 6.0)))
     apart = np.abs(np.asarray(slow) - np.asarray(half))
     assert apart[mask].max() > 10.0 * NOISE_N
@@ -140,7 +140,7 @@ def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
     assert found.size == pytest.approx(np.ptp(runs[0].time_s[gone]), abs=0.03)
     problems = [Problem(each, "journal", "journal", ()) for each in (settled, campaign)]
     fits = [minimum(problem, [{}]) for problem in problems]
-    # K0 is hardly determined.
+    # K0 is poorly determined.
     known, truth = np.array(problems[0].names) != "K0", problems[0].starts({})[0]
     errors = [float(np.abs(solution.values / truth - 1.0)[known].max()) for solution in fits]
     assert fits[0].rms_n == pytest.approx(NOISE_N, rel=0.1)
@@ -149,7 +149,7 @@ def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
 
 
 def test_transient_that_agrees_with_the_model_is_excluded_without_a_finding() -> None:
-    """The record cannot show this; a finding requires residuals twice as large as usual."""
+    """The transient causes no finding; this requires residuals twice as large as usual."""
     runs = [after(journal_run("a", None), None, 0), after(journal_run("b", 2.0), None, 1)]
     settled = settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
     assert settled.more_findings == ()
@@ -194,7 +194,7 @@ def test_no_samples_are_excluded_at_starts_or_gaps_for_a_law_without_a_state() -
 
 
 def reading_with_play(force_n: Array, start_n: float) -> Array:
-    """Reading of a cell with play: it stays within half of the width of the force."""
+    """Reading of a load cell with play, which stays within half of the play of the force."""
     reading = np.empty_like(force_n)
     for i, force in enumerate(force_n.tolist()):
         start_n = min(max(start_n, force - HALF_WIDTH_N), force + HALF_WIDTH_N)
@@ -203,7 +203,7 @@ def reading_with_play(force_n: Array, start_n: float) -> Array:
 
 
 def play_run(name: str, rate: float, way: float, branch: float, seed: int) -> Run:
-    """Eight seconds at a constant force, then (with a rate) a force that rises and falls."""
+    """A force that is constant for eight seconds and then, with a rate, rises and falls."""
     t = np.arange(0.0, 60.0, 0.02)
     v = way * (0.08 - 0.06 * np.cos(rate * np.maximum(t - 8.0, 0.0)))
     path = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))])
@@ -271,13 +271,13 @@ TIME = np.arange(0.0, 16.0, 0.02)
 
 
 def step_of_speed(at_s: float, up: bool) -> Array:
-    """A speed that rises tenfold at an instant, or falls to a tenth."""
+    """A speed that increases or decreases tenfold at an instant."""
     rise = np.clip((TIME - at_s) / 0.04, 0.0, 1.0)
     return 0.01 + 0.1 * (rise if up else 1.0 - rise)
 
 
 def with_gap(first_s: float, last_s: float, at_s: float = 8.0, up: bool = True) -> Run:
-    """The friction of the bearing, without the rows between two instants."""
+    """Friction of the bearing without the rows between two instants."""
     whole = Run.from_arrays(TIME, step_of_speed(at_s, up), np.ones(len(TIME)), name="gap")
     problem, values = journal_problem(whole)
     whole = replace(whole, friction_n=problem.predict(values)[0])
@@ -313,7 +313,7 @@ def test_gap_at_constant_speed_or_of_two_rows_is_ignored(first_s: float, last_s:
 
 @pytest.mark.parametrize(("missing", "gap"), [(3, False), (4, True)])
 def test_four_missing_rows_count_as_a_gap_and_three_do_not(missing: int, gap: bool) -> None:
-    """A gap is a step above 4.5 times the usual one; here it is within the change of speed."""
+    """A gap is a step above 4.5 times the usual one; here it contains the change of speed."""
     kept = np.ones(len(TIME), dtype=bool)
     kept[401 : 401 + missing] = False
     run = Run.from_arrays(TIME, step_of_speed(8.0, True), np.ones(len(TIME)), name="a").select(kept)

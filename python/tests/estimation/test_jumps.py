@@ -55,7 +55,7 @@ def test_gradual_rise_over_several_samples_is_not_a_jump(neighbour: float, found
     for steps in (change, change[::-1]):
         force = np.concatenate(([0.0], np.cumsum(steps)))
         assert bool(np.any(jumps(force) > 0.9)) == found
-    # One of the two neighbours may be a part of the jump.
+    # One of the two neighbours may belong to the jump.
     one = np.concatenate(([0.0], np.cumsum([0.0, 0.0, 0.9, 1.0, 0.0, 0.0])))
     assert jumps(one).any()
 
@@ -108,7 +108,7 @@ def square_wave(noise_n: float) -> tuple[Campaign, Array]:
 @pytest.mark.parametrize("noise_n", [0.3, 3.0])
 @pytest.mark.parametrize("before", [1.0, 0.5])
 def test_weight_at_a_moved_jump_is_the_share_of_noise(noise_n: float, before: float) -> None:
-    """Half of the change, 20 N, is added to the noise in squares; the samples count in no test."""
+    """Half of the change, 20 N, is added to the noise in squares; tests exclude these samples."""
     campaign_, force = square_wave(noise_n)
     samples = replace(campaign_.samples, weight=(np.full(len(force), before),))
     found = samples_beside_jumps(samples, campaign_.prepared, [force], ["time_delay"])
@@ -121,7 +121,7 @@ def test_weight_at_a_moved_jump_is_the_share_of_noise(noise_n: float, before: fl
 
 
 def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_error() -> None:
-    """Samples whose error from the uncertain instant exceeds half of the noise count in no test."""
+    """Tests exclude samples whose error from the uncertain instant exceeds half of the noise."""
     t = np.arange(0.0, 20.0, 0.02)
     random = np.random.default_rng(2)
     v = 0.004 * (t - 10.0) + 1e-3 * random.standard_normal(len(t))
@@ -152,7 +152,7 @@ def test_parameter_of_an_effect_that_moves_jumps_is_recovered_within_its_error(n
     found = solution.parameters[full]
     assert abs(found.value - value) < 3.5 * found.stderr
     assert found.stderr < 0.3 * value
-    # Only the samples next to the moved jumps are left out.
+    # Only the samples next to the moved jumps are excluded.
     bare = compare(Model(rig), runs)
     assert 0.97 * bare.samples.count < solution.samples < bare.samples.count
     assert compare(solution.model, runs).rms_n < 1.03 * truth["noise_n"]
@@ -165,7 +165,7 @@ SLOW = (sine("slow", 160.0, 0.02, 0.05),)
 def prepared(
     velocity: Sequence[float], *, error: float | Array = 1e-3, unknown: Sequence[int] = ()
 ) -> Prepared:
-    """A run with a given motion; `unknown` are samples at which its sign is not known."""
+    """A run with a given motion; `unknown` are the samples at which its sign is not known."""
     v = np.array(velocity)
     n = len(v)
     long = np.where(np.arange(200) < 100, 0.2, -0.2)
@@ -185,7 +185,7 @@ def ramp(p: Prepared, rate_n_s: float = 10.0) -> Array:
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
 def test_error_after_a_reversal_is_rate_of_change_times_error_of_the_instant(unit: float) -> None:
-    """2 mm/s at 2 m/s^2 are 1 ms: 0.05 N at 50 N/s, until it falls below the least size."""
+    """2 mm/s at 2 m/s^2 are 1 ms, or 0.05 N at 50 N/s, until the error is below the minimum."""
     p = prepared([0.2] * 3 + [0.1, -0.1] + [-0.2] * 11, error=2e-3)
     slope = 50.0 * ((np.arange(15) >= 3) & (np.arange(15) < 9))
     prediction = unit * np.concatenate(([0.0], np.cumsum(slope * STEP_S)))
@@ -219,7 +219,7 @@ def test_force_error_of_the_instant_of_a_reversal_applies_until_the_next_reversa
     first, second = 1e-3 / 4.0 * 20.0, 1e-4 / 4.0 * 20.0
     found = instant_errors_n(p, ramp(p, 20.0), 1e-9)
     np.testing.assert_allclose(found, [0.0] * 3 + [first] * 4 + [second] * 4)
-    # A rate that begins later than the reversal has no error by its instant.
+    # A rate of change that begins after the reversal has no error from its instant.
     p = prepared([0.2] * 3 + [-0.2] * 8)
     late = np.maximum(ramp(p) - ramp(p)[6], 0.0)
     assert not instant_errors_n(p, late, 1e-9).any()
@@ -230,7 +230,7 @@ def test_force_error_of_the_instant_of_a_reversal_applies_until_the_next_reversa
     [
         ([1.0, 1.0, -1.0, -1.0, -1.0], (), 2),
         ([1.0, 0.1, -0.1, -1.0, -1.0], (1, 2), 1),
-        # A stop between two directions is no reversal, nor is a start.
+        # A stop between two directions is not a reversal, and neither is a start.
         ([1.0, 0.0, -1.0, -1.0, -1.0], (), None),
         ([0.0, 1.0, 1.0, 2.0, 2.0], (), None),
         ([1.0, 0.0, 0.0, 1.0, -1.0], (), 4),
@@ -250,7 +250,7 @@ def test_reversal_error_is_zero_in_a_record_of_two_samples() -> None:
 def true_model(
     seed: int, effects: tuple[str, ...], speed_noise_m_s: float = 0.0
 ) -> tuple[Problem, Array, float]:
-    """Problem and true values of slow runs; with a noise of the speed the angle is left out."""
+    """Problem and true values of slow runs; with noise of the speed the angle is omitted."""
     rig, runs, truth = campaign(seed, effects, motions=SLOW)
     if speed_noise_m_s > 0.0:
         random = np.random.default_rng(seed)

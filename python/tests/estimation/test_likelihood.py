@@ -25,7 +25,7 @@ def white(seed: int, n: int) -> Array:
 
 
 def test_likelihood_gain_is_n_times_the_log_ratio_of_squares() -> None:
-    """Residuals of 6 N that become 3 N in 100 samples: 100 log 4."""
+    """Residuals of 6 N that decrease to 3 N in 100 samples have a gain of 100 log 4."""
     samples = samples_of([np.ones(60), np.ones(40)])
     before = solution_of([np.full(60, 6.0), np.full(40, -6.0)], samples)
     after = solution_of([np.full(60, 3.0), np.full(40, 3.0)], samples)
@@ -69,7 +69,7 @@ def test_squared_errors_are_clipped_at_three_and_a_half_standard_deviations() ->
 
 
 def test_expected_gain_is_that_of_one_gauss_newton_step() -> None:
-    """A step along the first axis takes (3, 4) to (0, 4): 25 becomes 16."""
+    """A step along the first axis changes (3, 4) to (0, 4): the square decreases from 25 to 16."""
     r, j = np.array([3.0, 4.0]), np.array([[1.0], [0.0]])
     assert likelihood.promised_gain(r, j, 10) == pytest.approx(10.0 * np.log(25.0 / 16.0))
     assert likelihood.promised_gain(r, np.zeros((2, 1)), 10) == 0.0
@@ -95,7 +95,7 @@ def test_score_gain_of_a_linear_effect_is_the_gain_of_its_fit() -> None:
 
 
 DESIGN = np.array([[1.0, 0.0, 1.0], [0.0, 2.0, 2.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
-"""Three columns, of which the third is the sum of the others."""
+"""Three columns, the third of which is the sum of the others."""
 TARGET = np.array([3.0, 8.0, -1.0, 2.0])
 
 
@@ -147,7 +147,7 @@ def test_autocorrelations_are_summed_up_to_the_longest_memory_of_the_noise_model
     for step_s, lags in ((0.02, 31), (0.125, 5), (1.0, 1)):
         found = likelihood.independent_share([ramp], (step_s,))
         assert found == pytest.approx(1.0 / (1 + 2 * lags), rel=0.03)
-    # The finest step determines the number of lags.
+    # The smallest step determines the number of lags.
     found = likelihood.independent_share([ramp, ramp], (0.125, 0.02))
     assert found == pytest.approx(1.0 / 63.0, rel=0.03)
     assert likelihood.independent_share([np.zeros(50)], (0.02,)) == 1.0
@@ -205,7 +205,7 @@ def test_long_run_variance_of_autoregression_sums_its_autocovariances(correlatio
 
 
 def test_score_statistic_uses_the_larger_of_long_run_and_white_noise_variance() -> None:
-    """A level c and an alternating part a in 16 samples: 16 c^2 over the larger of a^2 and one."""
+    """Innovations of mean c with an alternating part a: 16 c^2 over the larger of a^2 and one."""
     swings = np.where(np.arange(16) % 2, 1.0, -1.0)
     direction = np.full((16, 1), 0.25)
     for a, variance in ((10.0, 100.0), (2.0, 4.0), (0.5, 1.0)):
@@ -219,14 +219,14 @@ def test_score_statistic_in_correlated_noise_follows_chi_square(correlation: flo
     t = np.arange(n) * STEP_S
     x = np.linalg.qr(np.stack([np.ones(n), np.sin(0.1 * t), t - t.mean()], axis=1))[0]
     found = [long_run.score_square(x, coloured(s, correlation, n), STEP_S) for s in range(100)]
-    # The plain squares of correlated noise are nineteen times as large.
+    # Without the long-run variance the squares would be nineteen times as large.
     assert np.mean(found) == pytest.approx(3.0, rel=0.3)
     assert stats.chi2.sf(np.quantile(found, 0.95), 3) > 0.01
 
 
 @pytest.mark.parametrize("scale", [1e-200, 1.0, 1e200])
 def test_score_inflation_is_the_score_variance_over_that_of_white_noise(scale: float) -> None:
-    """With windows of one sample: squares of the direction times the other innovations."""
+    """Windows of one sample: squares of the direction times the other innovations."""
     random = np.random.default_rng(2)
     d = [random.standard_normal(n) for n in (30, 20)]
     e = [4.0 * np.abs(x) * random.standard_normal(len(x)) for x in d]
@@ -234,7 +234,7 @@ def test_score_inflation_is_the_score_variance_over_that_of_white_noise(scale: f
     square = sum(float(x @ x) for x in d)
     along = sum(float(a @ b) for a, b in zip(d, e, strict=True)) / square
     score = sum(float(np.sum((a * (b - along * a)) ** 2)) for a, b in zip(d, e, strict=True))
-    # Innovations of zero are samples that do not count.
+    # Innovations of zero mark samples that are not counted.
     white = sum(float(x @ x) for x in e) / 49.0
     wanted = score / (square * white)
     assert wanted > 1.2
@@ -276,7 +276,7 @@ def test_scatter_between_runs_counts_only_if_significant(inflation: float, kept:
     white = np.mean(np.concatenate(e) ** 2)
     limit = float(np.sum(pull**2 / size)) / white / (2.0 * np.log(100.0))
     found = long_run.between_runs(d, e, inflation * limit)
-    # Sum of squared pulls over that of white noise, times n / (n - 1).
+    # Sum of squared run sums over that of white noise, times n / (n - 1).
     assert found == (pytest.approx(27.0 / (white * 6.0) * 1.5) if kept else 0.0)
     # A run that does not depend on the direction is not counted.
     more = long_run.between_runs([*d, np.zeros(3)], [*e, np.zeros(3)], inflation * limit)

@@ -1,4 +1,4 @@
-"""The minimum of a fit: the colour of its noise, other peaks of the likelihood, robust weights."""
+"""The minimum of a fit: coloured noise, other likelihood maxima, robust weights."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -36,7 +36,7 @@ def fitted(runs: list[Run]) -> tuple[Problem, Solution]:
 def regression(
     problem: Problem, noise: Noise | None = None, weights: Array | None = None
 ) -> tuple[Array, Array]:
-    """Least squares for F_c and F_v, of samples or of innovations; values and residuals."""
+    """Least squares for F_c and F_v with samples or innovations; estimates and residuals."""
     rows, forces = [], []
     for p, c in zip(problem.campaign.prepared, problem.campaign.samples.counted, strict=True):
         v = p.motion.velocity_m_s[c]
@@ -80,14 +80,14 @@ def test_error_of_a_wrong_law_is_not_weighted_as_coloured_noise(height: float) -
     assert found.noise.colour > 0.0
     values, least = regression(problem)
     _, coloured = regression(problem, found.noise)
-    # Weighted by this colour the fit would be far worse.
+    # With weights for this colour the fit would be far worse.
     assert rms(coloured) > 1.1 * MOST_FORGIVEN * rms(least)
     assert found.rms_n <= MOST_FORGIVEN * rms(least)
     np.testing.assert_allclose(found.values[[0, 2]], values, rtol=1e-3)
 
 
 def test_other_peaks_are_the_two_lowest_minima_within_the_bounds() -> None:
-    """Minima near 2e-3 exp(k pi / 6); the search has ended at k = 2."""
+    """Minima near 2e-3 exp(k pi / 6); the search has ended at that of k = 2."""
     evaluated: list[float] = []
 
     def square(values: Array) -> float:
@@ -100,7 +100,7 @@ def test_other_peaks_are_the_two_lowest_minima_within_the_bounds() -> None:
     places = [np.log(v[1] / 2e-3) * 6.0 / np.pi for v in found]
     assert places == pytest.approx([0.0, 1.0], abs=0.1)
     assert all(v[0] == 7.0 for v in found)
-    # The peak at which the search has ended is not among them.
+    # The minimum at which the search has ended is not among them.
     at_best = other_peaks(square, np.array([7.0, 2e-3]), 1, 1e-6, 1e2)
     assert [np.log(v[1] / 2e-3) * 6.0 / np.pi for v in at_best] == pytest.approx([1, -1], abs=0.1)
     evaluated.clear()
@@ -123,7 +123,7 @@ def test_resonance_of_a_drive_is_recovered_from_a_wrong_starting_frequency() -> 
     found = search_peaks(problem, stuck)
     which = problem.names.index(name)
     assert problem.square(found.values) < problem.square(stuck.values)
-    # As high as the peak next to the truth: within one standard error.
+    # As likely as the maximum next to the truth: within one standard error.
     assert likelihood_gain(minimum(problem, [{name: right}]), found) < 1.0
     assert abs(found.values[which] / right - 1.0) < 0.2
     assert abs(stuck.values[which] / right - 1.0) > 0.5
@@ -133,14 +133,14 @@ def test_resonance_of_a_drive_is_recovered_from_a_wrong_starting_frequency() -> 
 
 
 def test_huber_weights_limit_the_influence_to_1_345_standard_deviations() -> None:
-    """Psi of Huber (1964): the residual up to 1.345, and 1.345 beyond."""
+    """Psi of Huber (1964): the residual up to 1.345, and 1.345 above."""
     off = np.array([0.0, 0.5, 1.345, 2.69, 13.45])
     np.testing.assert_allclose(off * huber(off) ** 2, [0.0, 0.5, 1.345, 1.345, 1.345])
     np.testing.assert_array_equal(huber(off[:3]), 1.0)
 
 
 def test_student_weights_have_the_derivative_of_the_log_density() -> None:
-    """Minus twice the log of t's density with 3 degrees of freedom (Lange et al. 1989)."""
+    """Minus twice the log of Student's density with 3 degrees of freedom (Lange et al. 1989)."""
     off = np.linspace(0.1, 20.0, 50)
     h = 1e-5
     up, down = (4.0 * np.log(1.0 + (off + s * h) ** 2 / 3.0) for s in (1.0, -1.0))
@@ -165,20 +165,20 @@ def iteratively_reweighted(problem: Problem, weights: Callable[[Array], Array]) 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.extended)])
 def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error(seed: int) -> None:
     random = np.random.default_rng(seed)
-    # In one run three samples of ten are off by ten standard deviations.
+    # In one run three of ten samples deviate by ten standard deviations.
     runs = runs_with(
         lambda i, run: (random.random(len(run)) < 0.3) * np.sign(run.velocity_m_s) * (i == 0), seed
     )
     early = np.arange(501) < 30
     spoilt = [replace(r, friction_n=r.friction_n + 20.0 * early) for r in runs]
-    # Excluded samples have no weight, however large their residual is.
+    # Excluded samples have zero weight, regardless of their residuals.
     kept = coulomb_problem(spoilt).campaign.without([early] * 4)
     problem = Problem(kept, "coulomb", "journal", (), HELD)
     plain = minimum(problem, [HELD])
     found = best_weighting(problem, plain)
     assert not any(w[early].any() for w in found.samples.weight)
     assert left_out_rms(problem, found) < 0.97 * left_out_rms(problem, plain)
-    # Iteratively reweighted least squares by numpy, with either weights.
+    # Iteratively reweighted least squares by NumPy, with either kind of weights.
     ends = [iteratively_reweighted(problem, weights) for weights in (huber, student)]
     assert min(np.max(np.abs(found.values[[0, 2]] / end - 1.0)) for end in ends) < 1e-3
     speed = np.linspace(0.05, 0.15, 11)
@@ -192,7 +192,7 @@ def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error
 
 
 def test_robust_weights_reduce_the_bias_of_the_slope_by_few_outliers() -> None:
-    """In squared held-out errors the outliers would hide the improvement of all other samples."""
+    """In squared held-out errors the outliers would mask the improvement at all other samples."""
     random = np.random.default_rng(1)
 
     def wild(i: int, run: Run) -> Array:

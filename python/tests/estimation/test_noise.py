@@ -64,7 +64,7 @@ def test_noise_without_memory_or_colour_is_white(noise: Noise) -> None:
 def test_coloured_share_is_that_of_an_arma_process(memory_s: float, colour: float) -> None:
     phi = float(np.exp(-STEP_S / memory_s))
     theta = phi * (1.0 - colour)
-    # Only the coloured part is correlated, with phi from step to step.
+    # Only the coloured part is correlated, with phi between adjacent steps.
     share = (1.0 - phi * theta) * (phi - theta) / (phi * (1.0 + theta**2 - 2.0 * phi * theta))
     noise = Noise(memory_s, colour)
     assert noise.coloured_share(STEP_S) == pytest.approx(share, rel=1e-9)
@@ -121,7 +121,7 @@ def test_estimated_memory_is_limited_to_600_ms_or_four_steps(
 
 @pytest.mark.parametrize(("sd", "seed"), [(0.1, 17), (0.1, 3), (0.095, 16), (0.11, 0)])
 def test_coloured_noise_is_estimated_only_if_deviance_falls_by_twenty(sd: float, seed: int) -> None:
-    """The largest gain is searched by a simplex (Nelder & Mead 1965); these lie within 1 of 20."""
+    """The gain is maximised by a simplex (Nelder & Mead 1965); these cases lie within 1 of 20."""
     kicks = np.random.default_rng(seed).normal(0.0, sd * np.sqrt(1.0 - 0.85**2), 3000)
     slow = np.asarray(signal.lfilter([1.0], [1.0, -0.85], kicks))
     residual, every = [slow + white(100 + seed, 0.4, 3000)], [everywhere(3000)]
@@ -152,7 +152,7 @@ def test_coloured_part_of_estimated_noise_is_limited_to_the_largest_noise() -> N
 
 
 def test_periodic_model_error_is_not_taken_for_coloured_noise() -> None:
-    """An unmodelled mass that swings once a second: repetitions show that the noise is 0.1 N."""
+    """An unmodelled mass that oscillates once a second: repetitions reveal noise of 0.1 N."""
     options: dict[str, Any] = {"rate": 2.0 * np.pi, "noise_n": 0.1}
     runs = [
         one_way("forth", mass(1.5), seed=1, **options),
@@ -176,7 +176,7 @@ def test_noise_of_a_model_is_estimated_from_the_samples_that_count() -> None:
     wanted = estimate_noise(kept, samples.steps_s, samples.counted)
     assert not wanted.white
     assert noise_at(problem, samples, values) == wanted
-    # Given residuals are used, whatever their values at samples that do not count.
+    # Given residuals are used, regardless of their values at samples that are not counted.
     wild = [np.where(c, r, 1e3) for r, c in zip(residuals, samples.counted, strict=True)]
     slopes = [np.zeros((len(r), 0)) for r in wild]
     assert noise_at(problem, samples, values, (wild, slopes)) == wanted
@@ -202,18 +202,18 @@ def largest_of(*runs: Run) -> float | None:
 
 
 def with_rests(noise: Array, name: str = "rests") -> Run:
-    """Motion without a period in the first 400 samples, then a rest with this noise."""
+    """Motion without a period in the first 400 samples, then a rest with the given noise."""
     n = 400 + len(noise)
     t = STEP_S * np.arange(n)
     v = np.where(t < 400 * STEP_S, 0.1 + 0.03 * np.sin(1.3 * t) + 0.02 * np.sin(0.7 * t**1.5), 0.0)
-    # White noise of 0.05 N while the shaft moves.
+    # White noise of 0.05 N during motion.
     force = 3.0 + 20.0 * v + np.concatenate([white(1, 0.05, 400), noise])
     return Run.from_arrays(t, v, force, name=name)
 
 
 @pytest.mark.parametrize(("coloured", "whole"), [(False, 1.0), (True, np.sqrt(1.25))])
 def test_noise_floor_of_simulated_runs_is_their_noise_rms(coloured: bool, whole: float) -> None:
-    """The coloured part has a quarter of the white part's variance; repetitions show it."""
+    """The coloured part has a quarter of the variance of the white part; repetitions reveal it."""
     simulated = (campaign(seed, coloured=coloured) for seed in (3, 4))
     ratios = [floor_of(rig, runs) / truth["noise_n"] for rig, runs, truth in simulated]
     assert np.mean(ratios) == pytest.approx(whole, rel=0.06)
@@ -221,7 +221,8 @@ def test_noise_floor_of_simulated_runs_is_their_noise_rms(coloured: bool, whole:
 
 @pytest.mark.parametrize("over_noise", [1.0, 2.0, 4.0])
 def test_noise_floor_of_quantised_readings_includes_quantisation_error(over_noise: float) -> None:
-    """Uniform error of a step: its variance is a twelfth of the step's square (Widrow 1956)."""
+    """The rounding error is uniform, with a variance of a twelfth of the squared step (Widrow
+    1956)."""
     rig, runs, truth = campaign(6)
     step = over_noise * truth["noise_n"]
     coarse = [replace(run, friction_n=step * np.round(run.friction_n / step)) for run in runs]
@@ -230,7 +231,7 @@ def test_noise_floor_of_quantised_readings_includes_quantisation_error(over_nois
 
 
 def test_largest_noise_at_rest_is_the_scatter_about_a_line_through_each_rest() -> None:
-    """The first quarter of a rest may settle; the line has two parameters."""
+    """The first quarter of a rest may be a transient; the line has two parameters."""
     noises = [0.02 * np.arange(n) + autoregressive(n, 0.3, 0.2, n) for n in (250, 450)]
     runs = [with_rests(noise, f"{i}") for i, noise in enumerate(noises)]
     total = count = 0.0
@@ -253,7 +254,7 @@ def test_largest_noise_requires_three_hundred_samples_at_rest(length: int, known
 
 @pytest.mark.parametrize(("times", "taken"), [(1.0, False), (2.0, True), (4.0, False)])
 def test_coloured_noise_raises_the_noise_floor_only_to_a_limit(times: float, taken: bool) -> None:
-    """A part larger than three times the white one is not attributed to the instrument."""
+    """A coloured part above three times the white one is not attributed to the instrument."""
     slow = autoregressive(2, 2.0, 0.05 * np.sqrt(times**2 - 1.0) + 1e-9, 8000)
     run = with_rests(slow + white(3, 0.05, 8000))
     found, largest = floor_of(Rig(), [run]), largest_of(run)

@@ -47,7 +47,7 @@ def test_run_without_temperature_is_rejected_if_the_model_requires_one() -> None
 
 
 def test_mean_of_a_noisy_load_is_used_in_predictions_and_in_resampled_runs() -> None:
-    """Noise that has been interpolated is not white and would not be recognised as noise."""
+    """Interpolated noise is not white and would not be recognised as noise."""
     v, model = 0.1 * np.sin(0.5 * TIME), Model(Rig.thesis())
     load = 104.0 * (1.0 + 0.03 * np.random.default_rng(0).standard_normal(len(TIME)))
     mean = np.full(len(TIME), np.mean(load))
@@ -88,7 +88,7 @@ def test_reference_temperature_is_that_of_the_lubricant_or_the_mean_of_the_recor
 
 
 def test_fit_does_not_depend_on_the_reference_temperature() -> None:
-    """With a (T - T_0) the coefficient at another reference T_1 is `a / (1 + a (T_1 - T_0))`."""
+    """With a (T - T_0) the coefficient for another reference T_1 is `a / (1 + a (T_1 - T_0))`."""
     runs = drive_runs(31, DRY)
     found = fit(Rig(), runs, [DRY], **COULOMB)
     reference = found[f"{DRY}.T_0"]
@@ -103,7 +103,7 @@ def test_fit_does_not_depend_on_the_reference_temperature() -> None:
 
 
 def warming_slide(step_s: float, *, also_warm: bool = False) -> list[Run]:
-    """Three runs that start cold, whose dry friction falls as the slide warms, and a warm one."""
+    """Three runs with a cold start, whose dry friction falls with warming, and a warm run."""
     random = np.random.default_rng(1)
     time = np.arange(0.0, 40.0, step_s)
     runs = []
@@ -119,7 +119,7 @@ def warming_slide(step_s: float, *, also_warm: bool = False) -> list[Run]:
 
 
 def test_temperature_coefficient_of_dry_friction_is_recovered_within_its_error() -> None:
-    """`6 (1 + 0.25 (34 - T) / 16)`: at the reference T_0 the relative slope is known."""
+    """Friction `6 (1 + 0.25 (34 - T) / 16)` has a known relative slope at the reference T_0."""
     found = fit(Rig(), warming_slide(0.04, also_warm=True), [DRY], **COULOMB)
     reference = found[f"{DRY}.T_0"].value
     level = 1.0 + 0.25 * (34.0 - reference) / 16.0

@@ -28,7 +28,7 @@ def written(path: Path, header: str, *columns: np.ndarray) -> Path:
 
 
 def swings(folder: Path, starts_rad: list[float], seed: int) -> list[Path]:
-    """Free swings of a pendulum with dry and viscous friction, read by an encoder, in degrees."""
+    """Free swings of a pendulum with dry and viscous friction; an encoder records degrees."""
     rng = np.random.default_rng(seed)
 
     def slopes(_: float, state: np.ndarray) -> list[float]:

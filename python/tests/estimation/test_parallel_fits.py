@@ -58,7 +58,7 @@ def drag_effect() -> Iterator[None]:
 def test_number_of_parallel_fits_is_that_of_threads_and_one_for_python_effects(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Effects in Python may have a state, so that they are fitted one at a time."""
+    """Effects in Python may have a state and are therefore fitted one at a time."""
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     for threads, expected in (("64", FEW), ("2", 2), ("1", 1)):
         monkeypatch.setenv("RAYON_NUM_THREADS", threads)

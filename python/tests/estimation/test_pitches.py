@@ -18,7 +18,7 @@ from jbf.records.drive import Drive
 STEP_S, NOISE_N = 0.01, 0.2
 EXTENDED = pytest.mark.extended
 Waves = Sequence[tuple[float, float]]
-"""Pitch in metres and amplitude in newtons of each wave along the path."""
+"""Pitch (m) and amplitude (N) of each wave along the path."""
 
 
 def waves_of(x: Array, waves: Waves) -> Array:
@@ -72,7 +72,7 @@ def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign
 def test_pitch_of_maximum_likelihood_is_that_of_the_simulated_wave(
     pitch_m: float, along: bool
 ) -> None:
-    """A fit finds the peak from within half a period over the path; here a quarter is required."""
+    """A fit converges from within half a period over the path; the test requires a quarter."""
     campaign = Campaign.prepare(Rig(), axis_runs([(pitch_m, 0.3)], along=along))
     found = pitches(campaign, along=along)
     path_m = np.ptp(np.concatenate([p.motion.angle_rad for p in campaign.prepared]))
@@ -124,14 +124,14 @@ def test_gain_of_the_highest_spectral_line_of_noise_is_below_the_threshold(seeds
             pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
             gains.append(float(np.sum((pair @ np.linalg.lstsq(pair, noise, rcond=None)[0]) ** 2)))
     threshold = Level.shared(DEFAULT, 20, samples, NOISE_N).price(3, samples)
-    # Two parameters of a fixed pitch would gain 1.4 in the median.
+    # Two parameters of a fixed pitch would gain 1.4 (median of chi-square).
     assert 4.0 < np.median(gains) < 0.8 * threshold
     assert max(gains) < threshold
 
 
 @pytest.mark.parametrize("shaft", [False, True])
 def test_longest_pitch_and_stroke_follow_from_the_path(shaft: bool) -> None:
-    """A quarter of the path, and the path with a tenth more at either end; angle times radius."""
+    """The pitch limit is a quarter of the path, the stroke the path plus a tenth at either end."""
     rig = Rig.thesis() if shaft else Rig()
     radius_m = rig.bearing.radius_m if rig.bearing is not None else 1.0
     t = np.arange(0.0, 20.0, STEP_S)
@@ -176,7 +176,7 @@ STROKE = "stroke_dependence"
 
 
 def slide(dry: Callable[[Array], Array], count: int = 4) -> list[Run]:
-    """Runs over 0.4 m, with a dry level that is a function of the position (m)."""
+    """Runs over 0.4 m with a dry friction that is a function of the position (m)."""
     found = []
     for i in range(count):
         random = np.random.default_rng([4130, i])
@@ -212,7 +212,7 @@ def test_ends_of_the_stroke_are_taken_from_the_runs_and_not_fitted() -> None:
         assert p.value == pytest.approx(value, abs=2e-3)
     assert found[f"{STROKE}.a_1"].stderr is not None
     campaign = Campaign.prepare(Rig(), runs)
-    # Only the six coefficients are fitted; given ends are used.
+    # Only the six coefficients are fitted; the ends are given.
     given = Problem(campaign, "coulomb", "journal", (STROKE,), {f"{STROKE}.x_0_m": 0.25})
     assert len(given.open) - len(Problem(campaign, "coulomb", "journal", ()).open) == 6
     assert given.fixed[f"{STROKE}.x_0_m"] == 0.25
@@ -220,7 +220,7 @@ def test_ends_of_the_stroke_are_taken_from_the_runs_and_not_fitted() -> None:
 
 @pytest.mark.extended
 def test_tight_spot_is_diagnosed_as_stroke_dependence() -> None:
-    """A bump and a slope, which are not among the waves of the effect."""
+    """A bump and a slope, which are not among the basis functions of the effect."""
     runs = slide(lambda x: 6.0 + 1.5 * np.exp(-(((x - 0.3) / 0.08) ** 2)) - 2.0 * (x - 0.2))
     found = diagnose(Rig(), runs, law="coulomb")
     assert (found.verdict, found.effects) == ("missing", (STROKE,))

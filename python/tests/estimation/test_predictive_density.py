@@ -67,7 +67,7 @@ def test_density_of_held_out_runs_is_gaussian_in_free_parameters(
 
 
 def test_held_out_error_in_a_direction_undetermined_by_other_runs_hardly_lowers_density() -> None:
-    """The other runs hold a thousandth of the information on the third parameter."""
+    """The other runs contain a thousandth of the information on the third parameter."""
     rng = np.random.default_rng(6)
     solution = linear_model(rng)
     for i in (1, 2):
@@ -81,7 +81,7 @@ def test_held_out_error_in_a_direction_undetermined_by_other_runs_hardly_lowers_
     )
     assert determined - exact == pytest.approx(100.0, rel=0.01)
     assert undetermined - exact < 5.0
-    # The determinant of the covariance contributes.
+    # The determinant of the covariance contributes to the density.
     assert exact > np.log(300.0)
 
 

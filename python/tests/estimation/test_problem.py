@@ -1,4 +1,4 @@
-"""Search variables, predictions, derivatives and rows of a fit, on a law that is linear."""
+"""Search variables, predictions, derivatives and rows of a fit, for a linear law."""
 
 from functools import cache
 
@@ -149,7 +149,7 @@ def test_samples_at_reversals_are_excluded_if_an_effect_moves_jumps(effect: str)
     assert np.all(after.weight[0] <= before.weight[0])
     known = problem.samples_at(values, problem.linearise(values))
     np.testing.assert_array_equal(known.counted[0], after.counted[0])
-    # No sample is excluded with the effect at its null, or with an effect that moves no jump.
+    # No sample is excluded if the effect is at its null or does not move jumps.
     pages = zip(values, problem.parameters.values(), strict=True)
     nulls = [value if page.null is None else page.null for value, page in pages]
     assert problem.samples_at(np.array(nulls)) is before

@@ -25,7 +25,7 @@ STEP_N, NOISE_N, ORIGIN_N = 0.5, 0.1, 0.13
 
 
 def mean_reading(step: float, noise: float, force: Array) -> Array:
-    """Readings to the nearest step, each with its Gaussian probability."""
+    """Readings rounded to the nearest step, each with its Gaussian probability."""
     upper = stats.norm.cdf((step * (LEVELS + 0.5) - force[:, None]) / noise)
     lower = stats.norm.cdf((step * (LEVELS - 0.5) - force[:, None]) / noise)
     return (upper - lower) @ (step * LEVELS)
@@ -76,11 +76,11 @@ def test_origin_of_noisy_readings_is_their_circular_mean() -> None:
 @pytest.mark.parametrize("step", [1e-3, 40.0])
 @pytest.mark.parametrize("noise", [0.05, 0.3, 1.0])
 def test_noise_before_conversion_follows_from_repeated_readings(step: float, noise: float) -> None:
-    """The share is `E max(0, 1 - |d|)` of the difference d of two noises, in steps."""
+    """The share of repetitions is `E max(0, 1 - |d|)`, d the difference of two noises in steps."""
     n, d = 100_000, stats.norm(0.0, np.sqrt(2.0) * noise)
     share, _ = integrate.quad(lambda x: (1.0 - x) * 2.0 * d.pdf(x), 0.0, 1.0)
     repeats = round(share * n)
-    # A change of less than half a step is a repetition.
+    # A change below half a step counts as a repetition.
     moves = step * np.concatenate((np.full(repeats, 0.49), np.full(n - repeats, -0.51)))
     assert noise_before(step, moves) == pytest.approx(noise * step, rel=2e-3)
 
@@ -93,7 +93,7 @@ def test_noise_before_conversion_is_limited_if_readings_always_or_never_repeat()
 
 @cache
 def quantised() -> tuple[Problem, list[Array]]:
-    """Two runs of Coulomb friction, of which the first is quantised, and the true forces."""
+    """Two runs of Coulomb friction, the first of which is quantised, and the true forces."""
     random, runs, forces = np.random.default_rng(1), [], []
     t = np.arange(0.0, 60.0, 0.02)
     for i, rate in enumerate((0.4, 0.5)):
@@ -113,7 +113,7 @@ def at_truth(problem: Problem) -> Solution:
 
 
 def test_quantisation_bias_is_removed_if_the_model_is_the_true_one() -> None:
-    """Its size depends on the noise before the converter, which is estimated from the bias."""
+    """The bias depends on the noise before the converter, estimated from the readings."""
     problem, forces = quantised()
     assert problem.campaign.step_n == pytest.approx(STEP_N)
     corrected = without_bias(problem, at_truth(problem), DEFAULT)[0]
@@ -132,7 +132,7 @@ def test_quantisation_bias_is_removed_if_the_model_is_the_true_one() -> None:
 
 
 def test_quantisation_bias_is_removed_iteratively_if_the_model_is_fitted() -> None:
-    """A fit to biased readings predicts another force, and so another bias; both are repeated."""
+    """A fit to biased readings predicts another force and hence another bias; both are iterated."""
     problem, forces = quantised()
     free = Problem(problem.campaign, "coulomb", "journal", (), {"F_s_n": 6.0})
     start = free.starts({**LAW, "F_s_n": 6.0, "F_c_n": 5.1})[0]

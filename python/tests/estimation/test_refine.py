@@ -1,4 +1,4 @@
-"""Fits that allow for the errors of the motion and for a delay of the force."""
+"""Fits that account for the errors of the motion and a delay of the force."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ NOISE = 0.02
 
 
 def drive(seed: int, late_s: float = 0.0, count: float = 2.0 * np.pi / 4096.0) -> Run:
-    """A drive that follows trapezoids of random heights, recorded by an encoder alone."""
+    """A drive that follows trapezoids of random heights, recorded by an encoder only."""
     random = np.random.default_rng(seed)
     fine = 1e-4 * np.arange(120_000)
     corners = np.cumsum(random.uniform(0.15, 0.5, 60))
@@ -49,7 +49,7 @@ def test_parameters_of_a_drive_with_a_coarse_encoder_are_within_their_errors() -
 
 @pytest.mark.parametrize("delay", [-0.7, 0.4, 1.2])
 def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) -> None:
-    """In samples."""
+    """Unit: samples."""
     runs = [drive(seed, delay * STEP_S) for seed in (21, 22)]
     found = fit(Rig(), runs, ["inertia_leak"], law="coulomb")
     late = [finding for finding in found.findings if finding.kind == "late_channel"]
@@ -67,7 +67,7 @@ def test_force_without_a_delay_has_no_finding_of_a_delay() -> None:
 def drawn_residual(
     errors: Any, sensitivity: Any, scale: float, random: np.random.Generator
 ) -> npt.NDArray[np.float64]:
-    """Noise, and motion errors that are drawn backward along the Markov chain of the posterior."""
+    """Noise and motion errors, which are drawn backward along the Markov chain of the posterior."""
     n = len(errors.covariance)
     residual = np.empty(n)
     state = random.multivariate_normal(np.zeros(3), errors.covariance[-1], method="svd")

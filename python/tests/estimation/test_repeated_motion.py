@@ -7,7 +7,7 @@ from jbf.estimation.replicates import period_samples
 
 
 def wave(count: int, period: int) -> Array:
-    """A sine with its second harmonic: no half of a period is like the other."""
+    """A sine with its second harmonic, whose half periods differ."""
     turn = 2.0 * np.pi * np.arange(count) / period
     return np.sin(turn) + 0.3 * np.sin(2.0 * turn + 0.5)
 
@@ -15,7 +15,7 @@ def wave(count: int, period: int) -> Array:
 @pytest.mark.parametrize("period", [7, 20, 61, 150])
 @pytest.mark.parametrize("mean", [0.0, -2.0])
 def test_period_is_exact_and_independent_of_the_mean_speed(period: int, mean: float) -> None:
-    """The first repetition is returned, not a multiple of it."""
+    """The period is the first repetition, not a multiple of it."""
     assert period_samples(mean + wave(5 * period + 130, period)) == period
 
 
@@ -43,7 +43,7 @@ def test_motion_that_does_not_repeat_has_no_period(velocity: Array) -> None:
 def test_period_is_detected_only_if_repetitions_agree_within_two_percent(
     noise: float, found: int | None, unit: float
 ) -> None:
-    """The difference of two noises has sqrt(2) times the standard deviation of one."""
+    """The difference of two noises has sqrt(2) times their standard deviation."""
     sine = np.sqrt(2.0) * np.sin(2.0 * np.pi * np.arange(2000) / 100)
     random = np.random.default_rng(2)
     assert period_samples(unit * (sine + noise * random.standard_normal(2000))) == found

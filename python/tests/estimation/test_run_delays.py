@@ -37,11 +37,11 @@ EXTENDED = pytest.mark.extended
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=EXTENDED)])
 def test_run_delays_that_differ_are_recovered_within_half_a_grid_step(seed: int) -> None:
-    """The search for start values has steps of 2 ms."""
+    """The search for starting values has steps of 2 ms."""
     problem, solution = fitted(reversing_campaign(DELAYS_S, seed=seed), DELAY)
     found = lateness(problem, solution, 0, CHANCE)
     assert found.drift == 0.0
-    # The delay of the model is the part that all runs share.
+    # The delay of the model is the part that is common to all runs.
     total = np.array(found.late_s) + value(problem, solution, TAU)
     np.testing.assert_allclose(total, DELAYS_S, atol=1e-3)
     assert found.spread_s == pytest.approx(np.std(DELAYS_S, ddof=1), rel=0.15)
@@ -49,7 +49,7 @@ def test_run_delays_that_differ_are_recovered_within_half_a_grid_step(seed: int)
 
 @pytest.mark.parametrize("changed", ["outliers", "offsets"])
 def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed: str) -> None:
-    """Outliers of 100 standard deviations, 2 %, would change unclipped delays by milliseconds."""
+    """Unclipped delays would change by milliseconds; 2 % are outliers of 100 standard deviations."""
     problem, solution = fitted(reversing_campaign(DELAYS_S), DELAY)
     usual = lateness(problem, solution, 0, CHANCE)
     random, prepared, samples = np.random.default_rng(5), [], solution.samples
@@ -69,7 +69,7 @@ def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed
 
 @pytest.mark.parametrize("drift", [1e-3, pytest.param(-6e-4, marks=EXTENDED)])
 def test_clock_drift_is_recovered_within_15_percent_in_reversing_runs(drift: float) -> None:
-    """A clock that was right at the start has half of its error in the middle of the run."""
+    """The error of a clock that is exact at the start has half of its final value at mid-run."""
     middle = (0.5 * drift * DURATION_S,) * 4
     found = lateness(*fitted(reversing_campaign(middle, drift), DELAY), 0, CHANCE)
     assert found.drift == pytest.approx(drift, rel=0.15)
@@ -92,7 +92,7 @@ def test_no_delay_is_reported_if_common_to_all_runs(
 
 COVARIANCE = np.array([[4.0, 1.0], [1.0, 2.0]])
 STEP = LatenessStep(np.array([3.0, 0.0, -1.0]), COVARIANCE, np.array([True, False, True]))
-"""A step of three runs, of which the second does not determine its delay."""
+"""Delay step of three runs, the second of which does not determine its delay."""
 
 
 def white(problem: Problem, solution: Solution) -> LatenessStep:
@@ -194,7 +194,7 @@ def test_delay_of_the_model_and_the_step_add_up_to_the_delay_of_each_run() -> No
 
 @pytest.mark.parametrize(("ratio", "known"), [(0.98, True), (1.02, False)])
 def test_delay_or_drift_is_undetermined_beyond_the_linear_range(ratio: float, known: bool) -> None:
-    """Standard errors are proportional to the residuals; that of a drift counts over a run."""
+    """Standard errors scale with the residuals; that of a drift is multiplied by the duration."""
     problem, solution = fitted(one_way_campaign((0.0, 0.0), durations_s=(20.0, 10.0)))
     plain = replace(solution, noise=WHITE)
     delay_sd = lateness_step(problem, plain).covariance_s2[0, 0] ** 0.5
@@ -217,7 +217,7 @@ def test_no_delay_is_determined_if_all_residuals_are_zero() -> None:
 
 @pytest.mark.extended
 def test_p_values_of_campaigns_without_delay_are_uniform() -> None:
-    """Wald's test under its null hypothesis, by the test of Kolmogorov and Smirnov."""
+    """P-values of Wald's test under its null hypothesis, by the test of Kolmogorov and Smirnov."""
     campaigns = (one_way_campaign((0.0,) * 3, seed=seed) for seed in range(60))
     chances = [lateness_step(*fitted(campaign)).chance for campaign in campaigns]
     assert stats.kstest(chances, "uniform").pvalue > 0.02
@@ -239,7 +239,7 @@ def test_drift_step_of_unidirectional_runs_solves_the_normal_equations() -> None
 
 
 def test_common_delay_biases_the_drift_unless_both_are_estimated() -> None:
-    """The regression of a constant on t over the length T of a run has the slope 3 d / (2 T)."""
+    """The regression of a constant d on t over a run of duration T has the slope 3 d / (2 T)."""
     delay_s = 3e-3
     campaign = one_way_campaign((delay_s,) * 2, seed=5)
     there = fitted(campaign)
@@ -248,6 +248,6 @@ def test_common_delay_biases_the_drift_unless_both_are_estimated() -> None:
     assert alone.square > 50.0
     assert with_delay.square < 9.0
     assert with_delay.variance == pytest.approx(4.0 * alone.variance, rel=0.3)
-    # The delay of a model that has one is not estimated twice.
+    # A delay that the model contains is not estimated twice.
     delayed = fitted(campaign, DELAY)
     assert drift_step(*delayed, beside_delay=True) == drift_step(*delayed)

@@ -39,7 +39,7 @@ def test_samples_count_if_the_sign_of_motion_is_known_and_the_reading_is_usable(
     np.testing.assert_array_equal(counted, p.motion.sign_known & p.examined.usable)
     np.testing.assert_array_equal(campaign.samples.weight[0], counted.astype(float))
     assert 0 < np.count_nonzero(~counted) < 30
-    # A run that reverses at once begins with a sample of unknown sign.
+    # A run that reverses at its start begins with a sample of unknown sign.
     assert not counted[0]
     assert Campaign.prepare(Rig(), [run.select(t > 0.5)]).samples.counted[0][0]
 
@@ -48,7 +48,7 @@ def test_rms_is_over_counted_samples_and_sum_of_squares_over_weighted_samples() 
     assert SAMPLES.count == 5
     assert SAMPLES.flat(VALUES).tolist() == [1.0, 2.0, 4.0, 5.0, 7.0]
     assert SAMPLES.rms(VALUES) == pytest.approx(np.sqrt((1 + 4 + 16 + 25 + 49) / 5.0))
-    # Weights multiply residuals: 1 + 1 + 16 + 25 + 2.25 + 49.
+    # The weights multiply the residuals: 1 + 1 + 16 + 25 + 2.25 + 49.
     assert SAMPLES.square(VALUES) == pytest.approx(94.25)
     empty = SAMPLES.within([np.zeros(4, dtype=bool), np.zeros(3, dtype=bool)])
     assert (empty.count, empty.rms(VALUES), empty.square(VALUES)) == (0, 0.0, 0.0)
@@ -115,7 +115,7 @@ def test_innovations_are_zero_at_samples_that_do_not_count() -> None:
 
 
 def test_predicted_deviation_of_a_run_is_removed_with_shrinkage() -> None:
-    """An offset with a deviation of 2 N; three readings of 3 N in noise of 1 N predict 36/13 N."""
+    """Offset with a deviation of 2 N: three readings of 3 N in noise of 1 N predict 36/13 N."""
     every = np.ones(3, dtype=bool)
     between = BetweenRuns(("zero",), (np.full((3, 1), 2.0),), 1.0)
     samples = Samples(("a",), (0.02,), (every,), (np.ones(3),), between)
@@ -123,7 +123,7 @@ def test_predicted_deviation_of_a_run_is_removed_with_shrinkage() -> None:
     np.testing.assert_allclose(left, 3.0 - 36.0 / 13.0)
     (e,) = samples.innovations([np.full(3, 3.0)], WHITE)
     np.testing.assert_allclose(e, left)
-    # Along its only direction the covariance is 1 + 12.
+    # The variance along its only direction is 1 + 12.
     r, _ = samples.stacked([np.full(3, 3.0)], [np.zeros((3, 0))], WHITE)
     np.testing.assert_allclose(r, 3.0 / np.sqrt(13.0))
     assert samples.cost([np.full(3, 3.0)], WHITE) == pytest.approx(3.0 * np.log(9.0 / 13.0))
@@ -134,7 +134,7 @@ def test_blocks_last_a_second_or_four_memories_and_do_not_span_runs() -> None:
     samples = samples_of([np.ones(120), np.concatenate((np.zeros(30), np.ones(70)))])
     assert samples.steps_s == (STEP_S, STEP_S)
     assert blocks_of(samples, 1.0).tolist() == [0, 50, 100, 120, 170]
-    # A sample worth a fiftieth: the memory is 25 samples on either side.
+    # An independent share of a fiftieth: the memory is 25 samples on either side.
     assert blocks_of(samples, 0.02).tolist() == [0, 100, 120]
     sparse = samples_of([np.ones(3), np.ones(2)], step_s=5.0)
     assert blocks_of(sparse, 1.0).tolist() == [0, 2, 3]
@@ -156,14 +156,14 @@ def deviations(runs: int = 2) -> BetweenRuns:
 
 
 def weights() -> Array:
-    """Weights of samples: zero for four of them, 0.2 to 1 for the others."""
+    """Weights of samples: zero at four of them, 0.2 to 1 at the others."""
     weight = np.random.default_rng(1).uniform(0.2, 1.0, N)
     weight[[0, 17, 18, 90]] = 0.0
     return weight
 
 
 def filtered(noise: Noise, values: Array, weight: Array) -> Array:
-    """Innovations of weighted values, at the samples with weight."""
+    """Innovations of weighted values at the samples with nonzero weight."""
     weighted = (values.T * weight).T
     return arma_innovations(weighted, STEP_S, noise)[weight > 0.0]
 
@@ -171,7 +171,7 @@ def filtered(noise: Noise, values: Array, weight: Array) -> Array:
 @NOISES
 @pytest.mark.parametrize("run", [0, 1])
 def test_whitening_with_random_effects_uses_the_inverse_covariance(noise: Noise, run: int) -> None:
-    """Innovations over their standard deviation have the covariance I + Z Z'."""
+    """Innovations divided by their standard deviation have the covariance I + Z Z'."""
     between, weight = deviations(), weights()
     values = np.random.default_rng(2).standard_normal((N, 4)) + np.eye(4)[0]
     e = filtered(noise, values, weight)
@@ -185,7 +185,7 @@ def test_whitening_with_random_effects_uses_the_inverse_covariance(noise: Noise,
 
 @NOISES
 def test_predicted_random_effect_is_a_ridge_regression_over_weighted_samples(noise: Noise) -> None:
-    """Deviations of unit variance are penalised by their squares (Henderson 1975)."""
+    """Deviations of unit variance are penalised by their sum of squares (Henderson 1975)."""
     between, weight = deviations(), weights()
     residual = np.random.default_rng(5).standard_normal(N) + between.directions[1] @ [1.5, -0.7]
     z = filtered(noise, between.directions[1], weight)
@@ -221,14 +221,14 @@ def test_random_effects_give_the_cost_and_determinant_of_a_correlated_normal(noi
 @pytest.mark.parametrize(
     ("estimates", "precisions", "square", "q"),
     [
-        # Errors of one and a sample variance of 4: the excess is 3.
+        # With errors of one and a sample variance of 4 the excess is 3.
         ([5.0, 7.0, 9.0], [1.0] * 3, 3.0, 8.0),
         # Weighted mean 4, Q = 16 + 4 = 20 with one degree of freedom; 19 over 5 - 17/5.
         ([0.0, 5.0], [1.0, 4.0], 19.0 / 1.6, 20.0),
-        # Differences within the errors.
+        # The differences are within the errors.
         ([-0.5, 0.5], [1.0] * 2, 0.0, 0.5),
         ([2.5] * 4, [1.0, 2.0, 3.0, 4.0], 0.0, 0.0),
-        # One run has all of the precision.
+        # One run contains all of the precision.
         ([1.0, 5.0], [3.0, 0.0], 0.0, 0.0),
     ],
 )

@@ -117,7 +117,7 @@ def test_expected_gain_exceeds_the_gain_of_the_first_steps_if_the_law_is_nonline
 
 
 def test_expected_gain_in_coloured_noise_is_that_of_the_innovations() -> None:
-    """A slow wave hides the mass in the squares of residuals, but not of innovations."""
+    """A slow wave masks the mass in the squares of residuals, but not in those of innovations."""
     heavy = mass(0.3)
     runs = four_runs(lambda t, v, a: heavy(t, v, a) + 2.0 * np.sin(0.5 * t), noise_n=0.1)
     slow = Campaign.prepare(Rig(), runs)
@@ -139,7 +139,7 @@ def test_search_stops_unconverged_if_it_cannot_reach_the_given_sum_of_squares() 
 
 
 def test_approach_reaches_the_minimum_of_a_nonlinear_curve() -> None:
-    """A Stribeck curve written out here, fitted from several starts by scipy."""
+    """A Stribeck curve defined here, fitted by SciPy from several starts."""
     t = np.arange(0.0, 30.0, 0.02)
     v = 0.051 + 0.05 * np.sin(0.7 * t + 1.0)
     noise = 0.1 * np.random.default_rng(3).standard_normal(len(t))

@@ -1,4 +1,4 @@
-"""Samples at standstill, where friction balances the force that a controller holds."""
+"""Samples at standstill, where friction balances the force of a position controller."""
 
 from dataclasses import replace
 from typing import Any
@@ -29,12 +29,12 @@ def test_sliding_parameters_are_recovered_if_a_controller_holds_between_moves(
         assert parameter.stderr is not None
         assert abs(parameter.value - true) < 3.0 * parameter.stderr, name
         assert parameter.stderr < 0.01 * true, name
-    # White noise of 0.3 N is all that remains.
+    # The expected residual is white noise of 0.3 N.
     assert found.rms_n == pytest.approx(0.3, rel=0.05)
 
 
 def held_with(run: Run, force_n: float) -> Run:
-    """The run with another holding force at rest."""
+    """The run with a different holding force at rest."""
     assert run.friction_n is not None
     resting = impose(run, None).resting
     assert 0.2 < np.mean(resting) < 0.8

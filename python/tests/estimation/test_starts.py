@@ -48,7 +48,7 @@ def axis(name: str = "a", scale: float = 1.0, **columns: Any) -> Run:
 
 
 def started(one: Parameter, *runs: Run, rig: Rig | None = None, in_newtons: bool = True) -> Any:
-    """The page with its starting values from these runs; from one run of the axis by default."""
+    """Parameter with starting values from these runs, by default from one run of an axis."""
     prepared = slide() if rig is None and not runs else Campaign.prepare(rig or Rig(), list(runs))
     return with_starts({"p": one}, prepared, in_newtons=in_newtons)["p"]
 
@@ -80,13 +80,13 @@ def test_every_start_that_the_catalogue_names_has_a_rule() -> None:
         ("stribeck_speed", (0.01, 0.03, 0.1)),
         ("usual_speed", (0.1,)),
         ("slowness", (5.0, 50.0)),
-        # Breakaway over a tenth of the stroke, over 1e-6 m, and over their geometric mean.
+        # Breakaway within a tenth of the stroke, within 1e-6 m, and within their geometric mean.
         ("stiffness", (200.0, 4e4, 8e6)),
         ("damping", (2.5,)),
         ("drag", (0.5,)),
         ("drive_play", (4e-3, 4e-4, 4e-5)),
         ("drive_stiffness", (2e3, 2e4)),
-        # 2e3 N/m that oscillate within a fiftieth of the 4 s of a stroke.
+        # A stiffness of 2e3 N/m whose oscillation period is a fiftieth of the 4 s of a stroke.
         ("drive_inertia", (2e3 * 0.08**2,)),
         ("drive_damping", (80.0,)),
     ],
@@ -109,7 +109,7 @@ def test_law_that_scales_with_the_load_takes_its_starting_values_from_the_catalo
     data = on_bearing()
     found = with_starts(pages, data, in_newtons=False)
     assert {n: p.starts for n, p in found.items()} == {n: p.starts for n, p in pages.items()}
-    # Only the transition speed is bounded by the fastest speed on record.
+    # Only the transition speed is bounded by the fastest recorded speed.
     top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in data.prepared)
     wanted = max(5.0 * top, 2.0 * max(pages["U_tr_m_s"].starts))
     assert found["U_tr_m_s"].upper == pytest.approx(min(wanted, pages["U_tr_m_s"].upper))
@@ -179,7 +179,7 @@ STEP_S = 0.01
 
 
 def swinging(force: float = 5.0, viscous: float = 20.0, top: float = 0.1) -> Run:
-    """A sine of 4 s period: strokes of 2 s, each 4 / pi times `top` long."""
+    """A sine with a period of 4 s has strokes of 2 s with a length of 4 / pi times `top`."""
     t = np.arange(0.0, 40.0, STEP_S)
     v = top * np.sin(0.5 * np.pi * t)
     return Run.from_arrays(t, v, force * np.sign(v) + viscous * v, name="sine")
@@ -211,7 +211,7 @@ def test_sizes_of_linear_friction_over_a_sine_follow_its_formula(top: float, for
     slow = top * np.sin(0.9 * 0.25 * np.pi)
     assert found.breakaway_n == pytest.approx(force + viscous * slow, rel=0.02)
     assert found.stroke_m == pytest.approx(top * 4.0 / np.pi, rel=0.02)
-    # A tenth of the distance between samples at the slow speed.
+    # The value is a tenth of the distance between samples at the slow speed.
     assert found.resolved_m == pytest.approx(0.1 * found.slow_m_s * STEP_S, rel=1e-6)
 
 
@@ -225,12 +225,12 @@ def test_viscous_size_is_zero_if_friction_falls_with_speed() -> None:
 @pytest.mark.parametrize(
     ("lengths_m", "stroke_m"),
     [
-        # The first and the last stroke are cut by the record: the median of the others.
+        # The record truncates the first and the last stroke: the median of the others is used.
         ((0.3, 1.0, 0.6, 0.8, 0.5), 0.8),
-        # A drive overshoots: distances below a tenth of the longest are not strokes.
+        # Overshoots of a drive: distances below a tenth of the longest are not strokes.
         ((0.3, 1.0, 0.12, 1.0, 0.12, 0.5), 0.56),
         ((0.3, 1.0, 0.06, 1.0, 0.06, 0.5), 1.0),
-        # Fewer than two reversals: the whole path.
+        # With fewer than two reversals the stroke is the length of the path.
         ((0.4, 0.9), 0.9),
     ],
 )

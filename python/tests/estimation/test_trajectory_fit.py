@@ -129,7 +129,7 @@ def test_trajectory_fit_from_distant_starts_converges_with_missing_samples() -> 
 
 
 def test_trajectory_fit_errors_are_those_of_least_squares() -> None:
-    """`s^2 (J' J)^-1` with J by differences and s^2 with n - k degrees of freedom, n = 45."""
+    """Covariance `s^2 (J' J)^-1`, J by differences, s^2 with n - k degrees of freedom, n = 45."""
     runs = [(time[5::10], sine) for time, sine in SWINGS]
 
     def along(values: dict[str, float], tolerance: float = 1e-6) -> Array:
@@ -153,7 +153,7 @@ def test_trajectory_fit_errors_are_those_of_least_squares() -> None:
 
 @EXTENDED
 def test_estimates_scatter_by_their_standard_errors_in_twenty_fits() -> None:
-    """The spread of 80 deviations, some of them correlated, is known to 12 %."""
+    """The standard deviation of 80 deviations, some of them correlated, has an error of 12 %."""
     off = []
     for seed in range(20):
         pieces = np.split(noisy(seed), len(SWINGS))
@@ -164,7 +164,7 @@ def test_estimates_scatter_by_their_standard_errors_in_twenty_fits() -> None:
 
 
 def test_parameters_that_the_motion_does_not_determine_are_held_without_an_error() -> None:
-    """At one constant speed four parameters share one value of friction."""
+    """At a single constant speed one value of friction cannot determine four parameters."""
     time = np.linspace(0.0, 2.0, 40)
     runs = [(time, np.full(40, 0.1))]
     data = [jbf.trajectories(RIG, TRUTH, runs)[0].friction_coefficient]
@@ -175,7 +175,7 @@ def test_parameters_that_the_motion_does_not_determine_are_held_without_an_error
 
 
 def test_trajectory_fit_ignores_samples_at_rest_or_without_a_measurement() -> None:
-    """Friction is set-valued at rest; the sine is at rest where it returns to zero speed."""
+    """Friction is set-valued at rest; the sine is at rest where its speed is zero."""
     time = np.arange(0.0, 12.0, 0.25)
     record = np.where((time > 3.0) & (time < 6.0), 0.0, 0.05 * np.sin(time))
     record[np.abs(record) < 1e-12] = 0.0

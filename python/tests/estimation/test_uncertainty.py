@@ -27,7 +27,7 @@ TERMS: dict[str, Friction] = {
     "sensor_drift.d_n_s": lambda t, v, a: t,
     "inertia_leak.m_e_kg": lambda t, v, a: a,
 }
-"""Parameter to its regressor of time, speed and acceleration."""
+"""Regressor of each parameter as a function of time, speed and acceleration."""
 LinearFit = tuple[list[Run], Fit]
 Bent = Callable[..., tuple[str, ...]]
 
@@ -105,7 +105,7 @@ def test_error_of_a_logarithmic_parameter_is_in_the_unit_of_the_parameter() -> N
 
 
 def test_parameters_without_influence_and_confounded_parameters_are_marked() -> None:
-    """In one direction dry friction and an offset are the same; breakaway has no influence."""
+    """Without reversals dry friction and an offset are equivalent, and breakaway is irrelevant."""
     runs = four_runs(coulomb, noise_n=0.1)
     campaign = Campaign.prepare(Rig(), [runs[0], runs[2]])
     problem = Problem(campaign, "coulomb", "journal", ("sensor_offset",))
@@ -119,13 +119,13 @@ def test_parameters_without_influence_and_confounded_parameters_are_marked() -> 
 
 
 def dry_level(runs: list[Run]) -> Problem:
-    """Only the dry friction is fitted: a mean in the direction of motion."""
+    """Only the dry friction is fitted, which is a mean in the direction of motion."""
     fixed = {"F_s_n": 6.0, "F_v_n_s_m": 20.0}
     return Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", (), fixed)
 
 
 def test_error_is_inflated_by_the_long_run_variance_of_slow_noise() -> None:
-    """Noise of constant sign over ten samples: the variance of a mean is ten times as large."""
+    """Noise of constant sign over ten samples multiplies the variance of a mean by ten."""
     problem = dry_level(four_runs(coulomb, noise_n=0.0))
     solution = solution_at(problem, values_of(problem))
     random = np.random.default_rng(4)
@@ -138,7 +138,7 @@ def test_error_is_inflated_by_the_long_run_variance_of_slow_noise() -> None:
 
 
 def test_error_is_inflated_by_the_scatter_of_offsets_between_runs() -> None:
-    """Offsets in the direction of motion: a mean of eight runs is as uncertain as they scatter."""
+    """Offsets in the direction of motion: the scatter of eight runs determines the error."""
     offsets = np.array([0.5, -0.4, 0.3, -0.5, 0.2, -0.3, 0.45, -0.25])
     some = (four_runs(along(z), noise_n=0.1, seed=k)[k % 4] for k, z in enumerate(offsets))
     problem = dry_level([replace(run, name=f"{k}") for k, run in enumerate(some)])
@@ -152,7 +152,7 @@ KINDS: dict[str, Callable[[Array, Array], Array]] = {
     "offset of each run": lambda f, e: 0.1 * e + 0.08 * e[0],
     "two memories": lambda f, e: 0.05 * e + 0.03 * np.repeat(e[::20], 20)[: len(e)],
 }
-"""Noise from the friction (N) and from independent normal numbers."""
+"""Noise as a function of the friction (N) and of independent normal numbers."""
 
 
 @pytest.mark.extended
@@ -172,7 +172,7 @@ def test_deviations_from_the_truth_are_as_large_as_the_standard_errors(kind: str
         found = fit(Rig(), runs, ["sensor_offset"], law="coulomb", fixed={"F_s_n": 6.0})
         off.append([(found[n].value - x) / (found[n].stderr or np.inf) for n, x in truth.items()])
     size = np.sqrt(np.mean(np.array(off) ** 2, axis=0))
-    # A mean of 12 squares is a fifth off by chance.
+    # The standard deviation of a mean of 12 squares is about a fifth.
     assert np.all((size > 0.4) & (size < 2.0)), size
 
 
@@ -181,8 +181,8 @@ N = 501
 
 @pytest.fixture
 def bent() -> Bent:
-    """Names of the doubtful parameters of a law whose dry level is `p + bend (p - 5)^2 / sd`, in
-    units of its standard error sd, and which has a viscous coefficient as a second parameter."""
+    """Names of the doubtful parameters of a law whose dry friction is `p + bend (p - 5)^2 / sd`, in
+    units of its standard error sd, with a viscous coefficient as second parameter."""
     t = 0.02 * np.arange(2 * N)
     v = 0.1 + 0.03 * np.sin(12.0 * t) + 0.02 * np.sin(7.4 * t + 1.0)
     noise = np.where(np.arange(2 * N) % 2, 1.0, -1.0)
@@ -228,17 +228,17 @@ def test_error_is_doubtful_if_the_cost_deviates_from_a_parabola(
 
 
 def test_no_error_is_doubtful_for_held_parameters_or_beyond_a_bound(bent: Bent) -> None:
-    """At b = 0.155 only the upper side is off by more than three tenths."""
+    """At b = 0.155 only the upper side deviates by more than three tenths."""
     half = 0.5 / np.sqrt(2 * N)
     assert bent(0.155, bounds=(-1e9, 5.0 + half)) == ()
-    # A rise of 0.49 on the lower side is too small.
+    # An increase of 0.49 on the lower side is too small.
     assert bent(0.3, bounds=(-1e9, 5.0 + half)) == ("p",)
     assert bent(0.155, bounds=(5.0 - half, 1e9)) == ("p",)
     assert bent(0.5, held=True) == ()
 
 
 def test_errors_of_an_effect_with_many_likelihood_peaks_are_doubtful() -> None:
-    """The likelihood of a resonant drive has many narrow peaks in its parameters."""
+    """The likelihood of a drive with a resonance has many narrow maxima in its parameters."""
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1)[:2])
     problem = Problem(campaign, "coulomb", "journal", ("drive_compliance",))
     values = problem.starts({**LAW, "F_s_n": 6.0})[0]

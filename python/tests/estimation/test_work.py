@@ -1,4 +1,4 @@
-"""The cost of fits in inner steps of the model, its limit, and the result of an interrupted fit."""
+"""Cost of fits in inner steps of the model, its limit, and the result of an interrupted fit."""
 
 from collections.abc import Iterator
 
@@ -45,7 +45,7 @@ def test_prediction_costs_its_inner_steps_and_derivatives_twice_as_many() -> Non
         prepared.work.renew()
         call(values)
         assert prepared.work.taken == pytest.approx(cost)
-    # Predictions of a part of a campaign count towards the limit of the whole.
+    # Predictions of a part of a campaign count towards the limit of the complete campaign.
     prepared.work.renew()
     problem.predict(values, [1])
     one = prepared.work.taken
@@ -67,7 +67,7 @@ def test_search_beyond_the_limit_raises_unfinished_and_stores_the_best_values() 
 
 @pytest.fixture
 def interrupting() -> Iterator[str]:
-    """A law during whose 60th evaluation the user presses Ctrl-C."""
+    """A law that simulates Ctrl-C at its 60th evaluation."""
     calls: list[int] = []
 
     def interrupting_law(velocity_m_s, F_c_n, F_v_n_s_m, v_0_m_s):  # type: ignore[no-untyped-def]

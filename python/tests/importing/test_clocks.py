@@ -1,4 +1,4 @@
-"""Channels with separate clocks are not resampled; a missing sample is an empty cell."""
+"""Channels with separate clocks are not resampled; missing samples are empty cells."""
 
 import csv
 from collections.abc import Iterable
@@ -59,7 +59,7 @@ def test_samples_of_two_clocks_are_merged_in_time_order(tmp_path: Path) -> None:
     ("samples", "slow"),
     [
         *((10_000, 0.0103 + np.arange(int(9.9 * hz)) / hz) for hz in (20.0, 7.0, 900.0)),
-        # A hundredth of the rate, and a gap of 80 s.
+        # One channel has a hundredth of the rate, another a gap of 80 s.
         (180_000, np.concatenate((np.arange(100), np.arange(900, 1790))) / 10.0),
     ],
     ids=["20 Hz", "7 Hz", "900 Hz", "gap"],
@@ -68,7 +68,7 @@ def test_run_with_two_clocks_keeps_every_sample(samples: int, slow: Any, tmp_pat
     fast = np.arange(samples) / 1000.0
     (run,) = imported(tmp_path, TWO_CLOCKS, a=fast, x=np.sin(fast), b=slow, f=np.cos(slow)).runs
     force = run.read["friction_n"]
-    # In the case with the gap, each sample of the force has the time of one of the position.
+    # In the case with a gap each sample of the force coincides with one of the position.
     position = run.read.get("position_m", np.ones(len(run), dtype=bool))
     np.testing.assert_array_equal(run.time_s[force], slow)
     np.testing.assert_array_equal(run.friction_n[force], np.cos(slow))
@@ -184,7 +184,7 @@ def test_imported_sheets_of_a_workbook_keep_their_relative_times(tmp_path: Path)
 
 
 def serial_log(folder: Path, header: str, pos_scale: float, time_scale: float) -> Path:
-    """A serial log of integers and short decimals, 100 rows a second."""
+    """A serial log of integers and short decimals with 100 rows per second."""
     time = 0.01 * np.arange(400)
     rows = [
         f"{time_scale * t:.0f},{pos_scale * 3.0 * np.sin(1.3 * t):.4f},{3.9 * np.cos(1.3 * t):.4f},"
@@ -214,6 +214,6 @@ def test_unit_of_time_is_inferred_from_position_and_speed_without_units(tmp_path
 def test_unit_of_time_is_an_open_question_if_position_and_speed_are_inconsistent(
     tmp_path: Path,
 ) -> None:
-    """A place in degrees next to a speed in rad/s."""
+    """A position in degrees together with a speed in rad/s."""
     guess = look(serial_log(tmp_path, "t,pos,vel,torque", 57.3, 1e3))
     assert "t" in [q.place for q in guess.questions]

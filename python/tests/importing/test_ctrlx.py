@@ -1,4 +1,4 @@
-"""Traces of ctrlX: blocks of the PLC's trace, and columns named by paths of the Data Layer."""
+"""Traces of ctrlX: blocks of a PLC trace, and columns named by paths of the Data Layer."""
 
 from pathlib import Path
 

@@ -26,7 +26,7 @@ def imported(pieces: Sequence[Piece]) -> Import:
 
 
 def spans(ax: Axes) -> list[tuple[float, float, str]]:
-    """Begin, end and colour of each shaded piece; the hatch of excluded ones."""
+    """Start, end and colour of each shaded piece, and the hatch of excluded pieces."""
     boxes: Any = ax.patches
     return [
         (b.get_x(), b.get_x() + b.get_width(), b.get_hatch() or to_hex(b.get_facecolor()))

@@ -24,7 +24,7 @@ LONG = recording(4, 12.0, 5.0)
 
 
 def imported(folder: Path, cut: str, columns: Columns, without: str = "nothing") -> jbf.Import:
-    """A recording cut as given; one column is left out."""
+    """A recording with the given cut; one column is omitted."""
     csv(folder / "log.csv", {name: v for name, v in columns.items() if name != without})
     head = "\n".join(line for line in HEAD.splitlines() if not line.startswith(without))
     (folder / "map.toml").write_text(f"{head}\n[cut]\n{cut}\n")
@@ -36,7 +36,7 @@ def spans(result: jbf.Import) -> list[tuple[float, float]]:
 
 
 def assert_pieces_cover_the_recording_once(result: jbf.Import) -> None:
-    """No sample is lost between the pieces, and no sample is in two of them."""
+    """Check that each sample is in exactly one piece."""
     time = LONG.columns["time_s"]
     assert result.pieces[0].from_s == time[0]
     assert result.pieces[-1].to_s == time[-1]
@@ -53,7 +53,7 @@ def test_recording_is_cut_at_rests_detected_from_speed_or_position(
     result = imported(tmp_path, 'by = "rests"\nkeep_rest_s = 0.5', LONG.columns, without)
     assert len(spans(result)) == len(LONG.motions)
     for (begin, end), (first, last) in zip(LONG.motions, spans(result), strict=True):
-        # Half a second of each rest is kept, up to the slow beginning of a motion.
+        # Half a second of each rest is kept, up to the slow start of a motion.
         assert begin - 0.8 < first < begin + 0.1
         assert end - 0.1 < last < end + 0.8
     assert_pieces_cover_the_recording_once(result)

@@ -1,4 +1,4 @@
-"""Dates and times of day as loggers write them, against the calendar of Python."""
+"""Dates and times of day in the notations of loggers, against the calendar of Python."""
 
 from datetime import datetime, timedelta, timezone
 from pathlib import Path

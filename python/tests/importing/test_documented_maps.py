@@ -31,7 +31,7 @@ def test_map_with_units_and_run_numbers_imports_two_runs_in_si_units(tmp_path: P
 
 
 def test_torque_in_percent_is_converted_with_the_rated_torque_of_the_drive(tmp_path: Path) -> None:
-    """30 % at standstill and 2.5 % more at 100 rpm, of a rated torque of 0.64 N m."""
+    """Torque of 30 % at standstill plus 2.5 % per 100 rpm, of a rated torque of 0.64 N m."""
     rng = np.random.default_rng(5)
     lines = ["setpoint_rpm,time_ms,speed_rpm,torque_pct"]
     speeds = [-150, -90, -40, -15, 15, 40, 90, 150]
@@ -46,12 +46,12 @@ def test_torque_in_percent_is_converted_with_the_rated_torque_of_the_drive(tmp_p
     assert runs[0].time_s[1] == 0.0128
     fit = jbf.fit(rig, runs, law="coulomb")
     assert fit["F_c"].value == pytest.approx(0.30 * 0.64, rel=0.02)
-    # 0.025 % of 0.64 N m for one revolution a minute.
+    # 0.025 % of 0.64 N m per revolution per minute.
     assert fit["F_v"].value == pytest.approx(0.00025 * 0.64 * 60 / (2 * np.pi), rel=0.05)
 
 
 def test_fit_of_imported_strokes_recovers_the_friction_per_pressure(tmp_path: Path) -> None:
-    """Strokes under three pressures: 2 N, and 1.5 N more for each bar."""
+    """Strokes under three pressures: 2 N plus 1.5 N per bar."""
     rng = np.random.default_rng(6)
     for bar in (1, 3, 5):
         time = np.arange(4000) / 100.0
@@ -73,7 +73,7 @@ def test_fit_of_imported_strokes_recovers_the_friction_per_pressure(tmp_path: Pa
 
 
 def test_files_recorded_side_by_side_are_aligned_by_their_position(tmp_path: Path) -> None:
-    """Three records of one motion; the clock of the force is 2 s behind."""
+    """Three records of one motion; the clock of the force is 2 s behind the others."""
     rates = 2.0 * np.pi * np.array([0.11, 0.23, 0.41])
 
     def position(time: np.ndarray) -> np.ndarray:

@@ -40,7 +40,7 @@ def lines_of_runs(result: jbf.Import) -> list[list[str]]:
 
 @pytest.fixture(scope="module")
 def wanted(tmp_path_factory: pytest.TempPathFactory) -> list[list[str]]:
-    """The lines of each run that is imported from a CSV file."""
+    """The lines of each run after an import of the recording from a CSV file."""
     return lines_of_runs(imported(tmp_path_factory.mktemp("wanted"), "r.csv", SHORT))
 
 
@@ -85,7 +85,7 @@ def test_file_format_is_recognised_by_the_first_bytes(name: str, path: Path) -> 
 
 
 TEXTS = ("bag", "r.csv", "trace.csv", "r.jsonl")
-"""Of lines, of which a torn last one is passed over, and a folder."""
+"""Formats of lines, whose truncated last line is ignored, and a folder."""
 
 
 # asammdf closes a truncated file twice.

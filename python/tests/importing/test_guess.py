@@ -1,4 +1,4 @@
-"""Guessing the map of a text file: headers, units, numbers and dates; open questions."""
+"""Inference of the map of a text file: headers, units, numbers and dates; open questions."""
 
 import gzip
 import math
@@ -22,7 +22,7 @@ def samples() -> list[tuple[float, float, float, float]]:
 
 
 def text(header: str, row: str, *, sep: str = ",", decimal: str = ".") -> str:
-    """A text file; `row` names the quantity of each column."""
+    """A text file; `row` contains the quantity of each column."""
     lines = []
     for i, (t, x, v, f) in enumerate(samples()):
         numbers = {

@@ -1,4 +1,4 @@
-"""Captures of LinuxCNC: halscope labels each value, halsampler none."""
+"""Recordings of LinuxCNC: halscope writes a name with each value, halsampler does not."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ friction = "force"
 
 
 def write_log(path: Path) -> None:
-    """Write a log as halscope does: the period, then name and value of each channel."""
+    """Write a log in the layout of halscope: the period, then name and value of each channel."""
     lines = ["Sampling period is 2000000 ns "]
     for position, torque in zip(POSITION.tolist(), TORQUE.tolist(), strict=True):
         lines.append(f"joint.0.motor-pos-fb {position:+.14f} drive.torque-fb {torque:+.14f} ")

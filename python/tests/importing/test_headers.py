@@ -1,4 +1,4 @@
-"""Column headers of instruments: the unit and the quantity that are read from each."""
+"""Inference of unit and quantity from the column headers of instruments."""
 
 import pytest
 from jbf.importing.columns import understood
@@ -61,7 +61,7 @@ def test_header_is_recognised_as_set_point_or_measurement(setpoint: str, measure
 
 def test_headers_f_and_t_are_read_as_force_and_time_whatever_their_unit() -> None:
     assert understood("F_N [N]").kind == "force"
-    assert understood("T [°C]").kind == "time"  # the guess rejects it later by its unit
+    assert understood("T [°C]").kind == "time"  # rejected later because of its unit
 
 
 def test_speed_of_a_motor_is_distinguished_from_other_speeds_by_its_header() -> None:

@@ -1,4 +1,4 @@
-"""`jbf import`: the guessed map, the imported folder, and refused files, maps and commands."""
+"""`jbf import`: inferred map, imported folder, and refused files, maps and commands."""
 
 import json
 import pickle
@@ -95,7 +95,7 @@ def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture)
 def test_second_look_keeps_an_edited_map_and_another_file_gets_a_separate_map(
     capsys: Capture,
 ) -> None:
-    # A map that no look has written is nobody's to replace.
+    # A map that was not written by a look must not be replaced.
     assert "log.map.toml was written" in printed(capsys, "import log.csv")
     assert Path("map.toml").read_text() == MAP
     edited = Path("log.map.toml").read_text().replace("linear", "rotary")
@@ -155,7 +155,7 @@ def set_cell(text: str, row: int, column: int, new: str) -> str:
 
 
 def every(step: int, text: str, cell: str | None) -> str:
-    """Damage every `step`-th row: replace one cell, or drop all cells but the first."""
+    """Damage every `step`-th row: replace one cell, or remove all cells except the first."""
     lines = text.splitlines()
     for k in range(step + 1, len(lines), step):
         cells = lines[k].split(",")

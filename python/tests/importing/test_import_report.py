@@ -31,7 +31,7 @@ friction = "force"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two recordings with two motions each; the first one misses three values."""
+    """Two recordings with two motions each; the first one lacks three values."""
     folder = tmp_path_factory.mktemp("report")
     time = np.arange(0.0, 40.0, 0.02)
     position = np.cumsum(np.where(abs(time % 20.0 - 11.0) < 6.0, np.sin(time), 0.0))

@@ -25,7 +25,7 @@ def write_v5(path: Path, content: dict[str, Any]) -> None:
 
 
 def write_v73(path: Path, content: dict[str, Any]) -> None:
-    """Write structures as MATLAB lays them out in HDF5."""
+    """Write structures in the HDF5 layout of MATLAB."""
     h5py = pytest.importorskip("h5py")
     with h5py.File(path, "w", userblock_size=512) as file:
         refs = file.create_group("#refs#")

@@ -1,4 +1,4 @@
-"""The import of a day of samples needs bounded memory."""
+"""The memory of an import is limited, even for a recording of one day."""
 
 import subprocess
 import sys

@@ -68,7 +68,7 @@ def write(path: str, **columns: Array) -> None:
 
 
 def clock(true_s: Array, offset_s: float, drift_ppm: float = 0.0) -> Array:
-    """Times of a clock of which `offset_s` and a drift are to be added."""
+    """Times of a clock that has an offset and a drift relative to the true time."""
     return np.asarray((true_s - offset_s) / (1.0 + 1e-6 * drift_ppm))
 
 
@@ -111,7 +111,7 @@ def alignments(result: jbf.Import) -> dict[str, dict[str, float]]:
 
 
 def check_force(found: dict[str, float], drift_ppm: float = FORCE_PPM) -> None:
-    """The clock of force.csv to 0.2 samples of it at mid-record, and its drift to 5 ppm."""
+    """Check the offset of force.csv at mid-record to 0.2 samples and its drift to 5 ppm."""
     wanted = FORCE_S + 1e-6 * drift_ppm * found["pivot_s"]
     assert found["offset_s"] == pytest.approx(wanted, abs=0.2 / 200)
     assert found["drift_ppm"] == pytest.approx(drift_ppm, abs=5.0)
@@ -145,7 +145,7 @@ def test_offsets_and_drift_of_three_files_are_recovered_within_a_fifth_of_a_samp
     (run,) = result.runs
     read = run.read["friction_n"]
     wanted = force(run.time_s[read])
-    # Away from reversals the force is that of the corrected instant.
+    # The force away from reversals is that at the corrected instant.
     assert np.median(np.abs(run.friction_n[read] - wanted)) < 0.15
     np.testing.assert_allclose(run.temperature_c, 20.0 + 0.01 * run.time_s, atol=0.01)
 

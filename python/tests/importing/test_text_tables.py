@@ -15,11 +15,11 @@ from jbf.importing.formats.table import Options
 
 TEXTS = texts()
 AMBIGUOUS = ("one column",)
-"""A column of numbers such as 0,25 is read as two columns."""
+"""A decimal comma in a comma-separated file splits numbers such as 0,25 into two columns."""
 
 
 def read(path: Path, data: bytes) -> tuple[TextSource, dict[str, Any]]:
-    """The source, and all its values."""
+    """The source and all of its values."""
     path.write_bytes(data)
     source = TextSource(path, Options())
     (table,) = source.tables

@@ -1,4 +1,4 @@
-"""Exports of TwinCAT Scope, and other tables next to each other, keep the times of each channel."""
+"""Exports of TwinCAT Scope and other files with several tables keep the times of each channel."""
 
 from pathlib import Path
 
@@ -33,7 +33,7 @@ def write(
     eof: bool = True,
     heads: tuple[str, str] = ("Starttime of export", "Endtime of export"),
 ) -> None:
-    """Write an export as the scope lays it out; a column is its rows' texts, from the key on."""
+    """Write an export in the layout of the scope; a column is the list of its texts."""
     columns: list[list[str]] = []
     keys = ["Name", "SymbolComment", "Data-Type", "SampleTime[ms]", "SymbolName", "NetID", "Port"]
     last = None
@@ -63,7 +63,7 @@ def write(
 
 
 def channels(source: Source) -> dict[str, tuple[Values, Values, str, str]]:
-    """Times, values, unit of the times and of the values of each channel."""
+    """Times, values, unit of the times and unit of the values of each channel."""
     found = {}
     for table in source.tables:
         head = source.head(table)

@@ -46,7 +46,7 @@ def test_parsing_text_that_is_not_a_unit_returns_none(text: str) -> None:
         (32.0, "°F", "°C", pytest.approx(0.0)),
         (212.0, "°F", "°C", pytest.approx(100.0)),
         (293.15, "K", "°C", pytest.approx(20.0)),
-        # A conversion to the same unit leaves the bits unchanged.
+        # A conversion to the same unit preserves all bits.
         (22.5, "°C", "°C", 22.5),
         (math.pi / 30, "rad/s", "rpm", pytest.approx(1.0)),
         (90.0, "deg", "rev", pytest.approx(0.25)),
@@ -83,16 +83,16 @@ def value(text: str, key: str) -> np.ndarray:
     return converted(evaluate(parse_expression(text, MEANT), VALUES, UNITS), wanted_unit(key), key)
 
 
-# Without `sin`, which is the name of a column here.
+# The function `sin` is excluded, because it is the name of a column here.
 FUNCTIONS = ["abs", "sign", "sqrt", "cos"]
 BARE = {name: name for name in NAMES if name != "sin"}
 
 
 def trees() -> st.SearchStrategy[tuple[str, str]]:
-    """A column expression, and the same in Python."""
+    """A column expression and the equivalent Python expression."""
     leaf = st.one_of(
         st.sampled_from(NAMES).map(lambda n: (written(n), f"v[{n!r}]")),
-        # NumPy numbers, which can be divided by zero.
+        # NumPy numbers, for which division by zero is defined.
         st.floats(0.01, 1e3).map(lambda x: (repr(x), f"float64({x!r})")),
     )
 

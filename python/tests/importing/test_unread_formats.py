@@ -1,4 +1,4 @@
-"""A file of a known format that is not read is refused with what to do."""
+"""Files of known but unsupported formats are refused with a remedy."""
 
 import subprocess
 import sys

@@ -17,11 +17,11 @@ POSITION = 0.05 * np.sin(np.arange(N) / 50.0)
 FORCE = 3.0 + 40.0 * POSITION
 FORMATS = {"double": "d", "float": "f", "int64": "q", "boolean": "?"}
 Entries = dict[str, tuple[str, Any, Any, str]]
-"""Name to type, instants in us, samples and metadata."""
+"""Type, instants in us, samples and metadata of each entry by its name."""
 
 
 def record(number: int, stamp: int, content: bytes) -> bytes:
-    """A record, each number in as few bytes as it needs."""
+    """A record that stores each number in the minimum number of bytes."""
     parts = [max(1, (value.bit_length() + 7) // 8) for value in (number, len(content), stamp)]
     head = bytes([parts[0] - 1 | parts[1] - 1 << 2 | parts[2] - 1 << 4])
     for size, value in zip(parts, (number, len(content), stamp), strict=True):
@@ -41,7 +41,7 @@ def payload(kind: str, sample: Any) -> bytes:
 
 
 def write(path: Path, entries: Entries) -> None:
-    """Write entries as the specification of the format describes."""
+    """Write entries according to the specification of the format."""
     log = b"WPILOG\x00\x01" + text("bench")
     for number, (name, (kind, _, _, metadata)) in enumerate(entries.items(), 1):
         start = b"\x00" + struct.pack("<I", number) + text(name) + text(kind) + text(metadata)

@@ -1,4 +1,4 @@
-"""Friction of many parameter sets or motions in one call equals that of separate calls."""
+"""The friction of many parameter sets or motions in one call equals that of separate calls."""
 
 import jbf
 import numpy as np
@@ -32,7 +32,7 @@ def test_batch_column_of_each_motion_equals_its_separate_batch() -> None:
 
 
 def test_batch_agrees_with_the_prediction_of_the_model_while_sliding() -> None:
-    """Friction coefficient times the load of 104 N; both integrate by Runge-Kutta."""
+    """The force is the friction coefficient times the load of 104 N; both use Runge-Kutta."""
     run = jbf.Run.from_arrays(np.arange(len(SPEED)) * DT_S, SPEED)
     force = jbf.Model(RIG, parameters=LAW).predict(run)
     coefficient = jbf.batch(RIG, SPEED, DT_S, **LAW, method="rk4")[:, 0]

@@ -168,7 +168,7 @@ def models() -> dict[str, jbf.Model]:
 
 
 def motion(model: jbf.Model) -> jbf.Run:
-    """A sine with a rest, and a rising temperature where an effect needs it."""
+    """A sine with a rest, and a rising temperature if an effect requires it."""
     time_s = np.arange(0.0, 8.0, 0.01)
     speed = 0.05 * np.sin(2.0 * time_s) * (np.abs(time_s - 4.0) > 0.5)
     path = np.cumsum(speed) * 0.01
@@ -208,7 +208,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def rust(prepared: Path) -> Rows:
-    """Output of the exported Rust: predicted, stepped in f64, stepped in f32."""
+    """Output of the exported Rust code: batch prediction, steps in f64, steps in f32."""
     source = prepared / "src"
     source.mkdir()
     core = (ROOT / "crates" / "jbf-core").as_posix()

@@ -1,4 +1,4 @@
-"""Friction laws of drives: parameters recovered from data of an independent implementation."""
+"""Friction laws of drives: recovery of parameters from data of an independent implementation."""
 
 import dataclasses
 from pathlib import Path
@@ -71,7 +71,7 @@ SIZES = [LARGE, (2e-4, 2.3), SMALL]
 
 
 def presliding_runs(law: str, amplitude_m: float, fc: float, **shape: float) -> list[jbf.Run]:
-    """Two runs whose presliding displacement is a fifth of the amplitude."""
+    """Two runs with a presliding displacement of a fifth of the amplitude."""
     p = {"fc": fc, "s0": fc / (0.2 * amplitude_m), "fv": 0.02 * fc / amplitude_m, **shape}
     return runs_of(law, amplitude_m, 0.02 * fc, 1e-4 * amplitude_m, **p)
 
@@ -116,7 +116,7 @@ def test_presliding_law_is_adequate_for_data_of_that_law(law: str, shape: dict[s
 def test_diagnosis_identifies_stribeck_excess_in_generalised_maxwell_slip_data(
     amplitude_m: float, fc: float
 ) -> None:
-    """Generalised Maxwell slip is the law `maxwell_slip` with `stribeck_excess`."""
+    """Generalised Maxwell slip equals the law `maxwell_slip` with `stribeck_excess`."""
     vs = 0.6 * amplitude_m
     runs = presliding_runs("maxwell_slip", amplitude_m, fc, exponent=0.5, excess=0.4 * fc, vs=vs)
     diagnosis = jbf.diagnose(jbf.Rig(), runs, law="maxwell_slip")
@@ -128,7 +128,7 @@ def test_diagnosis_identifies_stribeck_excess_in_generalised_maxwell_slip_data(
 
 
 def test_nanometre_vibration_at_rest_causes_no_presliding_force() -> None:
-    """Afterwards the force rises monotonically during the first stroke."""
+    """After the start the force rises monotonically during the first stroke."""
     t = np.arange(0.0, 4.0, 0.005)
     v = np.where(t < 1.0, -1e-9 * np.cos(40.0 * t), 2e-4 * np.minimum(2.0 * (t - 1.0), 1.0))
     for law in ("dahl", "maxwell_slip", "elasto_plastic"):
@@ -140,13 +140,13 @@ def test_nanometre_vibration_at_rest_causes_no_presliding_force() -> None:
 def test_dahl_prediction_starts_at_the_sliding_force_if_the_run_starts_moving() -> None:
     t = np.arange(0.0, 4.0, 0.005)
     sliding = jbf.Run.from_arrays(t, np.where(t < 2.0, -2e-4, 2e-4))
-    # A Coulomb level of 10 N and 2 mN of viscous friction.
+    # Coulomb friction of 10 N and viscous friction of 2 mN.
     assert jbf.Model(jbf.Rig(), "dahl").predict(sliding)[0] == pytest.approx(-10.002)
 
 
 @pytest.mark.extended
 def test_runs_that_start_deflected_are_adequate_with_an_unsettled_start_finding() -> None:
-    """Each run starts with the presliding deflection in which the previous one ended."""
+    """The initial presliding deflection of each run is the final one of the previous run."""
     p = {"fc": 2.3, "s0": 6e4, "exponent": 0.5, "fv": 0.0}
 
     def speed(t: float) -> float:

@@ -23,7 +23,7 @@ REFERENCE = [
 
 
 def sine_run(duration_s: float = 12.0, load_n: float | None = 104.0) -> Run:
-    """A noiseless two-way sine, finely sampled."""
+    """A noise-free reversing sine with a small sampling interval."""
     t = np.arange(0.0, duration_s, 0.002)
     angle = 0.127 * (1.0 - np.cos(t)) / 0.0127
     load = None if load_n is None else np.full(len(t), load_n)
@@ -90,7 +90,7 @@ def test_prediction_warns_and_stays_finite_if_the_film_responds_too_fast() -> No
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         Model(Rig.thesis("4.2"), parameters=TABLE_4_2).predict(run)
-    # The transition speed is a thousand times the speed of the record.
+    # The transition speed is a thousand times the maximum recorded speed.
     fast = Model(Rig.thesis("4.2"), parameters={**TABLE_4_2, "U_tr": 100.0})
     with pytest.warns(jbf.FilmWarning, match="U_tr_m_s, K0 and the load"):
         assert np.all(np.isfinite(fast.predict(run)))
@@ -118,7 +118,7 @@ def simulated(
 SINE = rigsim.sine("sine", 8.0, 0.127, 1.0)
 STOPS = rigsim.stop_and_go("stops", [(0.5, 1), (5.0, -1)], 0.05, 0.5, 1.0, 9.0)
 EVENTS = ("drive_compliance", "backlash")
-"""Effects with jumps of the force, which jbf and the simulator place within one sample."""
+"""Effects with jumps of the force, at which jbf and the simulator differ within one sample."""
 
 
 @pytest.mark.parametrize("effect", [None, *rigsim.CATALOGUE])
@@ -153,7 +153,7 @@ def test_prediction_of_a_memoryless_effect_is_independent_of_earlier_samples(eff
     values = {f"{effect}.{p.name}": p.starts[0] for p in jbf.effects()[effect].parameters}
     model = Model(Rig(), "coulomb", [effect], {"F_c_n": 5.0, "F_v_n_s_m": 8.0} | values)
     path = {"position_m": angle} if effect == "stroke_dependence" else {"angle_rad": angle}
-    # The smoothed speed at the ends of a run differs by some 1e-6.
+    # The smoothed speed at the ends of a run differs by about 1e-6.
     whole = model.predict(Run.from_arrays(t, speed, **path))
     for first in (1, 57, 200):
         part = Run.from_arrays(t[first:], speed[first:], **{k: v[first:] for k, v in path.items()})

@@ -24,7 +24,7 @@ TRUTH = 0.35
 
 
 def cooler(temperature_c: np.ndarray, velocity_m_s: np.ndarray, k_n_k: float) -> np.ndarray:
-    """A seal whose friction grows with the temperature."""
+    """Friction of a seal that grows with the temperature."""
     return k_n_k * (temperature_c - 40.0) * np.tanh(velocity_m_s / 0.01)
 
 
@@ -36,7 +36,7 @@ def forget() -> Iterator[None]:
 
 
 def with_cooler(run: Run, seed: int) -> Run:
-    """The run with a temperature column and the force of the cooler added to its friction."""
+    """The run with a temperature column and with the force of the cooler added to its friction."""
     t = run.time_s
     celsius = 42.0 + 2.0 * np.sin(0.7 * t + seed) + 0.05 * t
     force = cooler(celsius, run.velocity_m_s, TRUTH)
@@ -45,12 +45,12 @@ def with_cooler(run: Run, seed: int) -> Run:
 
 
 def predicted(run: Run, effects: list[str], values: dict[str, float]) -> np.ndarray:
-    """The force (N) that a model of the thesis with the given effects predicts."""
+    """Force (N) predicted by a model of the thesis with the given effects."""
     return Model(Rig.thesis(), effects=effects, parameters=values).predict(run)
 
 
 def cooler_campaign() -> tuple[Rig, list[Run], float]:
-    """A simulated campaign with the cooler as its only effect, and its noise (N)."""
+    """A simulated campaign with the cooler as the only effect, and its noise (N)."""
     rig, runs, truth = campaign(34)
     return rig, [with_cooler(run, i) for i, run in enumerate(runs)], truth["noise_n"]
 
@@ -93,7 +93,7 @@ def test_export_of_a_model_with_a_user_effect_is_refused() -> None:
 
 
 def slopes_of(effects: list[str], values: np.ndarray, run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Return the Jacobian of the chain, and the same from central differences."""
+    """Return the Jacobian of the chain and its approximation by central differences."""
     rig = Rig.thesis()
     core = chain(rig, "journal", "journal", effects)
     motion = core_motion(rig, run, imposed(rig, run))
@@ -149,7 +149,7 @@ def test_nonlinear_sensor_responds_to_the_sum_of_built_in_and_user_forces(
     values = np.array([0.26, 0.055, 6.5e5, 33.0, value, 2.0])
     slopes, result = slopes_of([name, "cooler"], values, run)
     wrong = np.abs(slopes - result) > 1e-4 * np.max(np.abs(result), axis=0)
-    # A difference quotient is wrong across a reversal of the force.
+    # Difference quotients are invalid across a reversal of the force.
     assert np.max(np.mean(wrong, axis=0)) < 0.02
 
 
@@ -167,7 +167,7 @@ def test_sensor_lag_filters_a_user_force_and_leaves_a_constant_one_unchanged() -
     for stage in ("other", "instrument"):
         jbf.register_effect(pull, parameters=[SIZE], stage=stage)
         with_pull = predicted(run, ["sensor_lag", "pull"], tau | {"pull.a_n": 3.0})
-        # The pull is constant from the start, so that the sensor is settled.
+        # The force is constant from the start, so that the sensor is settled.
         np.testing.assert_allclose(with_pull - lagged, 3.0, atol=1e-9)
 
     def ramped(time_s: np.ndarray, a_n: float) -> np.ndarray:
@@ -184,7 +184,9 @@ def test_user_effect_without_complex_support_is_differentiated_numerically() -> 
 
     def stepped(velocity_m_s: np.ndarray, a_n: float, v_m_s: float) -> np.ndarray:
         out = np.zeros(len(velocity_m_s))
-        out += abs(a_n) * np.exp(-np.abs(velocity_m_s) / abs(v_m_s))  # fails with complex numbers
+        out += abs(a_n) * np.exp(
+            -np.abs(velocity_m_s) / abs(v_m_s)
+        )  # not defined for complex numbers
         return out
 
     speed = Parameter("v_m_s", "m/s", lower=1e-3, upper=1.0, starts=(0.02,), log=True)

@@ -39,7 +39,7 @@ def test_standardised_errors_of_eight_fits_agree_with_a_standard_normal(effect: 
     for name in errors[0]:
         z = np.array([row[name] for row in errors])
         assert np.isfinite(z).all(), name
-        # The mean of eight has a standard deviation of 0.35; their RMS is 0.4 to 1.7.
+        # The mean of eight errors has a standard deviation of 0.35, and their RMS is 0.4 to 1.7.
         assert abs(np.mean(z)) < 1.4, (name, z)
         assert np.sqrt(np.mean(z**2)) < 2.0, (name, z)
     assert np.sqrt(np.mean([z**2 for row in errors for z in row.values()])) > 0.4
@@ -50,7 +50,7 @@ def test_standardised_errors_of_eight_fits_agree_with_a_standard_normal(effect: 
 def test_at_least_39_of_48_confidence_intervals_cover_the_truth(effect: str | None) -> None:
     for name, z in recovery.study(effect, 48, 8, 1, False, 1).items():
         row = recovery.Row.of(z)
-        # Of 48 intervals of 95 %, fewer than 39 cover in 1 of 5000 studies.
+        # Fewer than 39 of 48 intervals of 95 % cover the truth in 1 of 5000 studies.
         assert row.covered * row.count >= 39, (name, row)
         assert row.none <= 5, (name, row)
 
@@ -60,5 +60,5 @@ def test_at_least_39_of_48_confidence_intervals_cover_the_truth(effect: str | No
 def test_at_least_12_of_16_bootstrap_intervals_cover_a_multimodal_effect(effect: str) -> None:
     for name, z in recovery.study(effect, 16, 8, 1, False, 1, 19).items():
         row = recovery.Row.of(z)
-        # Of 16 intervals of 95 %, fewer than 12 cover in 1 of 1e5 studies.
+        # Fewer than 12 of 16 intervals of 95 % cover the truth in 1 of 1e5 studies.
         assert row.covered * row.count >= 12, (name, row)

@@ -1,4 +1,4 @@
-"""Judgement of diagnoses in the validation suite of recorded campaigns."""
+"""Classification of diagnoses in the validation suite of recorded campaigns."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""README and documentation: code runs, commands are valid, links lead to files, names exist."""
+"""README and documentation: examples run, commands are valid, links and names exist."""
 
 import re
 import shlex
@@ -72,7 +72,7 @@ def test_example_of_the_control_page_prints_an_error_ratio_below_one_tenth(capsy
 
 
 def control_commands() -> list[str]:
-    """The short commands of docs/control.md."""
+    """The commands of docs/control.md with a short run time."""
     text = text_of("docs/control.md").replace("\n--counts", " --counts")
     commands = re.findall(r"^jbf (control (?:run|tune)[^#\n]*)", text, re.MULTILINE)
     return commands + re.findall(r"`jbf (control run model.toml --damping[^`]*)`", text)

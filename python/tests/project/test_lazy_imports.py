@@ -15,7 +15,7 @@ HEAVY = (
 
 
 def imported(code: str) -> set[str]:
-    """Modules that are loaded after running code in a separate process."""
+    """Modules that are loaded after code has run in a separate process."""
     lines = f"{code}\nimport sys; print('|', *sys.modules)"
     done = subprocess.run([sys.executable, "-c", lines], capture_output=True, text=True, check=True)
     return set(done.stdout.rpartition("|")[2].split())
@@ -66,7 +66,7 @@ def test_public_names_are_importable_and_unknown_ones_raise_attribute_error() ->
 
 
 def test_diagnosis_modules_import_neither_scipy_stats_nor_scipy_signal() -> None:
-    # These two would add half a second to every command.
+    # These two modules would add half a second to every command.
     modules = imported("import jbf.diagnosis.recipe, jbf.diagnosis.check, jbf.cli.diagnose")
     assert "scipy.optimize" in modules
     assert not modules & {"scipy.stats", "scipy.signal"}

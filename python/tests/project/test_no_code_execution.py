@@ -44,7 +44,7 @@ DECOYS = ("numpy", "scipy", "matplotlib", "jbf", "sitecustomize", "usercustomize
 
 
 class Bomb:
-    """An object that runs code when it is unpickled."""
+    """An object whose unpickling runs code."""
 
     def __reduce__(self) -> tuple[object, tuple[str]]:
         return print, ("it ran",)
@@ -52,7 +52,7 @@ class Bomb:
 
 @pytest.fixture
 def hostile(tmp_path: Path, campaign: Path, full_fit: jbf.Fit) -> Path:
-    """A campaign folder with decoy modules, a pickle, and names that look like code."""
+    """A campaign folder with decoy modules, a pickle, and names that resemble code."""
     folder = tmp_path / "$(touch owned); __import__('os')"
     folder.mkdir()
     for file in (campaign / "rig.toml", *(campaign / "runs").glob("*.csv")):

@@ -13,7 +13,7 @@ import pytest
 PACKAGE = Path(jbf.__file__).parent
 ROOT = PACKAGE.parents[1]
 MAX_LINES, MAX_MEDIAN_LINES = 400, 150
-"""Largest number of lines of a file, and the limit of the median."""
+"""Maximum number of lines of a file, and the limit of the median."""
 
 
 def modules() -> list[Path]:
@@ -35,7 +35,7 @@ def test_packages_import_only_lower_layers() -> None:
 
 
 def test_modules_import_only_the_extension_from_the_top_package() -> None:
-    """The contract of the linter ignores `from jbf import ...` because of the extension."""
+    """The import contract of the linter ignores `from jbf import ...` because of the extension."""
     for path in modules():
         if path.name != "__init__.py":
             imports = [node for node in imports_of(path) if node.module == "jbf"]

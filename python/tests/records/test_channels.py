@@ -1,4 +1,4 @@
-"""Channels with different clocks: combined in one run, compared at the instants of the force."""
+"""Channels with different clocks: combined in one run, compared at the force instants."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -77,7 +77,7 @@ def test_column_has_a_separate_clock_if_ten_samples_and_five_percent_are_missing
 def test_clock_finding_has_the_force_rate_if_force_and_motion_rates_differ() -> None:
     index = np.arange(1000)
     run = Run.from_arrays(0.01 * index, np.sin(0.01 * index), np.cos(0.01 * index), name="a")
-    # The force is compared with the fastest channel of the motion.
+    # The force is compared with the fastest motion channel.
     slow = {"velocity_m_s": index % 10 == 0, "angle_rad": index % 2 == 0}
     assert "50 Hz" in own_clock(replace(run, read=slow))[0].words
     for read, rate_hz in (

@@ -1,4 +1,4 @@
-"""Reading runs from CSV: accepted formats, and the place that each error names."""
+"""Reading runs from CSV: accepted formats, and the position that each error names."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -27,7 +27,7 @@ def write(tmp_path: Path) -> Write:
 
 
 def changed(line: int, cell: int, text: str) -> list[str]:
-    """The valid rows with one cell replaced; lines count from 1, the header included."""
+    """Valid rows with one replaced cell; lines are counted from 1, including the header."""
     rows = [row.split(",") for row in ROWS]
     rows[line - 2][cell] = text
     return [",".join(row) for row in rows]
@@ -158,7 +158,7 @@ def test_misspelt_friction_column_is_reported_even_if_not_required(write: Write)
 
 
 def cells(count: int, empty: int, value: str) -> list[str]:
-    """A column whose first cells are empty."""
+    """Cells of a column whose first cells are empty."""
     return [" "] * empty + [value] * (count - empty)
 
 

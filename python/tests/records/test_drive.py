@@ -42,7 +42,7 @@ PAGE = Path(__file__).resolve().parents[3] / "docs" / "drives.md"
 def test_force_per_ampere_or_percent_of_a_drive_includes_gear_and_screw(
     drive: Drive, column: str, motor_rad: float | None, unit: float
 ) -> None:
-    # An ideal transmission: the power of the motor is the power at the joint or slide.
+    # An ideal transmission preserves the power of the motor at the joint or slide.
     assert drive.motor_rad == (None if motor_rad is None else pytest.approx(motor_rad))
     assert drive.unit_n == pytest.approx(unit)
     columns = DriveColumns.of(drive)
@@ -167,7 +167,7 @@ def test_second_friction_column_is_reported_and_kept_unconverted() -> None:
 
 
 def test_wrapped_motor_angle_is_unwrapped_before_division_by_the_gear_ratio() -> None:
-    """An angle beyond one turn was not wrapped; an angle at the output is not changed here."""
+    """An angle beyond one turn is not wrapped; an output angle remains unchanged."""
     unwrapped = 0.5 * np.arange(30.0)
     wrapped = np.mod(unwrapped, 2.0 * pi)
     columns = {"time_s": unwrapped, "torque_n_m": unwrapped}

@@ -1,4 +1,4 @@
-"""Findings of whole runs: clean records, simulated recordings, and where findings are reported."""
+"""Findings of complete runs: clean records, simulated recordings, and where they are reported."""
 
 import json
 import re
@@ -27,7 +27,7 @@ from shared import shared
 
 TIME_S: Any = 0.02 * np.arange(3000)
 SEED = 1003
-"""Seed of a campaign of three short runs: starts and stops, a sweep, and slow and fast motion."""
+"""Seed of a campaign of three short runs: starts and stops, a sweep, slow and fast motion."""
 FOUND_WITHOUT_A_MODEL = (
     "backward_velocity", "coarse_velocity", "dropout", "filtered_velocity", "gaps", "jitter",
     "noisy_load", "position_glitch", "quantised", "saturation", "slow_force", "spikes",
@@ -40,7 +40,7 @@ def sine(omega: float = 0.3) -> Any:
 
 
 def stribeck(speed: Array) -> Any:
-    """A friction that rises fast at a reversal and falls with speed, N."""
+    """Friction that rises fast at a reversal and falls with the speed, N."""
     size = 15.0 + 10.0 * np.exp(-np.abs(speed) / 0.02) + 40.0 * np.abs(speed)
     return np.tanh(speed / 0.002) * size
 
@@ -174,7 +174,7 @@ def test_noisy_constant_load_is_not_counted_as_several_loads() -> None:
 
 @pytest.fixture(scope="module")
 def corrupt_runs() -> list[Run]:
-    """A run with two outliers of the position, and a clean run."""
+    """A run with two position outliers, and a clean run."""
     clean, other = make_runs(kinds=("sine_w0.5", "sine_w2.0"))
     columns: Any = {name: values.copy() for name, values in clean.columns().items()}
     columns["angle_rad"][[300, 700]] += 0.2
@@ -182,7 +182,7 @@ def corrupt_runs() -> list[Run]:
 
 
 def is_reported(finding: Finding, text: str) -> bool:
-    """Whether a text, wrapped or with HTML tags, has the sentence of a finding."""
+    """Return whether a text, wrapped or with HTML tags, contains the sentence of a finding."""
     return finding.words in " ".join(re.sub(r"<[^>]*>", " ", text).split())
 
 
@@ -220,7 +220,7 @@ def test_fit_reports_position_glitches_and_hardly_changes_with_them(corrupt_runs
 
 @pytest.mark.parametrize("fault", ["late speed", "degrees", "mm/s", "wrong sign"])
 def test_resampled_record_has_the_same_motion_fault_as_the_original(fault: str) -> None:
-    """Otherwise a bootstrap would use a column that the fit excluded."""
+    """A bootstrap must not use a column that the fit excluded."""
     run: Any = make_runs(kinds=("sine_w0.5",))[0]
     speed, angle = run.velocity_m_s, run.angle_rad
     speed, angle = {

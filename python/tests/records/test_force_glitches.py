@@ -17,7 +17,7 @@ FORCE_N: Any = 5.0 * np.sign(SPEED_M_S) + 20.0 * SPEED_M_S
 WAVE: Any = 10.0 * np.sin(0.7 * TIME_S)
 ALTERNATING: Any = np.cumsum(np.tile([0.0, 1.0, 0.0, -1.0], 250))
 NOISE_OF_ALTERNATING = 1.0 / 0.6745 / np.sqrt(6.0)
-"""Every second difference is one; those of unit white noise have a variance of 6."""
+"""Every second difference is one; in unit white noise second differences have a variance of 6."""
 
 
 def with_jumps(*jumps: tuple[int, float]) -> Array:
@@ -56,7 +56,7 @@ def test_force_glitch_size_is_the_largest_distance_from_the_neighbours_mean() ->
     [
         (0.1, -0.1, True),  # a reversal at sample 1000
         (0.0, 0.1, True),  # a start from rest
-        (0.0019, 0.1, True),  # slower than a fiftieth of the top speed: rest
+        (0.0019, 0.1, True),  # below a fiftieth of the top speed: a rest
         (0.0021, 0.1, False),  # a change of speed only
     ],
 )
@@ -76,7 +76,7 @@ def test_up_to_three_deviating_samples_at_a_record_end_are_outliers(count: int, 
     values, expected = white(1000, 1), np.zeros(1000, dtype=bool)
     part = slice(1000 - count, None) if last else slice(count)
     values[part] += 60.0
-    # Four samples are a change of level, not an outlier.
+    # Four samples are a step change, not an outlier.
     expected[part] = count <= 3
     np.testing.assert_array_equal(loose_ends(TIME_S[:1000], values, 1), expected)
 
@@ -107,7 +107,7 @@ def test_outlier_at_an_end_of_the_force_is_a_glitch_and_not_usable(end: int) -> 
     examined = examine(Run.from_arrays(TIME_S, noisy_speed(), force))
     assert places(~examined.usable) == [end]
     assert [f.kind for f in examined.findings] == ["glitches"]
-    # A larger outlier within the record does not hide it.
+    # A larger outlier within the record does not mask it.
     force[500] = 900.0
     examined = examine(Run.from_arrays(TIME_S, noisy_speed(), force))
     assert set(places(~examined.usable)) == {end, 500}

@@ -1,4 +1,4 @@
-"""Missing rows, repeated rows, and runs that are copies of one recording."""
+"""Missing rows, repeated rows, and copies of a recording."""
 
 from dataclasses import replace
 from typing import Any
@@ -40,7 +40,7 @@ def test_gap_is_reported_from_one_and_a_half_median_steps_on(steps: float, missi
 
 
 def test_jittered_time_stamps_are_not_gaps_but_a_missing_row_is() -> None:
-    """Jitter of 0.2 periods gives steps of 1.5 periods and more."""
+    """Jitter of 0.2 periods causes steps of 1.5 periods and more."""
     jitter = np.random.default_rng(6).normal(0.0, 0.2, 400)
     jitter[195:206] *= 0.1
     late = np.sort(0.01 * (np.arange(400) + jitter))
@@ -93,7 +93,7 @@ def test_copies_are_mapped_to_the_first_run_that_each_of_them_repeats() -> None:
 
 
 def polled(every: int, rows: int = 800) -> Run:
-    """A record in which one row in `every` repeats the one before."""
+    """A record in which every `every`-th row repeats the previous one."""
     last = np.arange(rows)
     last[every::every] -= 1
     time_s = 0.01 * np.arange(rows)
@@ -129,8 +129,8 @@ def test_row_is_repeated_only_if_all_channels_but_the_temperature_repeat() -> No
 
 
 def logged(seed: int) -> tuple[list[Run], list[Run], dict[str, Any]]:
-    """Simulated runs of a slide, and the same runs with each row repeated until a logger reads
-    new values, which happens after 2 to 8 rows."""
+    """Simulated runs of a slide, and their copies with each row repeated until a logger reads new
+    values after 2 to 8 rows."""
     records, truth = axis_campaign(seed, runs=3)
     random = np.random.default_rng(seed)
     clean, stale = [], []

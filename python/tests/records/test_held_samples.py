@@ -1,4 +1,4 @@
-"""Held samples: a constant stretch of the force, and readings of a slow channel that repeat."""
+"""Held samples: constant segments of the force, and repeated readings of a slow channel."""
 
 from math import erf
 from typing import Any
@@ -87,7 +87,7 @@ def test_saturated_command_is_usable_but_constant_samples_of_a_noisy_force_are_h
 
 
 def recovered(ticks_s: Array, read: Array) -> tuple[Any, Array]:
-    """Readings recovered from a record that repeats each until the next, and their numbers."""
+    """Readings recovered from a record that holds each until the next, and their numbers."""
     native: Any = find_repeated(FAST_S, read[np.searchsorted(ticks_s, FAST_S, side="right") - 1])
     which = np.round((native.time_s - ticks_s[0]) / (ticks_s[1] - ticks_s[0])).astype(int)
     np.testing.assert_array_equal(native.values, read[which])

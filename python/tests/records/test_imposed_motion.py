@@ -1,4 +1,4 @@
-"""Estimation of the imposed motion from records of speed and position, against known motions."""
+"""Estimation of the imposed motion from records of speed and position of known motions."""
 
 from typing import Any
 
@@ -54,7 +54,7 @@ def test_wrong_unit_or_sign_of_speed_or_path_is_corrected(path: float, speed: fl
     run = run_of(speed * SPEED_M_S, path * PATH_M)
     records: Any = believed(run, None)
     assert [finding.kind for finding in records.findings] == ["sign" if path == -1.0 else "units"]
-    # The factor 7.7 belongs to no unit: it is estimated.
+    # The factor 7.7 matches no unit and is estimated.
     rtol = 2e-3 if path == 7.7 else 1e-9
     np.testing.assert_allclose(records.path, PATH_M, rtol=rtol)
     np.testing.assert_allclose(records.speed, SPEED_M_S)
@@ -126,7 +126,7 @@ def test_motion_without_a_fault_has_no_findings_and_no_glitches_at_gaps(
 
 
 def recorded(time_s: Array, v: Array, path: Array) -> Run:
-    """A noisy tachometer, exact at rest, and an encoder with 15,000 counts a turn."""
+    """A tachometer with noise except at rest, and an encoder with 15,000 counts per turn."""
     speed = np.where(v == 0.0, 0.0, v + white(len(v), 0, 1e-4))
     return Run.from_arrays(time_s, speed, angle_rad=quantised(path / RADIUS_M, COUNT_RAD))
 
@@ -258,7 +258,7 @@ def test_standstill_with_a_small_oscillation_of_the_speed_is_a_rest() -> None:
 
 
 def two_rests() -> tuple[Array, Array, ImposedMotion]:
-    """True speed, recorded speed and imposed motion of rests that two moving samples separate."""
+    """True speed, recorded speed and imposed motion, with two moving samples between rests."""
     v = np.where((TIME_S > 2.0) & (TIME_S < 4.0), 0.0, 0.1)
     v[300:302] = 0.05
     speed = np.where(v == 0.0, 0.0, v + white(SAMPLES, 4, 1e-4))

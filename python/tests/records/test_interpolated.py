@@ -71,7 +71,7 @@ def test_polygon_with_the_true_period_and_phase_recovers_the_readings() -> None:
 
 
 def test_signal_is_smooth_if_third_differences_are_small_relative_to_second() -> None:
-    """Third over second differences of a sine are 2 sin(omega / 2)."""
+    """The ratio of third to second differences of a sine is 2 sin(omega / 2)."""
     wave, ratio = np.sin(0.7 * np.arange(4000)), 2.0 * np.sin(0.35)
     assert is_smooth(wave, 1.04 * ratio)
     assert not is_smooth(wave, 0.96 * ratio)
@@ -82,14 +82,14 @@ def test_signal_is_smooth_if_third_differences_are_small_relative_to_second() ->
     "rate_hz", [2.24, 6.8, 20.0, 31.7, 46.9, *extended([3.35, 10.0, 25.0, 41.5, 43.3])]
 )
 def test_readings_of_a_linearly_interpolated_force_are_recovered(rate_hz: float) -> None:
-    """One reading in 22 samples to nearly one a sample; a multiple of the rate would fit, too."""
+    """One reading in 22 samples to nearly one per sample; multiples of the rate would also fit."""
     ticks_s = reading_instants(rate_hz, TIME_S)
     read = reversing_force(ticks_s, 1)
     native: Any = find_native(TIME_S, np.interp(TIME_S, ticks_s, read))
     assert 1.0 / native.period_s == pytest.approx(rate_hz, rel=1e-5)
     which = np.round((native.time_s - ticks_s[0]) * rate_hz).astype(int)
     np.testing.assert_allclose(native.time_s, ticks_s[which], atol=1e-3 / rate_hz)
-    # The first and the last may lie outside the record.
+    # The first and the last reading may lie outside the record.
     np.testing.assert_allclose(native.values[1:-1], read[which][1:-1], atol=0.02)
     assert len(native.time_s) > 0.97 * rate_hz * TIME_S[-1]
 
@@ -133,7 +133,7 @@ def test_interpolated_readings_are_recovered_if_parts_of_the_force_are_held(rate
     which = np.round((at_s - ticks_s[0]) * rate_hz).astype(int)
     np.testing.assert_allclose(at_s, ticks_s[which], atol=1e-3 / rate_hz)
     assert np.quantile(np.abs(prepared.friction_n - read[which]), 0.95) < 2e-3
-    # There is no reading within a held stretch.
+    # A held segment contains no reading.
     assert not ((at_s > 12.5 + 1.0 / rate_hz) & (at_s < 13.06 - 1.0 / rate_hz)).any()
 
 
@@ -189,7 +189,7 @@ def test_force_that_was_not_interpolated_has_no_readings_of_a_known_period() -> 
 
 
 def test_short_run_takes_the_reading_rate_of_a_longer_run() -> None:
-    # Nearly every sample is a reading: 400 samples are too few to find the rate.
+    # Nearly every sample is a reading: 400 samples are insufficient for an estimate of the rate.
     period_s = 1.083 * 0.02
     ticks_s = 0.4 * 0.02 + period_s * np.arange(-1, 600)
     read = 3.0 + 5.0 * np.sin(0.9 * ticks_s) + white(601, 1, 0.4)
@@ -234,7 +234,7 @@ def test_smooth_linear_and_quantised_forces_have_no_interpolated_readings(omega:
 def test_quantised_force_of_a_smooth_drive_has_no_interpolated_samples(
     noise: float, rate_hz: float, stamps: str
 ) -> None:
-    """A converter makes equal readings and equal increments; time stamps are rounded as well."""
+    """A converter produces equal readings and equal increments; time stamps are also rounded."""
     step_n, random = 0.1 / 7.0, np.random.default_rng(int(rate_hz))
     time_s: Any = np.arange(8000) / rate_hz
     if stamps == "uneven":
@@ -258,7 +258,7 @@ def test_force_read_at_uneven_instants_and_interpolated_has_samples_on_lines(
     ticks_s = 0.02 * (np.cumsum(random.uniform(0.5, 1.5, 3000 // ratio + 200)) * ratio - 3 * ratio)
     drawn = np.interp(TIME_S, ticks_s, reversing_force(ticks_s, 3))
     native: Any = find_filled_in(TIME_S, np.round(drawn, digits))
-    # The samples on both sides of a reading remain.
+    # The samples on both sides of a reading are kept.
     assert len(native.time_s) == pytest.approx(2 * len(TIME_S) / ratio, rel=0.1)
 
 

@@ -1,4 +1,4 @@
-"""Jitter: uneven time stamps, and positions that were read at other instants than stated."""
+"""Jitter: uneven time stamps, and positions read at other instants than their stamps."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ def stamps(size_s: float, samples: int = 400) -> Any:
 
 @pytest.mark.parametrize("size_s", [1.2e-4, 1e-3])
 def test_jitter_size_follows_from_fourth_differences_of_the_time_stamps(size_s: float) -> None:
-    """Fourth differences are 16 times the size; of unit white noise their variance is 70."""
+    """Fourth differences are 16 times the size; in unit white noise their variance is 70."""
     finding: Any = uneven_stamps("a", STEP_S * np.arange(1000) + size_s * ALTERNATING)
     assert finding.size == pytest.approx(16.0 * size_s / 0.6745 / np.sqrt(70.0))
 
@@ -37,14 +37,14 @@ def test_time_stamps_with_a_smoothly_changing_or_constant_rate_have_no_jitter() 
 
 
 def test_time_stamp_jitter_is_reported_only_if_nine_of_ten_steps_are_alike() -> None:
-    # Each missing sample makes one step of twice the length.
+    # Each missing sample causes one step of twice the length.
     for every, found in ((8, False), (20, True)):
         lossy = np.delete(stamps(1e-3), np.arange(0, 400, every))
         assert (uneven_stamps("a", lossy) is not None) == found
 
 
 def shaken(size_s: float, count: float = 1e-12, samples: int = 4000, ripple: bool = False) -> Any:
-    """The finding of a slow motion whose positions were read at other instants than stated."""
+    """Finding of a slow motion whose positions were read at other instants than their stamps."""
     time_s: Any = STEP_S * np.arange(samples)
     wave = np.sin(2.0 * np.pi / 6.0 * np.arange(samples))
     off_s = size_s * (wave if ripple else white(samples, 6))
@@ -92,7 +92,7 @@ def test_position_noise_at_low_speed_is_subtracted_from_the_jitter(slow_noise: f
 
 @pytest.mark.parametrize("even", [True, False])
 def test_finding_of_time_stamp_jitter_states_which_instants_are_used(even: bool) -> None:
-    """Samples at even instants with stamps that are off, or at uneven instants with true stamps."""
+    """Even instants with wrong stamps, or uneven instants with correct stamps."""
     stamped = stamps(3e-4, 1000)
     read = STEP_S * np.arange(1000) if even else stamped
     path = quantised(path_of(read), 1e-6)

@@ -1,4 +1,4 @@
-"""The motion of a planned run: exact, with its rests."""
+"""Motion of a planned run: exact values and rests."""
 
 import numpy as np
 from jbf import Run

@@ -1,4 +1,4 @@
-"""Noise of a constant load, and thermometers that are slow, coarse or noisy."""
+"""Noise of a constant load; thermometers that are slow, coarsely quantised or noisy."""
 
 from typing import Any
 
@@ -38,7 +38,7 @@ def load_with_periodogram(power: Any) -> Any:
 
 
 def test_load_is_not_noise_if_a_spectral_line_has_a_probability_below_1e_minus_4() -> None:
-    """Fisher's test: a line with a share g of the power has probability m (1 - g)^(m - 1)."""
+    """Fisher's test: a line with a share g of the power has the probability m (1 - g)^(m - 1)."""
     m = 249
     for probability, noise in ((1.03e-4, True), (0.97e-4, False)):
         g = 1.0 - (probability / m) ** (1.0 / (m - 1))
@@ -48,7 +48,7 @@ def test_load_is_not_noise_if_a_spectral_line_has_a_probability_below_1e_minus_4
 
 @pytest.mark.parametrize("order", [1, -1])
 def test_load_is_not_noise_if_its_colour_has_a_probability_below_1e_minus_4(order: int) -> None:
-    """Bartlett's test: a cumulative periodogram that deviates by d has 2 exp(-2 m d^2)."""
+    """Bartlett's test: a deviation d of the cumulative periodogram has 2 exp(-2 m d^2)."""
     m = 300
     for probability, noise in ((1.1e-4, True), (0.9e-4, False)):
         d = np.sqrt(np.log(2.0 / probability) / (2.0 * m))

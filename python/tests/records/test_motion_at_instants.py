@@ -1,4 +1,4 @@
-"""A motion at other instants: interpolation in closed form, and runs shifted in time."""
+"""Interpolation of a motion in closed form, and runs shifted in time."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ DURATION_S = 20.0
 
 
 def motion(v: Any, a: Any, rest: str = "00000", known: str = "11111") -> ImposedMotion:
-    """A motion at five instants; its masks are written as ones and zeros."""
+    """A motion at five instants; its masks are given as ones and zeros."""
     resting, sign_known = (np.array([c == "1" for c in text]) for text in (rest, known))
     error = np.array([1.0, 2.0, 3.0, 1.0, 1.0])
     return ImposedMotion(np.array(v), np.array(a), 3.0 * INSTANTS_S, error, resting, sign_known)
@@ -28,13 +28,13 @@ def test_speed_is_interpolated_by_cubics_that_match_speed_and_acceleration() -> 
     np.testing.assert_allclose(found.velocity_m_s, cubic(at_s))
     np.testing.assert_allclose(found.angle_rad, 3.0 * at_s)
     np.testing.assert_allclose(found.acceleration_m_s2, np.interp(at_s, INSTANTS_S, a))
-    # The error is the larger one of both neighbours.
+    # The error is the larger one of the two neighbours.
     assert found.velocity_error_m_s.tolist() == [2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 1.0]
     assert (found.sign_known & ~found.resting).all()
 
 
 def test_start_and_stop_next_to_a_rest_are_extrapolated_with_acceleration() -> None:
-    """At 0.5 m/s after 1 m/s^2 it started 0.5 s before; at -2 m/s^2 it stops 0.25 s later."""
+    """A start at 1 m/s^2 is 0.5 s before 0.5 m/s; a stop at -2 m/s^2 is 0.25 s after 0.5 m/s."""
     at_s = np.array([0.5, 1.25, 1.5, 1.75, 2.0, 4.1, 4.25, 4.5])
     v, rest = [0.0, 0.0, 0.5, 0.5, 0.0], "11001"
     found = motion(v, [0.0, 0.0, 1.0, -2.0, 0.0], rest).at(INSTANTS_S, at_s)
@@ -81,7 +81,7 @@ def prepared() -> Prepared:
 def test_delayed_force_is_compared_with_the_motion_at_earlier_instants(
     prepared: Prepared, delay_s: float, drift: float
 ) -> None:
-    """A drift adds to the delay in proportion to the time from mid-run."""
+    """A drift increases the delay in proportion to the time from mid-run."""
     time_s = prepared.run.time_s
     at_s = time_s - delay_s - drift * (time_s - 0.5 * DURATION_S)
     inside = (at_s >= time_s[0]) & (at_s <= time_s[-1])

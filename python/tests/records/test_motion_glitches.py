@@ -21,7 +21,7 @@ COUNTED_M = quantised(PATH_M, COUNT_M)
 
 
 def mended_path(jumps: dict[int, float], path: Array = COUNTED_M) -> Any:
-    """The repaired position and the finding of a path with offsets at single samples."""
+    """Corrected position and finding of a path with offsets at single samples."""
     corrupt = path.copy()
     for i, size in jumps.items():
         corrupt[i] += size
@@ -39,7 +39,7 @@ def test_position_outliers_are_replaced_by_a_cubic_through_their_neighbours() ->
 
 
 def test_position_outlier_at_uneven_sampling_is_replaced_by_a_cubic() -> None:
-    """A straight line would be off by 80 m/s^2 (0.01 s)^2 / 2 = 4 mm."""
+    """A straight line would have an error of 80 m/s^2 (0.01 s)^2 / 2 = 4 mm."""
     time_s = np.cumsum(np.where(np.arange(SAMPLES) % 3 == 0, 1.5, 1.0)) * STEP_S
     path = 0.2 * np.sin(20.0 * time_s)
     corrupt = path + np.where(np.arange(SAMPLES) == 400, 0.1, 0.0)
@@ -67,7 +67,7 @@ def test_position_jump_beyond_eight_standard_deviations_is_an_outlier() -> None:
 
 
 def mended_speed(jumps: dict[int, float], *, path: Any = PATH_M, noise: float = 1e-4) -> Any:
-    """The repaired speed and the finding of a speed with offsets at single samples."""
+    """Corrected speed and finding of a speed with offsets at single samples."""
     speed = SPEED_M_S + white(SAMPLES, 1, noise)
     for i, size in jumps.items():
         speed[i] += size
@@ -82,7 +82,7 @@ def test_speed_outliers_that_the_path_contradicts_are_replaced() -> None:
 
 
 def test_speed_peak_is_not_an_outlier_if_the_path_contains_a_third_of_it() -> None:
-    """The error of the speed relative to the path must be twice that of the repaired speed."""
+    """The speed's error relative to the path must be twice that of the corrected speed."""
     for share, found in ((0.31, True), (0.36, False), (1.0, False)):
         path = PATH_M.copy()
         path[200:] += 0.5 * share * 0.1 * STEP_S
@@ -100,7 +100,7 @@ def test_speed_outliers_are_reported_up_to_0_3_percent_or_2_percent_with_a_path(
 
 @pytest.mark.parametrize(("sd", "found"), [(7.8, False), (8.2, True)])
 def test_speed_jump_beyond_eight_standard_deviations_is_an_outlier(sd: float, found: bool) -> None:
-    """All second differences of this speed are of one size."""
+    """All second differences of this speed have the same magnitude."""
     speed = 1e-3 * np.cumsum(np.tile([0.0, 1.0, 0.0, -1.0], 250))
     speed[502] += sd * 1e-3 / 0.6745 / np.sqrt(6.0)
     assert (mend_speed("a", TIME_S, speed, None)[1] is not None) == found
@@ -175,9 +175,9 @@ def test_deviating_end_of_the_speed_is_an_outlier_only_if_the_path_lacks_it() ->
 
 
 def held_path(at: dict[int, int], *, step: float = 1e-6, speed: Any = 0.1) -> tuple[Any, Any, Any]:
-    """Repaired position, finding and true path of a shaft at 0.1 m/s.
+    """Corrected position, finding and true path of a shaft at 0.1 m/s.
 
-    The recorded position repeats the sample at each key of `at` as often as its value states.
+    The recorded position repeats the sample at each key of `at` as often as its value specifies.
     """
     true: Any = 0.1 * TIME_S[:400]
     path = quantised(true, step)

@@ -1,4 +1,4 @@
-"""A friction force with the wrong sign: it drives the motion that it should brake."""
+"""A friction force with the wrong sign, which drives the motion instead of opposing it."""
 
 from typing import Any
 
@@ -17,11 +17,11 @@ SPEED_M_S: Any = 0.1 * np.sin(2.3 * TIME_S + 0.2)
 NOISE = white(SAMPLES, 1)
 LONG_S: Any = 0.02 * np.arange(3000)
 MOTIONS = (0.1, pytest.param(0.7, marks=pytest.mark.extended), 6.0)
-"""Angular frequencies of slow, usual and fast motions, 1/s."""
+"""Angular frequencies of slow, typical and fast motions, 1/s."""
 
 
 def exact_motion(speed: Array, sign_known: Any = True) -> ImposedMotion:
-    """A motion whose speed, acceleration and path are known."""
+    """A motion with known speed, acceleration and path."""
     a, path, error = np.gradient(speed, 0.01), np.cumsum(speed) * 0.01, np.zeros(len(speed))
     sign_known = np.broadcast_to(sign_known, len(speed)).copy()
     return ImposedMotion(speed, a, path, error, error > 0.0, sign_known)
@@ -69,7 +69,7 @@ def test_driving_force_is_reported_beyond_8_standard_errors_and_0_3_of_spread(
     error = float(np.std([push_of(part != k) for k in range(12)])) * np.sqrt(11.0)
     added = 0.0
     for _ in range(60):
-        # The added force increases the spread: iterate to the limit.
+        # The added force increases the spread, so that the limit is iterated.
         spread = float(np.std(force + added * design[:, 0]))
         added = -of_limit * max(8.0 * error, 0.3 * spread) - push
     assert (8.0 * error > 0.3 * spread) == (samples == 300)

@@ -1,4 +1,4 @@
-"""One record as that of a slide and of a joint: equal numbers in the units of each drive."""
+"""Records of a slide and of a joint with equal numbers in the units of each drive."""
 
 import re
 from functools import cache
@@ -20,7 +20,7 @@ SLIDE = Rig(drive=Drive("linear", "force"))
 JOINT = Rig(drive=Drive("rotary", "current", torque_constant_n_m_a=0.5, inertia_kg_m2=4.0))
 HIDDEN = ("inertia_leak", "sensor_offset")
 LINEAR_UNIT = re.compile(r"\bN\b(?! m)|(?<!N )\bm/s\b|\d m\b|\(m\)")
-"""A unit that a rotary drive does not have."""
+"""Units that a rotary drive does not have."""
 TORQUE_SCALE, ANGLE_SCALE = 1.0 / 3000.0, 30.0
 PARAMETER_SCALES = {
     "F_c": TORQUE_SCALE,
@@ -36,7 +36,7 @@ def records() -> list[AxisRun]:
 
 
 def runs_of(rig: Rig, torque: float = 1.0, angle: float = 1.0) -> list[Run]:
-    """The records as runs of a rig, forces and motions multiplied by these factors."""
+    """The records as runs of a rig, with forces and motions multiplied by these factors."""
     runs = []
     for r in records():
         place: Any = {"position_m" if rig == SLIDE else "angle_rad": angle * r.path}
@@ -80,7 +80,7 @@ def test_estimates_and_standard_errors_scale_with_torque_and_angle() -> None:
 @pytest.mark.extended
 def test_diagnosis_names_the_same_effects_if_torque_and_angle_are_scaled() -> None:
     large, small = diagnosed(JOINT), diagnosed(JOINT, TORQUE_SCALE, ANGLE_SCALE)
-    # Without reversals at rest an offset is confounded with an asymmetry.
+    # Without rests at reversals an offset is confounded with an asymmetry.
     assert (large.verdict, set(large.effects)) == ("ambiguous", set(HIDDEN))
     assert large.alternatives == {"inertia_leak": (), "sensor_offset": ("dry_asymmetry",)}
     assert (small.verdict, small.effects) == (large.verdict, large.effects)
@@ -156,5 +156,5 @@ def test_drive_parameter_has_the_units_of_its_motion_and_is_accepted_by_its_bare
         assert rotary not in ("m", "kg", "1/m", "s/m"), name
         assert "N m" not in linear, name
         assert linear not in ("1/m", "kg m^2"), name
-        # A parameter is found by the name that is displayed.
+        # The displayed name identifies the parameter.
         assert find_parameter(bare_name(name, page), known) == name

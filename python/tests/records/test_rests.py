@@ -1,4 +1,4 @@
-"""Rests of a shaft: their samples, the start and end of motion next to them, their position."""
+"""Rests of a shaft: samples, position, and the adjacent start and end of motion."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ RATE_M_S2, FINE_COUNT_M = 0.008, 7e-6
 
 
 def mask(text: str) -> Any:
-    """A mask written as ones and zeros."""
+    """A mask given as ones and zeros."""
     return np.array([character == "1" for character in text])
 
 
@@ -26,7 +26,7 @@ def test_at_least_three_consecutive_zero_speeds_are_a_rest() -> None:
 
 
 def stop(samples: int, *, hum: float = 0.0) -> tuple[Any, Any, Any]:
-    """Time, path and speed: a rest with an alternating speed between 60 samples at 0.1 m/s each."""
+    """Time, path and speed of a rest with an alternating speed between 60 samples at 0.1 m/s."""
     index = np.arange(120 + samples)
     rest = (index >= 60) & (index < 60 + samples)
     speed = np.where(rest, hum * np.where(index % 2, 1.0, -1.0), 0.1)
@@ -65,7 +65,7 @@ def test_standstill_with_a_noisy_speed_is_a_rest_if_its_counts_resolve_the_speed
 
 
 def test_slow_motion_under_a_noisy_speed_is_not_a_rest() -> None:
-    """At 4 mm/s a count of 0.1 mm lasts 25 samples of 1 ms; the noise is five times the speed."""
+    """At 4 mm/s a count of 0.1 mm lasts for 25 samples; the noise is five times the speed."""
     time_s: Any = 1e-3 * np.arange(800)
     true = np.where(time_s < 0.1, 0.4, 0.004)
     speed = true + 0.02 * np.random.default_rng(3).standard_normal(800)
@@ -102,7 +102,7 @@ def test_long_stop_between_equal_or_opposite_speeds_is_a_rest() -> None:
         path = quantised(np.cumsum(v) * 5e-3, FINE_COUNT_M)
         v[-1] = 0.2
         assert rests.still_samples(SLOW_S, path, v, FINE_COUNT_M)[140:260].all()
-    # Speeds of the size of rounding errors on both sides are not a reversal.
+    # Speeds of the order of rounding errors on both sides are not a reversal.
     v = np.where(np.abs(SLOW_S - 1.0) < 0.8, 0.0, 1e-15 * np.sign(SLOW_S - 1.0))
     v[-1] = 1.0
     assert rests.still_samples(SLOW_S, np.zeros(400), v, FINE_COUNT_M)[45:355].all()
@@ -125,7 +125,7 @@ def test_stop_of_twice_the_time_of_a_slow_reversal_is_a_rest(share: float, found
 @pytest.mark.parametrize(
     ("v", "a", "edges"),
     [
-        (0.25, 1.0, [5, 32, 33, 34]),  # started 0.25 s = 2.5 samples before
+        (0.25, 1.0, [5, 32, 33, 34]),  # started 0.25 s (2.5 samples) before
         (0.25, -1.0, [5, 6, 7, 34]),
         (-0.25, -1.0, [5, 32, 33, 34]),
         (0.0, 1.0, [5, 34]),
@@ -146,7 +146,7 @@ def test_speed_next_to_a_rest_is_backward_if_acceleration_contradicts_it() -> No
     a = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0, 0.0, 0.0])
     assert places(rests.backward_beside_rest(rest, time_s, v, a)) == [2, 3, 6]
     assert places(rests.backward_beside_rest(rest, time_s, -v, -a)) == [2, 3, 6]
-    # Only from the rest on, without interruption.
+    # The correction begins at the rest and ends at the first consistent sample.
     v[2] = 0.2
     assert places(rests.backward_beside_rest(rest, time_s, v, a)) == [6]
     assert not rests.backward_beside_rest(mask("0" * 9), time_s, v, a).any()

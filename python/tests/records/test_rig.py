@@ -1,4 +1,4 @@
-"""Rigs: sections, exact round trips through TOML, and the place that each error names."""
+"""Rigs: sections, exact TOML round trips, and the position that each error names."""
 
 from pathlib import Path
 from typing import Any

@@ -83,7 +83,7 @@ def test_quantities_of_a_drive_are_converted_to_the_units_of_their_keys(
 
 
 def test_unit_of_every_number_of_a_rig_is_known_from_its_key() -> None:
-    """A new key with a unit is converted without a further entry."""
+    """New keys with a unit need no additional entry."""
     numbers = {f.name for kind in (Bearing, Lubricant, Load, Drive) for f in fields(kind)}
     numbers -= {"motion", "friction", "gear_ratio", "count"}
     units = {key: named[1].text for key in numbers if (named := unit_of_name(key)) is not None}
@@ -101,7 +101,7 @@ def test_unit_of_every_number_of_a_rig_is_known_from_its_key() -> None:
     [
         (SCREW, "1.27 N m", "1.27 N", "drive.rated_torque_n_m", "N m"),
         (SCREW, "1.27 N m", "1.27 foo", "drive.rated_torque_n_m", "N m"),
-        # Radians of a screw do not vanish: this lead is 10 mm, not 1.6 mm.
+        # The radians of a screw lead are significant: this lead is 10 mm, not 1.6 mm.
         (SCREW, "10 mm", "10 mm/rev", "drive.pitch_m", "m"),
         (SCREW, "10 mm", "10 kg", "drive.pitch_m", "m"),
         (JOINT, "80 mNm/A", "80 mNm", "drive.torque_constant_n_m_a", "N m/A"),

@@ -14,7 +14,7 @@ STEP_S = 0.01
 TIME_S: Any = STEP_S * np.arange(400)
 ALTERNATING: Any = np.where(np.arange(1000) % 2, -1.0, 1.0)
 NOISE_OF_ALTERNATING = 8.0 / 0.6745 / np.sqrt(20.0)
-"""Its third differences are 8; those of unit white noise have a variance of 20."""
+"""Its third differences are 8; in unit white noise they have a variance of 20."""
 
 
 def test_lagrange_weights_of_four_samples_reproduce_a_cubic() -> None:
@@ -79,7 +79,7 @@ def test_noise_at_uneven_instants_does_not_depend_on_a_parabola(power: int) -> N
 
 
 def contradictions(jumps: dict[int, float], sd_path: float = 0.0, sd_speed: float = 0.0) -> Any:
-    """Contradictions of a shaft at rest whose path alternates by 1 um and jumps after samples."""
+    """Contradictions of a shaft at rest whose path alternates by 1 um and jumps afterwards."""
     path: Any = 1e-6 * (np.arange(400) % 2)
     for sample, size in jumps.items():
         path[sample + 1 :] += size

@@ -40,7 +40,7 @@ def test_run_from_arrays_copies_columns_to_read_only_float64() -> None:
 
 
 def changed(index: int, value: float, values: Any = TIME_S) -> Any:
-    """Values with one sample replaced."""
+    """Values with one replaced sample."""
     return np.where(np.arange(SAMPLES) == index, value, values)
 
 
@@ -84,7 +84,7 @@ def test_speed_is_the_central_difference_of_the_position_if_not_recorded() -> No
     assert not run.speed_recorded
     assert "velocity_m_s" not in run.columns()
     np.testing.assert_allclose(run.velocity_m_s[1:-1], 2.0 * TIME_S[1:-1])
-    # The speed that belongs to an angle is unknown until the radius is known.
+    # The speed from an angle is unknown until the radius is known.
     assert np.isnan(Run.from_arrays(TIME_S, angle_rad=TIME_S).velocity_m_s).all()
 
 
@@ -122,7 +122,7 @@ def test_numeric_frame_columns_become_run_columns_and_missing_time_is_reported()
 
 
 class ExportedByArrow:
-    """An object that has no columns but exports an Arrow stream."""
+    """An object without columns that exports an Arrow stream."""
 
     def __init__(self, table: Any) -> None:
         self._table = table
@@ -158,7 +158,7 @@ def test_selection_of_a_run_applies_to_all_columns_and_reading_masks() -> None:
         np.testing.assert_array_equal(part.columns()[name], values[2:12:3])
     assert part.read["friction_n"].tolist() == [True, False, True, False]
     assert part.read["own"].tolist() == [False, False, True, True]
-    # A channel that was read at every remaining sample has no mask.
+    # A channel with a reading at every remaining sample is without a mask.
     assert set(run.select(np.arange(SAMPLES) > 5).read) == {"friction_n"}
     assert run.select(slice(0, 0)).duration_s == 0.0
 
@@ -229,7 +229,7 @@ def test_run_is_rejected_by_a_rig_of_another_kind() -> None:
     filed = replace(RUN, path=Path("f.csv"))
     assert input_error(run_on, SLIDE, run_on(JOINT, RUN)).file == "a"
     assert input_error(run_on, Rig.thesis(), run_on(SLIDE, RUN)).file == "a"
-    # A file that was read without the rig: the meaning of its columns is unknown.
+    # The meaning of the columns of a file that was read without its rig is unknown.
     assert input_error(run_on, JOINT, filed).file == "f.csv"
     assert run_on(SLIDE, filed).quantities == SLIDE.quantities
 

@@ -1,4 +1,4 @@
-"""Reading errors of runs of one logger as further starts of one another's estimation."""
+"""Reading errors of other runs of the logger as additional starts of an estimation."""
 
 from dataclasses import replace
 

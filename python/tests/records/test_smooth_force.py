@@ -1,4 +1,4 @@
-"""Forces without noise: commands of a controller, and readings behind a filter."""
+"""Forces without noise: commands of a controller, and filtered readings."""
 
 from dataclasses import replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""The smoothed motion against known motions: coverage, stamps, delays and invariances."""
+"""Smoothed motions against known motions: coverage, time stamps, delays and invariances."""
 
 from dataclasses import replace
 from typing import Any
@@ -60,7 +60,7 @@ def test_jitter_of_the_stamps_of_an_even_clock_does_not_change_the_motion(jitter
 
 
 def test_samples_off_their_even_stamps_have_errors_that_grow_with_the_speed() -> None:
-    """The stamps are even, the instants are not: the position is off by speed times jitter."""
+    """Even stamps of uneven instants: the error of the position is speed times jitter."""
     t = np.arange(30_000) * STEP_S / FINE
     random = np.random.default_rng(9)
     instants = STEP_S * np.arange(3000) + random.normal(0.0, 2e-4, 3000)
@@ -86,7 +86,7 @@ def test_even_clock_is_recovered_from_stamps_truncated_to_milliseconds(loop_s: f
     true = 3.0 + loop_s * np.arange(2000)
     even = even_clock(np.floor(1e3 * true) / 1e3)
     assert even is not None
-    # A clock may be late as a whole: only its steps matter.
+    # A constant offset of the clock is irrelevant: only its steps matter.
     np.testing.assert_allclose(np.diff(even), loop_s, rtol=1e-4)
 
 
@@ -161,7 +161,7 @@ def test_acceleration_is_smooth_in_a_sine_and_jumps_in_a_trapezoid(
     kind: str, order: int, share: float
 ) -> None:
     position, velocity, acceleration = motion_of(kind)
-    # A fine encoder: with a coarse one both models leave the same.
+    # The encoder has a high resolution; with a coarse one both models have equal residuals.
     readings = replace(
         readings_of(position, velocity),
         position=quantised(position, 1e-3 * COUNT),

@@ -1,4 +1,4 @@
-"""A recorded speed that is delayed, is a difference of the path, or has a standstill offset."""
+"""A recorded speed with a delay, derived from the path, or with an offset at standstill."""
 
 from typing import Any
 
@@ -88,7 +88,7 @@ def test_speed_from_backward_differences_is_recognised_with_half_a_span_delay(sp
 
 
 def test_difference_over_messages_that_arrive_together_is_recognised() -> None:
-    """Stamps of arrival: a message that waits for the one before makes a huge difference."""
+    """Stamps of arrival: a message that waits for the previous one causes a huge difference."""
     stamps = TIME_S.copy()
     stamps[100:700:60] = stamps[101:701:60] - 1e-5
     speed = np.concatenate(([0.0], np.diff(COUNTED_M) / np.diff(stamps)))
@@ -114,7 +114,7 @@ def test_speed_is_not_a_path_difference_if_independent_long_short_or_at_rest() -
 
 
 def at_standstill(offset: float, noise: float = 0.0, samples: int = 100, step: float = 1e-5) -> Any:
-    """Corrected speed, speed limit of a rest and finding of a shaft that rests between two motions
+    """Corrected speed, speed limit of a rest, and finding of a shaft that rests between two motions
     at 0.1 m/s."""
     index = np.arange(400)
     speed = np.where((index >= 150) & (index < 150 + samples), 0.0, 0.1)
@@ -146,7 +146,7 @@ def test_speed_offset_is_reported_from_60_samples_and_4_counts_of_drift_on() -> 
 
 
 def test_speed_offset_is_reported_beyond_five_standard_errors_of_its_mean() -> None:
-    # The last moving sample already shows the position of the rest.
+    # The last moving sample already has the position of the rest.
     error = 1e-4 / np.sqrt(201.0 / 20.0)
     assert at_standstill(4.9 * error, 1e-4, 200, 1e-7)[2] is None
     assert at_standstill(5.1 * error, 1e-4, 200, 1e-7)[2] is not None
@@ -154,7 +154,7 @@ def test_speed_offset_is_reported_beyond_five_standard_errors_of_its_mean() -> N
 
 @pytest.mark.parametrize("count_m_s", [0.0, 4e-3])
 def test_run_with_a_speed_offset_rests_where_its_position_is_constant(count_m_s: float) -> None:
-    """A tachometer with an offset, or a quantised speed whose levels are half a step off zero."""
+    """A tachometer with an offset, or a quantised speed whose levels are shifted by half a step."""
     phase = np.mod(TIME_S, 4.0)
     true = 0.08 * np.clip(np.minimum(phase - 0.503, 3.007 - phase), 0.0, 0.5)
     offset = 0.5 * count_m_s if count_m_s else -2e-3

@@ -44,7 +44,7 @@ def test_quantisation_step_is_recovered_if_levels_are_missing_or_uneven() -> Non
 @pytest.mark.parametrize(
     ("values", "step"),
     [
-        (np.tile([0.0, 1.0, 2.0], 100), 0.0),  # three levels may be those of a law without noise
+        (np.tile([0.0, 1.0, 2.0], 100), 0.0),  # three levels may also be those of a noise-free law
         (np.tile([0.0, 1.0, 2.0, 3.0], 100), 1.0),
         (np.repeat(np.arange(20.0), 5), 1.0),  # levels are a fifth of the samples
         (np.repeat(np.arange(26.0), 4)[:100], 0.0),
@@ -57,7 +57,7 @@ def test_quantisation_step_is_recovered_if_levels_are_missing_or_uneven() -> Non
 def test_quantisation_step_requires_few_levels_at_integer_multiples_of_the_step(
     values: Array, step: float
 ) -> None:
-    """Nine of ten levels must be whole steps apart, to 3 % of at least five steps."""
+    """Nine of ten levels must be an integer number of steps apart, within 3 % of at least five."""
     assert step_of(values) == pytest.approx(step)
 
 

@@ -1,4 +1,4 @@
-"""Path and speed that differ by a factor: wrong units, wrong signs, an unknown radius."""
+"""Path and speed that differ by a factor: wrong units, wrong signs, unknown radius."""
 
 from typing import Any
 
@@ -97,7 +97,7 @@ def test_distance_per_radian_of_a_slow_quantised_motion_is_recovered(even: bool)
 
 
 def mismatch(column: str, factor: float, arm_m: float = 1.0, kind: Quantities = OF_BEARING) -> Any:
-    """The mismatch of a path whose derivative is `factor` times the speed."""
+    """Mismatch of a path whose derivative is `factor` times the speed."""
     position = Position(factor * PATH_M, column, column.rpartition("_")[2], arm_m)
     return wrong_unit("a", TIME_S, position, SPEED_M_S, kind)
 

@@ -1,4 +1,4 @@
-"""The catalogue of effects as text, in the words of a bearing and of a drive."""
+"""The catalogue of effects as text, with the terms of a bearing and of a drive."""
 
 import re
 from dataclasses import replace
@@ -18,7 +18,7 @@ SLIDE = Rig(drive=Drive("linear", "force", mass_kg=12.5))
 
 
 def effect_of(**changes: Any) -> Effect:
-    """An effect with a short page."""
+    """An effect with a short description."""
     short: Any = {"summary": "a zero that is off", "equation": "F + b", "source": "here"}
     short |= {"limits": "the cell and the journal", "needs": (), "refused": {}, "parameters": ()}
     return replace(OFFSET, **short | changes)

@@ -1,4 +1,4 @@
-"""Runs of the loop, robustness and the tables of the thesis as text, data and pictures."""
+"""Control loop runs, robustness and the tables of the thesis as text, data and plots."""
 
 import re
 from dataclasses import replace
@@ -27,7 +27,7 @@ def loop() -> Result:
 
 
 def rows_of(text: str) -> list[list[str]]:
-    """Cells of each line, parted by two or more spaces."""
+    """Cells of each line, separated by two or more spaces."""
     return [re.split(r"  +", line.strip()) for line in text.splitlines()]
 
 
@@ -92,7 +92,7 @@ def test_robustness_text_and_json_have_ratios_and_verdict_of_each_case() -> None
 def test_robustness_plot_marks_the_worst_ratio_of_each_case() -> None:
     (ax,) = plot_robustness(OUTCOMES).axes
     place = {t.get_text(): y for t, y in zip(ax.get_yticklabels(), ax.get_yticks(), strict=True)}
-    # The first case is on top.
+    # The first case is at the top.
     assert place["load doubled"] > place["motor"]
     points: dict[str, set[tuple[float, float]]] = {"o": set(), "D": set()}
     for line in ax.lines:
@@ -104,7 +104,7 @@ def test_robustness_plot_marks_the_worst_ratio_of_each_case() -> None:
 
 
 def cell(row: str, column: str, rms: float, printed: float | None) -> Cell:
-    """A cell whose peak is four times and whose true error is half of its RMS."""
+    """A cell with a peak of four times its RMS and a true error of half of its RMS."""
     peak = None if printed is None else 2.0 * printed
     return Cell(row, column, rms, 4.0 * rms, printed, peak, 0.5 * rms)
 
@@ -124,7 +124,7 @@ GAINS = dict(zip(TASKS, (1.0, 2.0, 0.5, 4.0, 8.0, 1.5, 3.0), strict=True))
 
 
 def tables_with_gains() -> Tables:
-    """The error of the better of two schemes is that of the observed one times `GAINS`."""
+    """The error of the better of two schemes is that of the observed scheme times `GAINS`."""
     cells = []
     for i, (row, gain) in enumerate(GAINS.items()):
         better, worse = (0.6, 0.9) if i % 2 else (0.9, 0.6)
@@ -157,7 +157,7 @@ def test_thesis_score_counts_ratios_within_factors_and_lists_those_beyond_two() 
 
 
 def test_fitted_friction_scale_is_printed_in_volts_at_the_load_of_the_rig() -> None:
-    """28.26 mV/N times 104 N."""
+    """The voltage is 28.26 mV/N times 104 N."""
     rows = rows_of(tables_report(tables_with_gains(), []))
     scale = next(row[1] for row in rows if row[0] == "friction scale")
     assert float(scale.split()[0]) == pytest.approx(2.939, abs=1e-3)
@@ -185,7 +185,7 @@ def test_thesis_tables_json_has_friction_ratios_gains_and_assumptions() -> None:
 def test_thesis_tables_plot_has_a_bar_per_cell_and_a_diamond_per_printed_figure() -> None:
     (ax,) = plot_tables(SMALL).axes
     heights = np.array([[bar.get_height() for bar in group] for group in ax.containers])
-    # The observed compensator is shown by its true error.
+    # The true error of the observed compensator is shown.
     assert heights.tolist() == [[0.44, 0.3], [0.2, 0.04], [0.3, 0.63], [0.025, 0.04]]
     groups = ax.containers
     centres = np.array([[b.get_x() + 0.5 * b.get_width() for b in group] for group in groups])

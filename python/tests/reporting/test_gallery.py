@@ -39,7 +39,7 @@ def diagnosis_of(offset_n: float, drift_n_s: float, found_offset_n: float) -> Di
 
 
 def test_shares_of_effects_are_projections_of_their_force_on_the_pattern() -> None:
-    """Both effects cause the pattern over time: their shares follow from its bin means."""
+    """Both effects cause the pattern over time: their shares follow from the bin means."""
     diagnosis = diagnosis_of(2.0, 0.5, 2.0)
     i = next(i for i, f in enumerate(diagnosis.failures) if f.axis == "time")
     failure, card = diagnosis.failures[i], failure_cards(diagnosis)[i]

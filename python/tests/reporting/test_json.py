@@ -1,4 +1,4 @@
-"""Results as JSON: values that JSON lacks, and the published schema."""
+"""Results as JSON: values that JSON cannot represent, and the published schema."""
 
 import json
 from collections.abc import Mapping
@@ -37,7 +37,7 @@ def test_json_text_has_null_for_nan_a_string_for_infinity_and_lists_for_arrays()
 
 
 def closed(schema: Any) -> Any:
-    """The schema without permission for keys that it does not name."""
+    """The schema without permission for additional keys."""
     if isinstance(schema, list):
         return [closed(item) for item in schema]
     if not isinstance(schema, Mapping):
@@ -49,7 +49,7 @@ def closed(schema: Any) -> Any:
 
 
 def violations(kind: str, content: Any, schema: Any = None) -> list[str]:
-    """Violations of the closed schema by a document of a kind."""
+    """Violations of the closed schema by a document of the given kind."""
     chosen = closed(SCHEMA) if schema is None else schema
     of_kind = {"$defs": chosen["$defs"], "$ref": f"#/$defs/{kind}"}
     return [

@@ -1,4 +1,4 @@
-"""Parts of texts and pages: paragraphs, pictures within a page, provenance."""
+"""Parts of texts and pages: paragraphs, embedded plots, provenance."""
 
 import hashlib
 import re
@@ -68,7 +68,7 @@ def run_of(name: str, more: float = 0.0) -> Run:
 
 
 def test_fingerprint_is_the_hash_of_names_and_samples_in_their_order() -> None:
-    """SHA-256 of each run's name, then of each column's name and little-endian numbers."""
+    """SHA-256 of the name of each run, and of name and little-endian numbers of each column."""
     run, other = run_of("a"), run_of("b")
     digest = hashlib.sha256(b"a")
     for name, values in run.columns().items():

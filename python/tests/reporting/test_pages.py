@@ -34,7 +34,7 @@ class Page(HTMLParser):
         assert self.open == []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        # A link that begins with a hash is within the page.
+        # A link that begins with a hash stays within the page.
         self.links += [v for k, v in attrs if k in LINKS and v and not v.startswith("#")]
         self.pictures += tag == "svg"
         if tag not in VOID:
@@ -79,7 +79,7 @@ def diagnosis_of(verdict: str) -> jbf.Diagnosis:
     return found
 
 
-@shared  # drawing takes a second
+@shared  # drawing is slow
 def html_of(verdict: str) -> str:
     return diagnosis_page(diagnosis_of(verdict), "jbf diagnose 'a b'")
 
@@ -95,7 +95,7 @@ EXTENDED = (pytest.param(v, marks=pytest.mark.extended) for v in ("adequate", "a
 def test_diagnosis_page_has_all_plots_and_no_external_links(verdict: str) -> None:
     text = html_of(verdict)
     found = Page(text)
-    # Ledger, residual in two pictures, friction in two, and a card for each failure.
+    # Ledger, two plots of the residual, two of the friction, and a card for each failure.
     assert found.pictures >= 5 + len(diagnosis_of(verdict).failures)
     for link in found.links:
         head, _, data = link.partition(",")

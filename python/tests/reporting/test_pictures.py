@@ -142,7 +142,7 @@ def test_friction_map_has_sample_counts_and_mean_of_the_model(comparison: Compar
     ax = jbf.plot.friction_map(comparison)
     counts = np.ma.filled(cast(Any, ax.collections[0]).get_array(), 0.0)
     total = comparison.samples.count
-    # At most 0.05 % of the samples lie outside at each of the four sides.
+    # At most 0.05 % of the samples lie beyond each of the four sides.
     assert total * (1.0 - 4 * 0.0005) - 4 <= np.nansum(counts) <= total
     for drawn in ax.lines:
         x, y = np.asarray(drawn.get_xdata()), np.asarray(drawn.get_ydata())
@@ -157,7 +157,7 @@ def test_residual_is_positive_where_record_is_above_the_model(comparison: Compar
 
 
 def test_residual_map_shows_the_mean_in_units_of_the_noise(comparison: Comparison) -> None:
-    """1 N over 0.5 N of noise: above the model in the first run, below it in the second."""
+    """1 N with noise of 0.5 N: above the model in the first run, below it in the second."""
     ax = jbf.plot.residual_map(comparison, "time", "run")
     cells = np.ma.filled(cast(Any, ax.collections[0]).get_array(), np.nan).reshape(2, -1)
     assert np.nanmean(cells, axis=1) == pytest.approx([2.0, -2.0], abs=0.01)
@@ -228,7 +228,7 @@ def test_parameter_intervals_are_standard_errors_in_percent_of_the_value() -> No
     expected = {row: 200.0 * abs(cast(float, p.stderr) / p.value) for row, p in known.items()}
     assert widths == pytest.approx(expected)
     labels = [tick.get_text() for tick in ax.get_yticklabels()]
-    # A held parameter has no interval.
+    # A held parameter is drawn without an interval.
     assert labels[:2] == ["F_c_n\n4.988 ± 0.012", "F_s_n\nheld at 6.0000"]
     assert len(ax.containers) == 3
 
@@ -251,7 +251,7 @@ def test_ledger_plot_has_fit_and_held_out_errors_and_their_reduction(diagnosis: 
     low, high = ax.get_xlim()
     assert low < 0.5
     assert high > 2.75
-    # 0.55 N is 80 % less than 2.75 N; the minus sign is the typographic one.
+    # 0.55 N is 80 % below 2.75 N; the minus sign is the typographic one.
     assert [t.get_text() for t in ax.texts] == ["2.75 N", "0.550 N  (−80 %)"]
 
 
@@ -267,7 +267,7 @@ def test_ranking_plot_has_descending_gains_and_rejects_unknown_step(diagnosis: D
 
 
 def test_power_curve_passes_through_eighty_and_ninety_five_percent(diagnosis: Diagnosis) -> None:
-    """80 % of effects of 0.1 rad are found, which are 2 % of the friction, and 95 % of 0.13 rad."""
+    """80 % of effects of 0.1 rad, or 2 % of the friction, are detected, and 95 % of 0.13 rad."""
     shares = np.array([0.02, 0.02 * 1.3])
     assert ndtr(deviate(POWER, shares)) == pytest.approx([0.80, 0.95])
     x, y = line(jbf.plot.power(diagnosis), "backlash")
@@ -279,7 +279,7 @@ def test_power_curve_passes_through_eighty_and_ninety_five_percent(diagnosis: Di
 
 
 def inside(axes: Sequence[Axes]) -> bool:
-    """Whether every text lies inside the figure once it is laid out."""
+    """Return whether every text lies inside the figure after layout."""
     figure = cast(Figure, axes[0].figure)
     FigureCanvasAgg(figure).draw()
     boxes = [cast(Any, ax.get_tightbbox()) for ax in axes]
@@ -295,7 +295,7 @@ def test_diagnosis_plot_has_four_titled_axes_within_figure(verdict: str, added: 
     assert title(axes[1]) == "Residual along direction"
     assert title(axes[2]).startswith("Bare law, run ")
     assert title(axes[3]).startswith("Final model, run " if added else "Residual, run ")
-    # Loops of the bare law and of the final model have one scale.
+    # The loops of the base law and of the final model have equal scales.
     assert (axes[3].get_ylim() == axes[2].get_ylim()) == added
     assert inside(axes)
 
@@ -318,7 +318,7 @@ def test_control_traces_draw_response_error_and_friction(loop: control.Result) -
 
 
 def test_learned_parameters_of_the_thesis_scheme_are_drawn_in_scaled_units() -> None:
-    """K0 in 1e5, gamma in tens."""
+    """K0 in units of 1e5, gamma in units of ten."""
     task = replace(control.TASKS["velocity sine"], seconds=4.0)
     r = control.run(None, "learning", task)
     ax = jbf.plot.control_trace(r, "learned")

@@ -61,7 +61,7 @@ def test_report_fits_screen_without_external_files(browser: Any, report: Path, s
     assert page.evaluate("document.documentElement.scrollWidth") <= SCREEN["width"]
     over = "[...document.querySelectorAll('.wide')].filter(e => e.scrollWidth > e.clientWidth + 1)"
     assert page.evaluate(f"{over}.length") == 0
-    # The verdict, the ledger and the plot of the bare law are visible without scrolling.
+    # The verdict, the ledger and the plot of the base law are visible without scrolling.
     for selector in ("h1", "#ledger svg", "#before svg"):
         box = page.locator(selector).first.bounding_box()
         assert box["y"] >= 0
@@ -89,6 +89,6 @@ def test_printed_report_has_dark_headings_and_fits_the_page(browser: Any, report
 
 
 def light(colour: str) -> bool:
-    """Whether a colour of the form `rgb(r, g, b)` is light."""
+    """Return whether a colour of the form `rgb(r, g, b)` is light."""
     levels = [float(x) for x in colour[colour.index("(") + 1 : -1].split(",")[:3]]
     return sum(levels) > 3 * 128

@@ -40,7 +40,7 @@ def results() -> Results:
 
 @pytest.fixture
 def frame_is_dict(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Replace `pandas` by a module whose data frame is the dictionary that it is made from."""
+    """Replace `pandas` by a module whose data frame is the dictionary passed to it."""
     pandas = ModuleType("pandas")
     pandas.DataFrame = dict  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "pandas", pandas)
@@ -104,7 +104,7 @@ def test_frame_of_a_comparison_has_a_row_for_each_sample() -> None:
     frame: Any = comparison_by_hand(1.25, (1.0, 1.5)).to_frame()
     assert frame["run"] == ["there"] * 501 + ["back"] * 501
     np.testing.assert_array_equal(frame["residual_n"], frame["friction_n"] - frame["model_n"])
-    # The record is 1 N above the model in the direction of motion.
+    # The record exceeds the model by 1 N in the direction of motion.
     np.testing.assert_allclose(frame["residual_n"], np.sign(frame["velocity_m_s"]), atol=1e-3)
     assert frame["counts"].all()
 

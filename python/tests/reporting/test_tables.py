@@ -1,4 +1,4 @@
-"""Rows of cells that texts and pages share: parameters, steps, runs, findings, power, laws."""
+"""Rows of cells for texts and pages: parameters, steps, runs, findings, power, laws."""
 
 from dataclasses import replace
 from typing import Any
@@ -45,7 +45,7 @@ def test_parameter_lines_are_aligned_and_omit_missing_parts() -> None:
 
 
 def test_correlations_above_three_tenths_are_listed_strongest_first() -> None:
-    """A held parameter has no row in the table of correlations."""
+    """The table of correlations excludes held parameters."""
     fit = fit_by_hand(["sensor_offset"])
     strongest, weakest = tables.correlation_pairs(fit)
     assert strongest == ("F_c_n", "F_v_n_s_m", -0.9)

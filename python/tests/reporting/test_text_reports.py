@@ -190,7 +190,7 @@ def test_diagnosis_report_has_all_steps_in_lines_of_up_to_100_characters() -> No
 
 
 def test_check_report_has_counts_shares_and_exact_intervals() -> None:
-    """Clopper and Pearson: ten of ten has the lower end 0.025^(1/10)."""
+    """Clopper and Pearson: the lower limit of ten of ten is 0.025^(1/10)."""
     right = [Answer((), k, "adequate", (), {}) for k in range(10)]
     wrong = [Answer(("wear_in",), k, "adequate", (), {}) for k in range(4)]
     check = Check(Model(Rig.thesis()), (*right, *wrong))
@@ -209,7 +209,7 @@ def test_level_text_has_false_alarm_rate_candidates_and_threshold() -> None:
     words = level_words(LEVEL)
     assert "2.5 %" in words
     assert "20 candidates" in words
-    # The 1 - 0.00125 quantile of chi-square with one degree of freedom.
+    # Quantile 1 - 0.00125 of chi-square with one degree of freedom.
     assert "10.4 in twice the log likelihood" in words
 
 

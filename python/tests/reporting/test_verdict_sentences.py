@@ -1,4 +1,4 @@
-"""Sentences about comparisons and verdicts: which effects and which numbers they contain."""
+"""Sentences about comparisons and verdicts: effects and numbers that they contain."""
 
 import re
 from dataclasses import replace
@@ -14,7 +14,7 @@ from jbf.reporting import words
 
 ADDED, TIED, REJECTED, NO_GAIN = TRIALS
 FALL = [2.75, 0.55, 1.1, 0.5]
-"""Held-out error of the bare law and of the final model (N), ratio of the latter to the noise, and
+"""Held-out error of the base law and of the final model (N), ratio of the latter to the noise, and
 noise (N)."""
 
 
@@ -156,7 +156,7 @@ def with_last_trials(verdict: str, *trials: Trial) -> Diagnosis:
     ],
 )
 def test_rejected_gain_is_named_if_nothing_is_added(verdict: str, trials: Any, named: bool) -> None:
-    """Only if the last step added nothing and the verdict is missing or adequate."""
+    """A gain is named if the last step added nothing and the verdict is missing or adequate."""
     sentence = words.verdict_sentence(with_last_trials(verdict, *trials))
     assert sentence.endswith("not named: inertia_leak.") == named
 

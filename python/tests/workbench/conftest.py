@@ -17,7 +17,7 @@ from workbench_parts import client_of
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a rig and three runs whose Coulomb drag the base law lacks."""
+    """A folder with a rig and three runs with a Coulomb drag that the base law lacks."""
     folder = tmp_path_factory.mktemp("bench")
     rig = files("jbf") / "data" / "demo" / "plain" / "rig.toml"
     (folder / "rig.toml").write_text(rig.read_text())
@@ -33,7 +33,7 @@ def inside_folder(campaign: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def session(campaign: Path) -> Iterator[Session]:
-    """A session on the folder without a loaded campaign."""
+    """A session for the folder without a loaded campaign."""
     session = Session(Folder.of(campaign))
     yield session
     session.close()

@@ -80,7 +80,7 @@ def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path:
         page.wait_for_selector('[data-key="fail-0"]')
         press_by_keyboard(page, "fail-0")
         page.wait_for_selector("text=/^Marked: .*RMS/")
-        # The same selection in the list of runs.
+        # Select the run in the list of runs as well.
         assert page.locator("#runs >> text=/[0-9]+ selected/").count() > 1
         assert_page_fits_the_window(page)
 
@@ -199,7 +199,7 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
         logs = [str(path) for path in sorted(tmp_path.glob("*.csv"))]
         page.set_input_files("input[type=file]", logs)
         page.wait_for_selector("text=log1: 3000 samples")
-        # Another unit changes the numbers and can be undone.
+        # A different unit changes the numbers and can be undone.
         force = page.locator("tr:has([data-key='is-Force [N]']) td.n")
         right = force.inner_text()
         for unit in ("kN", "N"):
@@ -215,7 +215,7 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
         # Move a handle by keys: a tenth of the run is trimmed.
         page.wait_for_selector("[data-drawn] [data-key=trim-0]")
         page.focus("[data-key=trim-0]")
-        # A delayed list of files does not move the focus.
+        # A delayed list of files leaves the focus unchanged.
         page.wait_for_selector("body[data-files-came]")
         assert page.evaluate("() => document.activeElement.dataset.key") == "trim-0"
         for _ in range(2):

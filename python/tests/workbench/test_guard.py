@@ -1,4 +1,4 @@
-"""Access to the workbench: foreign hosts, origins, tokens, uploads and paths are refused."""
+"""Access control of the workbench: foreign hosts, origins, tokens, uploads, paths."""
 
 import re
 from collections.abc import Iterator
@@ -126,7 +126,7 @@ OUTSIDE = ("../secret.toml", "/etc/passwd", "link/rig.toml")
 
 @pytest.fixture
 def link(campaign: Path) -> Iterator[None]:
-    """A link in the folder to a folder with a secret, and a secret next to the folder."""
+    """A link to an outside folder with a secret file, and a secret file next to the folder."""
     outside = campaign.parent / "outside"
     outside.mkdir(exist_ok=True)
     for file in (outside / "rig.toml", campaign.parent / "secret.toml"):

@@ -77,7 +77,7 @@ def test_import_to_an_outside_path_is_refused(client: TestClient, folder: Path, 
 
 
 def preview_with_form(client: TestClient, text: str, rows: Any, rig: Any = {}) -> Any:  # noqa: B006
-    """Return the answer to a preview of an import after a form has changed its map."""
+    """Return the response to a preview of an import after a form has changed its map."""
     form = {"rows": rows, "rig": rig}
     return client.post("/api/try", json={"files": ["log1.csv"], "map": text, "form": form})
 
@@ -91,7 +91,7 @@ def test_unit_and_sign_in_import_form_change_the_numbers_and_the_map(client: Tes
     force = next(c for c in run["columns"] if c["name"] == "friction_n")
     assert (force["least"], force["most"], force["unit"]) == (-0.01, 0.01, "N")
     assert 'friction_n = "-`Force [N]` [mN]"' in result["map"]
-    # Lines that the form does not change keep their text.
+    # Lines that the form leaves unchanged keep their text.
     assert 'time_s = "`Time [ms]`"' in result["map"]
     assert "# its name and its unit" in result["map"]
 

@@ -1,4 +1,4 @@
-"""The workbench listens on the loopback address only and runs no code that a page sends."""
+"""The workbench listens only on the loopback address and runs no code from a page."""
 
 import socket
 from pathlib import Path
@@ -13,7 +13,7 @@ from starlette.testclient import TestClient
 
 
 def external_addresses() -> list[str]:
-    """Addresses of this machine that other machines can reach."""
+    """Addresses of this machine that are reachable from other machines."""
     result = {str(info[4][0]) for info in socket.getaddrinfo(socket.gethostname(), None)}
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:

@@ -33,7 +33,7 @@ def fitted_once(campaign: Path) -> Session:
 
 @pytest.fixture
 def fitted(fitted_once: Session) -> Iterator[Session]:
-    """The session with both fits; runs, shown model and files are restored after the test."""
+    """The session with both fits; its state is restored after the test."""
     yield fitted_once
     fitted_once.on_bench().trim("stopgo", None)
     fitted_once.on_bench().leave_out("sine_w2.0", False)
@@ -64,7 +64,7 @@ def test_detectable_strength_falls_when_missing_effect_is_added(fitted: Session)
     assert set(first) == {t["effect"] for t in fitted.models.node(1)["trials"]}
     before, after = (found["sensor_offset"].split() for found in (first, last))
     assert before[::2] == after[::2] == ["b_n", "N"]
-    # The missing effect adds to the residual; without it, weaker effects are detectable.
+    # The missing effect increases the residual; without it, weaker effects are detectable.
     assert float(after[1]) < 0.7 * float(before[1])
 
 
@@ -190,7 +190,7 @@ def test_model_selected_during_a_comparison_is_compared_later(fitted: Session) -
     save(fitted)
     again = Session(fitted.folder)
     assert load(again)
-    assert again.jobs.job is not None  # the current model is being compared
+    assert again.jobs.job is not None  # the comparison of the current model is running
     again.show(1)
     assert again.models.current == 1
     wait_until(lambda: again.records(1) is not None)

@@ -28,7 +28,7 @@ def test_thinned_series_keeps_minimum_and_maximum(samples: int, pixels: int, see
     assert result["y"].min() == y.min()
     assert result["y"].max() == y.max()
     assert np.all(np.diff(result["time_s"]) >= 0.0)
-    # Each pair lies within its own group of samples.
+    # Each pair lies within its group of samples.
     if stretch.stride > 2:
         k = int(np.argmax(y)) // stretch.stride
         assert result["y"][2 * k : 2 * k + 2].max() == y.max()
@@ -134,7 +134,7 @@ def test_box_with_only_a_lower_speed_limit_selects_all_faster_samples(loaded: Se
     low, high = result["speeds_m_s"]
     assert low >= 0.01
     assert high == run.velocity_m_s.max()
-    # Its cells lie in its row of the map, right of zero speed.
+    # The cells lie in the row of the run, at positive speeds.
     row = [r.name for r in loaded.on_bench().runs].index("stopgo")
     assert {cell[0] for cell in result["cells"]} == {row}
     assert min(cell[1] for cell in result["cells"]) >= views.MAP_SPEEDS // 2

@@ -41,7 +41,7 @@ def white(samples: int, seed: int, size: float = 1.0) -> Array:
 
 
 def quantised(values: Any, step: float) -> Array:
-    """Values rounded to whole multiples of a step."""
+    """Values rounded to integer multiples of a step."""
     rounded: Array = step * np.round(np.asarray(values) / step)
     return rounded
 

@@ -31,7 +31,7 @@ def test_friction_level_is_that_of_the_direction_with_larger_friction(asymmetry:
 
 
 def test_friction_level_of_a_bearing_lies_just_below_its_breakaway_friction() -> None:
-    """Breakaway friction is f_m times the load; at 5 mm/s the film carries U / U_tr of it or less."""
+    """Breakaway friction is f_m times the load; the film carries up to U / U_tr of it."""
     breakaway = 0.26 * 104.0 * THESIS_BENCH.volts_per_n
     level = friction_level_v(thesis_model(elastic="nothing"))
     assert (1.0 - 0.005 / FITTED["U_tr_m_s"]) * breakaway < level <= breakaway

@@ -26,7 +26,7 @@ EFFECTS = (*(name for name in OF_BEARINGS if name not in LAST), *LAST)
 
 @shared
 def _diagnosis(name: str) -> tuple[Diagnosis, float]:
-    """The diagnosis of a bearing with one hidden effect, and the noise (N)."""
+    """Diagnosis of a bearing with one simulated effect, and the noise (N)."""
     loads = (("two_way_0.25", 0.7), ("stop_and_go", 0.7), ("two_way_2", 1.35))
     several = loads if name == "load_dependence" else ()
     rig, runs, truth = campaign(EFFECTS.index(name) + 30, (name,), loads=several)

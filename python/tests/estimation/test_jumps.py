@@ -1,7 +1,7 @@
 """Samples next to jumps whose instants are fitted or uncertain: their weights, and fits.
 
 The standard error of the instant of a reversal is that of the speed over the acceleration; the
-prediction is off by its rate of change times that.
+error of the prediction is its rate of change times that.
 """
 
 from collections.abc import Sequence

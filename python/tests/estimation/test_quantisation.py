@@ -1,6 +1,6 @@
 """Bias of the mean of quantised readings, and its removal by means of the model's force.
 
-The mean of readings in steps q of a force f with Gaussian noise s is off by
+The mean of readings in steps q of a force f with Gaussian noise s has the error
 `(q / pi) sum_k (-1)^k / k exp(-2 (k pi s / q)^2) sin(2 k pi f / q)` (Widrow 1956).
 """
 

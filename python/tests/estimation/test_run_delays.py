@@ -49,7 +49,7 @@ def test_run_delays_that_differ_are_recovered_within_half_a_grid_step(seed: int)
 
 @pytest.mark.parametrize("changed", ["outliers", "offsets"])
 def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed: str) -> None:
-    """Unclipped delays would change by milliseconds; 2 % are outliers of 100 standard deviations."""
+    """Outliers of 100 standard deviations, 2 % of the samples, would change unclipped delays."""
     problem, solution = fitted(reversing_campaign(DELAYS_S), DELAY)
     usual = lateness(problem, solution, 0, CHANCE)
     random, prepared, samples = np.random.default_rng(5), [], solution.samples
@@ -104,7 +104,7 @@ def regression(
 ) -> tuple[Array, Array]:
     """Coefficients of the delay columns, estimated with `F_c` and `F_v`, and their covariance.
 
-    Samples within `LINEAR_S` of a reversal are left out: a jump is not linear in a delay.
+    Samples within `LINEAR_S` of a reversal are excluded: a jump is not linear in a delay.
     """
     rows, right = [], []
     for i, (p, residual, column) in enumerate(

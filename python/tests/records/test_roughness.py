@@ -79,7 +79,7 @@ def test_noise_at_uneven_instants_does_not_depend_on_a_parabola(power: int) -> N
 
 
 def contradictions(jumps: dict[int, float], sd_path: float = 0.0, sd_speed: float = 0.0) -> Any:
-    """Contradictions of a shaft at rest whose path alternates by 1 um and jumps afterwards."""
+    """Contradictions of a shaft at rest: a path alternating by 1 um with jumps (sample to size)."""
     path: Any = 1e-6 * (np.arange(400) % 2)
     for sample, size in jumps.items():
         path[sample + 1 :] += size

@@ -1,10 +1,10 @@
-//! Geometry, lubricant and the dimensionless groups (3.1) to (3.4).
+//! Geometry and lubricant of a journal bearing, and the dimensionless groups (3.1) to (3.4).
 
 use crate::builder::with_fields;
 use crate::error::{check, positive, Error};
 use crate::real::Real;
 
-/// A journal bearing and its lubricant: what a rig knows before any fit.
+/// A journal bearing and its lubricant: the data of a rig that are known before any fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Bearing {
@@ -16,14 +16,14 @@ pub struct Bearing {
     pub clearance_m: f64,
     /// Rotating mass m, kg.
     pub mass_kg: f64,
-    /// Bearings on the shaft.
+    /// Number of bearings on the shaft.
     pub count: u32,
     /// Viscosity of the lubricant mu, Pa s.
     pub viscosity_pa_s: f64,
 }
 
 impl Default for Bearing {
-    /// As [`Bearing::new`].
+    /// Returns [`Bearing::new`].
     fn default() -> Self {
         Self::new()
     }
@@ -40,8 +40,9 @@ impl Bearing {
         viscosity_pa_s: 0.002,
     };
 
-    /// One bearing whose sizes are still to be told, each by its `with_...`: what is left out
-    /// is refused by name.
+    /// One bearing with all sizes unset; set each with its `with_...` method.
+    ///
+    /// [`Bearing::checked`] reports a missing size by name.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -63,11 +64,11 @@ impl Bearing {
         with_viscosity_pa_s => viscosity_pa_s: f64,
     }
 
-    /// Check every size once.
+    /// Checks every size.
     ///
     /// # Errors
-    /// Names the first size that is not positive and finite, or a clearance that is not
-    /// smaller than the radius.
+    /// Names the first size that is not positive and finite, or a clearance that is not smaller
+    /// than the radius.
     pub fn checked(self) -> Result<Self, Error> {
         positive("radius_m", self.radius_m)?;
         positive("length_m", self.length_m)?;
@@ -104,7 +105,7 @@ impl Bearing {
         T::of(group) * u_tr_m_s
     }
 
-    /// The ratio `C R / L^2` of the viscous term in (3.14).
+    /// Ratio `C R / L^2` of the viscous term in (3.14).
     pub fn viscous_ratio(&self) -> f64 {
         self.radius_m * self.clearance_m / (self.length_m * self.length_m)
     }

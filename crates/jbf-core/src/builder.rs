@@ -1,7 +1,9 @@
-//! Builders: settings begin with what they cannot do without, and `with_NAME` gives the rest. A
-//! field more is then no break for those who do not know it.
+//! Builder methods for settings.
+//!
+//! A constructor takes the required values, and `with_NAME` methods set the rest. A new field
+//! therefore does not break existing callers.
 
-/// `with_NAME` for fields of a struct: `with_output_v => output_v: f64`.
+/// Defines `with_NAME` setters for the fields of a struct: `with_output_v => output_v: f64`.
 macro_rules! with_fields {
     ($($method:ident => $field:ident: $t:ty),* $(,)?) => {
         $(

@@ -1,12 +1,12 @@
-//! The signal chain: a law with effects round it, one step at a time.
+//! Signal chain: a friction law with effects, advanced one step at a time.
 //!
 //! ```text
 //! commanded motion -> drive -> lubricant -> load -> film (the law) -> contact -> other -> instrument
 //! ```
 //!
-//! Each stage takes its input at both ends of the step and gives its output at the end,
-//! so that the chain keeps the order of its steppers. What feeds back (a warming film, the
-//! load on a soft drive) does so from the step before.
+//! Each stage takes its input at both ends of the step and returns its output at the end, so the
+//! chain keeps the order of its steppers. Feedback (a warming film, the load on a compliant drive)
+//! uses the values of the previous step.
 
 use crate::bearing::Bearing;
 use crate::effect::{EffectSet, Effects, Resistance, Rig, Signal};
@@ -16,57 +16,59 @@ use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use crate::record::Record;
 
-/// A step shorter than this, s, is one of no length: its inverse leaves single precision.
+/// Shortest time step, s; a shorter step counts as zero, because its inverse overflows single
+/// precision.
 pub const SHORTEST_STEP_S: f64 = 1e-12;
 
-/// A friction law and the effects between it and the record: any of the catalogue, or a typed
-/// [set](EffectSet).
+/// A friction law and the effects between it and the record.
+///
+/// The effects are any selection from the catalogue, or a statically typed [set](EffectSet).
 #[derive(Clone, Copy, Debug)]
 pub struct Chain<T: Real, L, E = Effects<T>> {
     /// The friction law.
     pub law: L,
     /// The effects.
     pub effects: E,
-    /// The few numbers of the rig that effects need.
+    /// Properties of the rig that effects need.
     pub rig: Rig<T>,
 }
 
-/// Everything that changes while a chain runs.
+/// State of a running chain.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
-    /// State of the law.
+    /// State of the friction law.
     pub law: S,
     effects: E::State,
     motion: Motion<T>,
     journal: JournalMotion<T>,
     film_speed_m_s: T,
-    /// What the lubricant makes of a speed.
+    /// Factor by which the lubricant scales the speed.
     film_factor: T,
-    /// What a bristle bends towards: the level of a law with a bristle of its own, the whole
-    /// friction of any other, unsigned.
+    /// Unsigned friction level that deflects a bristle: the level of a law with its own bristle,
+    /// the whole friction of any other law.
     magnitude: T,
-    /// The part of the force that jumps when a rigid journal turns round, N, unsigned.
+    /// Unsigned part of the force that jumps when a rigid journal reverses, N.
     jump_n: T,
     /// Friction force of one bearing before the instrument, N.
     pub force_n: T,
-    /// What the instrument shows, N.
+    /// Reading of the instrument, N.
     pub reading_n: T,
 }
 
 impl<T: Real, S, E: EffectSet<T>> State<T, S, E> {
-    /// The journal's own motion, which a soft drive parts from the commanded one.
+    /// Motion of the journal, which a compliant drive separates from the commanded motion.
     pub fn journal(&self) -> &JournalMotion<T> {
         &self.journal
     }
 
-    /// The commanded motion that the chain was last brought to.
+    /// Commanded motion at the last accepted sample.
     pub fn motion(&self) -> &Motion<T> {
         &self.motion
     }
 }
 
 impl<T: Real, L, E> Chain<T, L, E> {
-    /// A law with effects round it, on a bearing's shaft or on a linear axis.
+    /// Creates a chain from a law and effects, on a bearing's shaft or on a linear axis (`None`).
     pub fn round(law: L, effects: E, bearing: Option<&Bearing>) -> Self {
         let rig = Rig::on(bearing);
         Self { law, effects, rig }
@@ -74,8 +76,8 @@ impl<T: Real, L, E> Chain<T, L, E> {
 }
 
 impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
-    /// What resists whoever moves the shaft, N a bearing: friction itself, or behind a soft drive
-    /// its spring.
+    /// Force that resists the drive of the shaft, N per bearing: the friction itself, or the spring
+    /// force of a compliant drive.
     #[inline]
     pub fn felt(&self, state: &State<T, L::State, E>) -> Friction<T> {
         if let Some(smooth_n) = self
@@ -88,7 +90,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
             };
         }
         let direction = state.journal.direction;
-        // In the gap of a drive nothing of the journal is felt.
+        // Inside the backlash of a drive, no force of the journal is transmitted.
         let loose = self.effects.has_drive() && state.motion.velocity_m_s != T::ZERO;
         Friction {
             jump: if loose {
@@ -100,9 +102,11 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         }
     }
 
-    /// What a speed (m/s) adds to friction at rest beside what jumps, N on one bearing: a law's
-    /// viscous part through the lubricant and the contact, and drags. Nothing behind a soft drive,
-    /// whose spring is felt instead.
+    /// Velocity-dependent friction at `velocity_m_s` (m/s) relative to rest, without the part that
+    /// jumps, N per bearing.
+    ///
+    /// It contains the viscous part of the law through the lubricant and the contact, and drags. It
+    /// is zero behind a compliant drive, whose spring force is transmitted instead.
     #[inline]
     pub(crate) fn viscous_n(&self, state: &State<T, L::State, E>, velocity_m_s: T) -> T {
         if self.effects.has_drive() {
@@ -120,7 +124,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         let load_n = self.law.pressed_n(state.motion.load_n);
         let film_m_s = velocity_m_s * self.film_factor(state, &moving);
         let mut sliding = self.law.friction(&state.law, film_m_s);
-        // The contact may remember: asked on a copy, in a step of no length.
+        // The contact may have memory: evaluate it on a copy, in a step of zero length.
         let mut effects = state.effects;
         self.effects
             .contact(&mut effects, &moving, &moving, &mut sliding, T::ZERO);
@@ -133,7 +137,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         sliding.smooth * load_n + beside_n(&moving) - beside_n(&still)
     }
 
-    /// The state at the first sample of a run.
+    /// State at the first sample of a run.
     pub fn start(&self, motion: &Motion<T>) -> State<T, L::State, E> {
         let journal = JournalMotion::from(motion);
         let mut state = State {
@@ -161,10 +165,10 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         state
     }
 
-    /// Advance to the motion `to`, `dt_s` later, and give the reading there, N.
+    /// Advances to the motion `to`, `dt_s` later, and returns the reading there, N.
     ///
-    /// A step of no length ([`SHORTEST_STEP_S`]), and a sample that is not finite, change
-    /// nothing: one lost sample of a sensor must not stay in the state of a filter for ever.
+    /// A step of zero length ([`SHORTEST_STEP_S`]) and a sample that is not finite change nothing.
+    /// One lost sample of a sensor must not stay in the state of a filter forever.
     #[inline(always)]
     pub fn step(&self, state: &mut State<T, L::State, E>, to: &Motion<T>, dt_s: T) -> T {
         if !(dt_s >= T::of(SHORTEST_STEP_S) && dt_s.is_finite() && to.is_finite()) {
@@ -200,7 +204,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         state.reading_n
     }
 
-    /// The longest step of the law under the lightest and the heaviest load of a run, s.
+    /// Longest stable step of the law under the lightest and the heaviest load of a run, s.
     pub(crate) fn longest_film_step_s(&self, record: &Record<'_>, top_m_s: f64) -> f64 {
         let Some(first) = record.motion(0) else {
             return self.law.longest_step_s(top_m_s);
@@ -224,8 +228,9 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         longest
     }
 
-    /// What the lubricant makes of a speed and of the film's clock, as factors, at the coldest and
-    /// the warmest of a run.
+    /// Factors of the lubricant at the coldest and the warmest sample of a run.
+    ///
+    /// Each pair holds the factor on the speed and the factor on the rate of the film.
     fn oils(&self, states: &E::State, record: &Record<'_>, first: &Motion<T>) -> [[f64; 2]; 2] {
         let Some(all) = record.temperature_c else {
             return [[1.0; 2]; 2];
@@ -253,7 +258,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         })
     }
 
-    /// The law as it is under this load, where an effect makes it another.
+    /// The law scaled for this load, where an effect scales it.
     #[inline(always)]
     fn scaled(&self, states: &mut E::State, load_n: T) -> Option<L> {
         let mut scales = None;
@@ -262,7 +267,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         self.law.scaled(&scales?)
     }
 
-    /// What the lubricant makes of the speed that the film feels, as a factor.
+    /// Factor by which the lubricant scales the speed that the film sees.
     #[inline(always)]
     fn film_factor(&self, state: &State<T, L::State, E>, journal: &JournalMotion<T>) -> T {
         let mut factor = T::ONE;
@@ -270,7 +275,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         factor
     }
 
-    /// From the film's state to the force: contact, other friction, and what feeds back.
+    /// Computes the force from the film's state: contact, other friction, and feedback.
     #[inline(always)]
     fn act(
         &self,
@@ -294,7 +299,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
             .other(&state.effects, &journal, &mut beside_n, &mut transmitted_n);
         self.effects
             .transmission(&state.effects, transmitted_n, &mut sliding);
-        // What bends a bristle, and what acts beside it.
+        // Friction that deflects a bristle, and friction that acts in parallel with it.
         let (magnitude, beside) = if L::BENDS_WHOLE {
             (sliding.jump + sliding.smooth.abs(), T::ZERO)
         } else {
@@ -314,7 +319,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
         };
         let bent = bent.map(|bristle| bristle + beside);
         let coefficient = bent.unwrap_or_else(|| sliding.along(journal.direction));
-        // A bristle turns the contact's jump into a slope.
+        // A bristle turns the jump of the contact into a slope.
         let contact_n = if bent.is_some() {
             T::ZERO
         } else {
@@ -336,16 +341,18 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Chain<T, L, E> {
             };
             self.effects.resist(&mut state.effects, &resistance, dt_s);
         }
-        // Only the film's own friction warms the film; a drag elsewhere does not.
+        // Only the film's own friction heats the film; a drag elsewhere does not.
         let power_w = (coefficient * load_n * speed).abs();
         self.effects.warm(&mut state.effects, power_w, dt_s);
         state.journal = journal;
     }
 }
 
-/// How the direction of motion inside a step (the sign of its mean speed) differs from the
-/// `direction` at one of its ends: a rigid journal that starts, stops or turns there jumps.
-/// A journal held by a soft drive goes through every direction in between and never jumps.
+/// Difference between the direction of motion inside a step and the `direction` at one end.
+///
+/// The direction inside a step is the sign of its mean speed. A rigid journal that starts, stops or
+/// reverses at that end jumps. A journal held by a compliant drive passes through every direction
+/// in between and never jumps.
 #[inline(always)]
 fn turn<T: Real>(direction: T, mean_speed_m_s: T) -> T {
     let inside = mean_speed_m_s.sign();

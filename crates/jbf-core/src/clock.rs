@@ -1,11 +1,11 @@
-//! Which seconds the dimensionless equations run on.
+//! Time scale of the dimensionless equations.
 
-/// The clock that turns seconds into the dimensionless time of equations (3.7) to (3.19).
+/// Clock that converts seconds into the dimensionless time of equations (3.7) to (3.19).
 ///
-/// (3.4) fixes it, `tbar = t U_tr / R`: that is [`Clock::Journal`], the physics and the
-/// default. Cohn's control programs step `TS * eps'` with `TS` in seconds, as if
-/// `tbar = t / (1 s)`: that is [`Clock::Thesis`], which Tables 4.2 to 4.5 and chapter 6
-/// were tuned with. Hysteresis loops differ visibly between the two.
+/// Equation (3.4) fixes it as `tbar = t U_tr / R`. That is [`Clock::Journal`], the physical clock
+/// and the default. Cohn's control programs step `TS * eps'` with `TS` in seconds, as if `tbar = t
+/// / (1 s)`. That is [`Clock::Thesis`], which Tables 4.2 to 4.5 and chapter 6 were tuned with.
+/// Hysteresis loops differ visibly between the two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
     /// `tbar = t U_tr / R`.
@@ -16,7 +16,7 @@ pub enum Clock {
 }
 
 impl Clock {
-    /// The name used in files and on the command line.
+    /// Name used in files and on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Clock::Journal => "journal",
@@ -24,7 +24,7 @@ impl Clock {
         }
     }
 
-    /// The clock of that name.
+    /// Returns the clock with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
             "journal" => Some(Clock::Journal),

@@ -1,13 +1,12 @@
-//! The control laws before compensation, and where their gains come from: the thesis's two,
-//! section 6.3.
+//! Control laws before compensation, and their gains: the two of the thesis, section 6.3.
 //!
 //! ```text
 //! position   u = -k1 (x - x_ref) - k2 v_hat         s^2 + (a + b k2) s + b k1
 //! velocity   u = -g (v_hat - v_ref) + C v_ref       g b = 457 1/s, C = a/b
 //! ```
 //!
-//! On the thesis's drive ([`Drive::THESIS`]) the gains are the thesis's own, to the digit; on any
-//! other those that give the compensated plant the same poles.
+//! For the thesis's drive ([`Drive::THESIS`]) the gains are exactly those printed in the thesis.
+//! For any other drive they give the compensated plant the same poles.
 
 use crate::plant::Drive;
 use crate::real::Real;
@@ -17,14 +16,14 @@ use crate::reference::Target;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BaseLaw<T> {
-    /// Angle follows the reference.
+    /// Position control: the angle follows the reference.
     Position {
         /// `k1`, V/rad.
         angle_v_rad: T,
         /// `k2`, V s/rad.
         speed_v_s_rad: T,
     },
-    /// Speed follows the reference.
+    /// Velocity control: the speed follows the reference.
     Velocity {
         /// `g`, V s/rad.
         speed_v_s_rad: T,
@@ -33,23 +32,24 @@ pub enum BaseLaw<T> {
     },
 }
 
-/// The thesis's position loop without friction, `s^2 + 20 s + 200`: poles at -10 +- 10i.
+/// Characteristic polynomial `s^2 + 20 s + 200` of the thesis's position loop without friction:
+/// poles at -10 +- 10i.
 const THESIS_POLYNOMIAL: [f64; 2] = [200.0, 20.0];
 
 impl BaseLaw<f64> {
-    /// The thesis's position control: `k1`, `k2` as Appendix E has them.
+    /// Position control of the thesis, with `k1` and `k2` from Appendix E.
     pub const THESIS_POSITION: Self = Self::Position {
         angle_v_rad: 0.43764,
         speed_v_s_rad: -0.25164,
     };
 
-    /// The thesis's velocity control: `g`, `C` as Appendix D has them.
+    /// Velocity control of the thesis, with `g` and `C` from Appendix D.
     pub const THESIS_VELOCITY: Self = Self::Velocity {
         speed_v_s_rad: 1.0,
         forward_v_s_rad: 0.295,
     };
 
-    /// The thesis's position control on a drive: poles at -10 +- 10i.
+    /// Position control of the thesis for a drive: poles at -10 +- 10i.
     #[must_use]
     pub fn position(drive: &Drive) -> Self {
         if drive.turns_like(&Drive::THESIS) {
@@ -58,8 +58,8 @@ impl BaseLaw<f64> {
         Self::with_polynomial(THESIS_POLYNOMIAL, drive)
     }
 
-    /// The thesis's velocity control on a drive: as stiff, and the speed that is wanted fed
-    /// forward.
+    /// Velocity control of the thesis for a drive: the same stiffness, with feedforward of the
+    /// wanted speed.
     #[must_use]
     pub fn velocity(drive: &Drive) -> Self {
         if drive.turns_like(&Drive::THESIS) {
@@ -78,7 +78,7 @@ impl BaseLaw<f64> {
         Self::with_polynomial([w * w, w * core::f64::consts::SQRT_2], drive)
     }
 
-    /// Position control that makes `s^2 + c1 s + c0` of the plant, from `[c0, c1]`.
+    /// Position control that gives the plant the polynomial `s^2 + c1 s + c0`, from `[c0, c1]`.
     fn with_polynomial([c0, c1]: [f64; 2], drive: &Drive) -> Self {
         Self::Position {
             angle_v_rad: c0 / drive.input_rad_s2_v,
@@ -86,7 +86,7 @@ impl BaseLaw<f64> {
         }
     }
 
-    /// Both gains in the order of the law above: `k1` and `k2`, or `g` and `C`.
+    /// Both gains, in the order of the law above: `k1` and `k2`, or `g` and `C`.
     #[must_use]
     pub fn gains(&self) -> [f64; 2] {
         match *self {
@@ -101,8 +101,9 @@ impl BaseLaw<f64> {
         }
     }
 
-    /// What the law feeds forward of the wanted speed, V s/rad. The position law knows the speed
-    /// that it has, not the one that it should have: it feeds `-k2` of it.
+    /// Feedforward gain of the law on the wanted speed, V s/rad.
+    ///
+    /// The position law uses the measured speed, not the wanted speed; its gain on it is `-k2`.
     #[must_use]
     pub fn forward_v_s_rad(&self) -> f64 {
         match *self {
@@ -113,7 +114,7 @@ impl BaseLaw<f64> {
         }
     }
 
-    /// The same law in another kind of number.
+    /// Converts to another number type.
     #[must_use]
     pub fn lift<T: Real>(&self) -> BaseLaw<T> {
         let [first, second] = self.gains().map(T::of);
@@ -131,19 +132,19 @@ impl BaseLaw<f64> {
 }
 
 impl<T: Real> BaseLaw<T> {
-    /// [`BaseLaw::THESIS_POSITION`] in this kind of number.
+    /// [`BaseLaw::THESIS_POSITION`] in this number type.
     #[must_use]
     pub fn thesis_position() -> Self {
         BaseLaw::THESIS_POSITION.lift()
     }
 
-    /// [`BaseLaw::THESIS_VELOCITY`] in this kind of number.
+    /// [`BaseLaw::THESIS_VELOCITY`] in this number type.
     #[must_use]
     pub fn thesis_velocity() -> Self {
         BaseLaw::THESIS_VELOCITY.lift()
     }
 
-    /// What is controlled minus what is wanted.
+    /// Controlled quantity minus its reference.
     #[inline]
     pub fn error(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
         match self {
@@ -152,7 +153,7 @@ impl<T: Real> BaseLaw<T> {
         }
     }
 
-    /// The control voltage, V.
+    /// Control voltage, V.
     #[inline]
     pub fn output_v(&self, target: &Target<T>, angle_rad: T, velocity_rad_s: T) -> T {
         match *self {
@@ -167,7 +168,7 @@ impl<T: Real> BaseLaw<T> {
         }
     }
 
-    /// Speed and acceleration that the target asks for, rad/s and rad/s^2.
+    /// Reference speed and acceleration of the target, rad/s and rad/s^2.
     #[inline]
     pub fn wanted(&self, target: &Target<T>) -> [T; 2] {
         match self {
@@ -225,7 +226,7 @@ mod tests {
         let volts = Drive::THESIS.with_volts_per_n(0.5).with_limit_v(24.0);
         assert_eq!(BaseLaw::position(&volts), BaseLaw::THESIS_POSITION);
         assert_eq!(BaseLaw::velocity(&volts), BaseLaw::THESIS_VELOCITY);
-        // And the rule for other drives gives the same, as far as the thesis prints it.
+        // The rule for other drives gives the same gains, to the digits that the thesis prints.
         let near = Drive::new(135.0 + 1e-9, 457.0);
         let [g, c] = BaseLaw::velocity(&near).gains();
         assert!((g - 1.0).abs() < 1e-9 && (c - 0.295).abs() < 5e-4);
@@ -238,7 +239,7 @@ mod tests {
         let drive = Drive::new(10.0, 100.0);
         let [g, c] = BaseLaw::velocity(&drive).gains();
         assert!((g * drive.input_rad_s2_v - 457.0).abs() < 1e-12);
-        // At the wanted speed without friction nothing is left to correct.
+        // At the wanted speed without friction the correction is zero.
         assert!((c * drive.input_rad_s2_v - drive.damping_1_s).abs() < 1e-12);
         assert_eq!(BaseLaw::velocity(&drive).forward_v_s_rad(), c);
     }

@@ -1,18 +1,23 @@
-//! A pure delay of a signal: a fixed number of points spread over the delay, straight lines
-//! between them, so that the delayed value has a derivative with respect to the delay.
+//! Pure time delay of a signal.
+//!
+//! A fixed number of points is spread over the delay and interpolated linearly, so that the delayed
+//! value has a derivative with respect to the delay.
 
 use crate::real::Real;
 
-/// Points on the line. With steps longer than `delay / (POINTS - 4)` every step is a point;
-/// shorter ones share a point, so that the line always reaches back over the whole delay.
+/// Number of points in the delay line.
+///
+/// With steps longer than `delay / (POINTS - 4)` every step is a point. Shorter steps share a
+/// point, so that the line always spans the whole delay.
 pub(crate) const POINTS: usize = 64;
 
-/// The line. It fits any step and any delay; what lies before the first point is taken to
-/// have been constant.
+/// Delay line for any step and any delay.
+///
+/// The signal before the first point is taken as constant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DelayLine<T> {
     value: [T; POINTS],
-    /// Time from the point before, s.
+    /// Time since the previous point, s.
     gap_s: [T; POINTS],
     newest: usize,
     filled: usize,
@@ -32,13 +37,15 @@ impl<T: Real> DelayLine<T> {
         self.filled == 0
     }
 
-    /// Add the signal `dt_s` after the last point, of a line that is to reach `delay_s` back.
+    /// Appends the signal `dt_s` after the last point; the line is to span `delay_s`.
     #[inline(always)]
     pub(crate) fn push(&mut self, value: T, dt_s: T, delay_s: T) {
         let spacing = delay_s / T::of((POINTS - 4) as f64);
-        // The remainder is no other number; it shows the compiler that no index is out of bounds.
+        // The remainder does not change the index; it shows the compiler that no index is out of
+        // bounds.
         let newest = self.newest % POINTS;
-        // The newest point stands for now; it moves on until it is far enough from the last.
+        // The newest point holds the present value; it moves on until it is far enough from the
+        // previous point.
         if self.filled > 1 && self.gap_s[newest] < spacing {
             self.value[newest] = value;
             self.gap_s[newest] += dt_s;
@@ -55,7 +62,7 @@ impl<T: Real> DelayLine<T> {
         self.gap_s[next] = dt_s;
     }
 
-    /// The signal `delay_s` ago; zero of an empty line.
+    /// Signal `delay_s` ago; zero for an empty line.
     #[inline(always)]
     pub(crate) fn back(&self, delay_s: T) -> T {
         let mut age = T::ZERO;
@@ -79,7 +86,7 @@ mod tests {
     use super::*;
     use crate::Dual;
 
-    /// A ramp comes out late by the delay, exactly, for steps short and long against it.
+    /// A ramp is delayed exactly, for steps short and long relative to the delay.
     #[test]
     fn a_ramp_is_late_by_the_delay() {
         let delay = 0.0173_f64;
@@ -91,7 +98,7 @@ mod tests {
                 let t = f64::from(i) * dt;
                 line.push(3.0 * t, dt, delay);
                 let late = 3.0 * (t - delay).max(0.0);
-                // Points that share a place round the corner at the start.
+                // Points that share a slot round the corner at the start.
                 let exact = t > 2.0 * delay || dt > delay / 30.0;
                 let error = (line.back(delay) - late).abs();
                 assert!(

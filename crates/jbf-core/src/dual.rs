@@ -1,8 +1,8 @@
 //! Dual numbers: a value and its derivatives with respect to `N` parameters at once.
 //!
-//! Forward mode suits this work: few parameters, long records. The `N` derivatives are
-//! one array, which the compiler turns into vector lanes, so that the cost of a parameter
-//! falls as more are carried.
+//! Forward mode suits this application: few parameters, long records. The `N` derivatives are one
+//! array, which the compiler maps to vector lanes, so the cost per parameter falls as their number
+//! rises.
 
 use crate::real::Real;
 use core::cmp::Ordering;
@@ -18,7 +18,7 @@ pub struct Dual<const N: usize> {
 }
 
 impl<const N: usize> Dual<N> {
-    /// The parameter number `index` itself: its own derivative is one.
+    /// Returns parameter number `index`: its derivative with respect to itself is one.
     ///
     /// An `index` of `N` or more gives a constant.
     pub fn parameter(value: f64, index: usize) -> Self {
@@ -29,7 +29,7 @@ impl<const N: usize> Dual<N> {
         Self { value, slope }
     }
 
-    /// `value` with the derivatives of `self` times `factor` (the chain rule).
+    /// Returns `value` with the derivatives of `self` times `factor` (the chain rule).
     #[inline(always)]
     fn chain(self, value: f64, factor: f64) -> Self {
         let mut slope = self.slope;
@@ -39,7 +39,7 @@ impl<const N: usize> Dual<N> {
         Self { value, slope }
     }
 
-    /// `a * self' + b * other'` beside `value`.
+    /// Returns `value` with the derivatives `a * self' + b * other'`.
     #[inline(always)]
     fn combine(self, other: Self, value: f64, a: f64, b: f64) -> Self {
         let mut slope = self.slope;
@@ -106,8 +106,8 @@ impl<const N: usize> Div for Dual<N> {
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         let inverse = 1.0 / other.value;
-        // The quotient itself is divided, not multiplied by the inverse, so that the value
-        // has the same bits as a plain f64 evaluation.
+        // The quotient itself is divided, not multiplied by the inverse, so that the value has the
+        // same bits as a plain f64 evaluation.
         let value = self.value / other.value;
         self.combine(other, value, inverse, -value * inverse)
     }
@@ -173,7 +173,7 @@ impl<const N: usize> Real for Dual<N> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = crate::root::sqrt(self.value);
-        // A square root at zero has no finite slope; zero keeps an optimiser alive there.
+        // A square root at zero has no finite slope; a slope of zero lets an optimiser continue.
         let factor = if root > 0.0 { 0.5 / root } else { 0.0 };
         self.chain(root, factor)
     }
@@ -241,7 +241,7 @@ impl<const N: usize> Real for Dual<N> {
 mod tests {
     use super::*;
 
-    /// Every operation against a central difference of the plain f64 evaluation.
+    /// Compares every operation with a central difference of the plain f64 evaluation.
     #[test]
     fn slopes_match_differences() {
         fn f<T: Real>(x: T, y: T) -> T {

@@ -1,10 +1,11 @@
-//! Friction that moves: the dynamic friction of a hydrodynamic journal bearing
-//! (Harnoy & Friedland 1994, as reduced by Cohn, NJIT 1998) and the effects that a
-//! measured signal adds to it, one fixed step at a time.
+//! Fixed-step simulation of dynamic friction and of the effects that a recorded signal adds to it.
 //!
-//! `no_std`, no allocation, no panic in a step, the same bits on every target.
-//! Configuration ([`Chain`], [`law::journal::Journal`]) is apart from state, so one set of
-//! coefficients serves many runs.
+//! The base model is the dynamic friction of a hydrodynamic journal bearing (Harnoy & Friedland
+//! 1994, as reduced by Cohn, NJIT 1998).
+//!
+//! The crate is `no_std` and does not allocate, a step does not panic, and results are identical
+//! bit for bit on every target. Configuration ([`Chain`], [`law::journal::Journal`]) is separate
+//! from state, so one set of coefficients serves many runs.
 //!
 //! ```
 //! use jbf_core::{Bearing, Clock, law::{Law, journal::{Journal, Parameters}}};
@@ -14,7 +15,8 @@
 //! # Ok::<(), jbf_core::Error>(())
 //! ```
 #![no_std]
-// One call, in `root.rs`, on Cortex-M with a floating-point unit; forbidden everywhere else.
+// The only `unsafe` call is in `root.rs`, on Cortex-M with a floating-point unit. Unsafe code is
+// forbidden on all other targets.
 #![cfg_attr(
     not(all(target_arch = "arm", target_abi = "eabihf", target_os = "none")),
     forbid(unsafe_code)
@@ -25,12 +27,12 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
-/// The README's example is a test.
+/// Runs the example of the README as a test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 mod readme {}
 
-// What the physics stands on: numbers, names, errors.
+// Foundations: numbers, names and errors.
 pub mod bearing;
 mod builder;
 pub mod clock;
@@ -48,7 +50,7 @@ pub mod relaxation;
 mod root;
 pub mod transition;
 
-// Laws, the effects round them, and how a chain of both runs.
+// Friction laws, effects, and the chain that runs them.
 pub mod chain;
 pub mod effect;
 pub mod law;
@@ -56,11 +58,11 @@ pub mod record;
 pub mod run;
 pub mod spec;
 
-// Integrators of fixed step, and trajectories to a tolerance.
+// Fixed-step integrators, and trajectories computed to a tolerance.
 pub mod driver;
 pub mod stepper;
 
-// The loop: counter in, voltage out, and the bench's shaft to try it on.
+// Control loop: counter in, voltage out, and a simulated shaft for tests.
 pub mod compensator;
 pub mod control_law;
 pub mod controller;

@@ -1,5 +1,7 @@
-//! A friction model as a compensator carries it: moved by the shaft's speed, it gives the
-//! friction in volts, in the part that takes the sign of the motion and the rest.
+//! Friction models for use inside a compensator.
+//!
+//! The speed of the shaft drives the model. The model returns the friction in volts, separated into
+//! the part with the sign of the motion and the rest.
 
 use crate::chain::{self, Chain};
 use crate::effect::{EffectSet, Effects};
@@ -8,23 +10,24 @@ use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// A friction model in a loop.
+/// A friction model in a control loop.
 pub trait Carried<T: Real> {
-    /// What the model remembers.
+    /// State of the model.
     type State: Copy;
 
-    /// The model on a shaft that has stood still.
+    /// Returns the state of the model on a shaft that has been at rest.
     fn start(&self) -> Self::State;
 
-    /// Move on by `dt_s` to a speed (rad/s) and an angle (rad).
+    /// Advances the state by `dt_s` to a speed (rad/s) and an angle (rad).
     fn advance(&self, state: &mut Self::State, velocity_rad_s: T, angle_rad: T, dt_s: T);
 
-    /// Friction at the speed that the model was last moved to, V.
+    /// Friction at the speed of the last [`Carried::advance`], V.
     fn friction(&self, state: &Self::State) -> Friction<T>;
 
-    /// How [`Friction::smooth`] would grow from rest to a speed (rad/s, not zero), per speed, V s/rad
-    /// and not below zero: its viscous part alone, no weight, no spring. A model of steep viscous
-    /// friction that does not tell makes an observer ring.
+    /// Slope of [`Friction::smooth`] between rest and a speed (rad/s, not zero), V s/rad.
+    ///
+    /// It is the viscous part alone, without weight or spring, and is not negative. The default is
+    /// zero. If a model with steep viscous friction returns zero, an observer rings.
     #[inline]
     fn slope(&self, state: &Self::State, velocity_rad_s: T) -> T {
         let _ = (state, velocity_rad_s);
@@ -32,24 +35,25 @@ pub trait Carried<T: Real> {
     }
 }
 
-/// A law alone, without effects: the smallest and fastest. A law with a bristle is taken as if
-/// it slid at once.
+/// A friction law without effects: the smallest and fastest model.
+///
+/// A law with a bristle is treated as if it slid immediately.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Bare<T, L> {
-    /// The law.
+    /// The friction law.
     pub law: L,
     /// Journal radius, m.
     pub radius_m: T,
-    /// What one newton of friction on one bearing is in volts.
+    /// Voltage that corresponds to one newton of friction on one bearing, V/N.
     pub volts_per_n: T,
     /// Load on one bearing, N.
     pub load_n: T,
 }
 
 impl<T: Real, L> Bare<T, L> {
-    /// A law on a journal of a radius (m), with the volts that a newton of its friction on one
-    /// bearing makes, under a load (N).
+    /// Creates a model from a law, the journal radius (m), the voltage per newton of friction on
+    /// one bearing (V/N) and the load (N).
     #[must_use]
     pub fn new(law: L, radius_m: f64, volts_per_n: f64, load_n: f64) -> Self {
         Self {
@@ -61,7 +65,7 @@ impl<T: Real, L> Bare<T, L> {
     }
 }
 
-/// A law's state with the speed it was last given.
+/// State of a law, and the last speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<T, S> {
     law: S,
@@ -105,21 +109,21 @@ impl<T: Real, L: Law<T>> Carried<T> for Bare<T, L> {
     }
 }
 
-/// A whole chain: a law with the effects of a fitted model.
+/// A complete chain: a law with the effects of a fitted model.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Whole<T: Real, L, E = Effects<T>> {
     /// The chain.
     pub chain: Chain<T, L, E>,
-    /// What one newton of friction on one bearing is in volts.
+    /// Voltage that corresponds to one newton of friction on one bearing, V/N.
     pub volts_per_n: T,
     /// Load on one bearing, N.
     pub load_n: T,
 }
 
 impl<T: Real, L, E> Whole<T, L, E> {
-    /// A chain, with the volts that a newton of its friction on one bearing makes, under a load
-    /// (N).
+    /// Creates a model from a chain, the voltage per newton of friction on one bearing (V/N) and
+    /// the load (N).
     #[must_use]
     pub fn new(chain: Chain<T, L, E>, volts_per_n: f64, load_n: f64) -> Self {
         Self {

@@ -7,7 +7,7 @@ use crate::observer::coulomb::{CoulombObserver, State};
 use crate::plant::Drive;
 use crate::real::Real;
 
-/// `F_hat = a_hat sgn(v_hat)`.
+/// Compensator `F_hat = a_hat sgn(v_hat)`.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Coulomb<T> {
@@ -17,12 +17,12 @@ pub struct Coulomb<T> {
     pub damping_1_s: T,
     /// The plant's input gain `b`, rad/s^2/V.
     pub input_rad_s2_v: T,
-    /// Level at the start, V: zero, or what an earlier run learned.
+    /// Initial level, V: zero, or the level that an earlier run learned.
     pub start_v: T,
 }
 
 impl<T: Real> Coulomb<T> {
-    /// An observer of the friction of a drive.
+    /// Creates a compensator from an observer and the drive.
     #[must_use]
     pub fn new(observer: CoulombObserver<T>, drive: &Drive) -> Self {
         Self {
@@ -33,7 +33,7 @@ impl<T: Real> Coulomb<T> {
         }
     }
 
-    /// Begin from the level (V) that an earlier run learned, held within the observer's limit.
+    /// Starts from the level (V) that an earlier run learned, limited to the observer's range.
     #[must_use]
     pub fn resumed(mut self, level_v: T) -> Self {
         self.start_v = level_v;

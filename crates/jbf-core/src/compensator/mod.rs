@@ -1,6 +1,8 @@
-//! Friction compensators, one a file: from what the loop senses to the voltage that shall cancel
-//! friction. Configuration here, what changes in `State`; [`crate::controller`] puts one into a
-//! loop.
+//! Friction compensators, one per file.
+//!
+//! A compensator computes, from the signals of the loop, the voltage that cancels friction.
+//! Configuration is in the compensator, variables are in `State`. [`crate::controller`] runs a
+//! compensator in a loop.
 
 pub mod carried;
 pub mod coulomb;
@@ -18,7 +20,7 @@ pub use table::Table;
 
 use crate::real::Real;
 
-/// What a compensator is told at each step.
+/// Inputs of a compensator at each step.
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct Sense<T> {
@@ -26,37 +28,37 @@ pub struct Sense<T> {
     pub angle_rad: T,
     /// Speed estimate, rad/s.
     pub velocity_rad_s: T,
-    /// What is controlled minus its reference, rad or rad/s.
+    /// Controlled quantity minus its reference, rad or rad/s.
     pub error: T,
-    /// Speed that the reference asks for, rad/s.
+    /// Reference speed, rad/s.
     pub wanted_rad_s: T,
-    /// Acceleration that the reference asks for, rad/s^2; zero where it is not known.
+    /// Reference acceleration, rad/s^2; zero where it is unknown.
     pub wanted_rad_s2: T,
     /// Output of the control law before compensation, V.
     pub base_v: T,
-    /// False while the loop is saturated or blind: nothing may be learned then.
+    /// False while the loop is saturated or blind; the compensator must not learn then.
     pub may_learn: bool,
 }
 
-/// A compensator's answer, in parts for logging.
+/// Output of a compensator, with its parts for logging.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Answer<T> {
-    /// Voltage to add to the control law's, V.
+    /// Voltage to add to the output of the control law, V.
     pub sum_v: T,
-    /// Friction that the compensator believes in, with the sign of the motion, V.
+    /// Estimated friction, with the sign of the motion, V.
     pub friction_v: T,
-    /// The part of it that an observer added to a model, V.
+    /// Part of the estimated friction that an observer added to a model, V.
     pub correction_v: T,
-    /// Voltage that is not friction: what the reference's motion asks for, V.
+    /// Voltage that does not compensate friction: feedforward of the reference motion, V.
     pub forward_v: T,
-    /// Up to two learned numbers; their meaning is the compensator's.
+    /// Up to two learned values, whose meaning depends on the compensator.
     pub learned: [T; 2],
 }
 
 impl<T: Real> Answer<T> {
-    /// Nothing is sent out.
+    /// Output of zero.
     #[must_use]
     pub fn nothing() -> Self {
         Self {
@@ -68,8 +70,7 @@ impl<T: Real> Answer<T> {
         }
     }
 
-    /// The friction that is believed in (V) is sent out, and nothing else; what was learned is
-    /// told beside it.
+    /// Output that consists of the estimated friction (V) only, reported with the learned values.
     #[inline]
     #[must_use]
     pub fn of(friction_v: T, learned: [T; 2]) -> Self {
@@ -81,7 +82,7 @@ impl<T: Real> Answer<T> {
         }
     }
 
-    /// The same in another kind of number.
+    /// Converts to another number type.
     #[must_use]
     pub fn lift<U: Real>(&self) -> Answer<U> {
         let lift = |value: T| U::of(value.value());
@@ -97,15 +98,17 @@ impl<T: Real> Answer<T> {
 
 /// A friction compensator.
 pub trait Compensator<T: Real> {
-    /// What changes while it runs.
+    /// State of the compensator.
     type State: Copy;
 
-    /// The state at the start of a run. It is also the reset.
+    /// Returns the state at the start of a run; it also serves as the reset.
     fn start(&self) -> Self::State;
 
-    /// A compensator with an observer of its own replaces the loop's speed estimate. `moved_rad`
-    /// is the shaft's motion since the step before, `applied_v` the voltage that was applied
-    /// meanwhile; `blind` where the encoder is not to be believed.
+    /// Returns the speed estimate; a compensator with its own observer replaces the loop's
+    /// estimate.
+    ///
+    /// `moved_rad` is the motion of the shaft since the previous step and `applied_v` the voltage
+    /// applied during it. `blind` is true while the encoder is not trusted.
     #[inline]
     fn observe(
         &self,
@@ -119,20 +122,21 @@ pub trait Compensator<T: Real> {
         velocity_rad_s
     }
 
-    /// True where a compensator that knows rest from motion has seen the shaft turn without a
-    /// count: the encoder is then not to be believed.
+    /// True where the compensator's observer infers that the shaft turned without a count.
+    ///
+    /// The encoder is then not trusted. The default is false.
     #[inline]
     fn doubts(&self, state: &Self::State) -> bool {
         let _ = state;
         false
     }
 
-    /// One step.
+    /// Computes the output of one step.
     #[must_use]
     fn step(&self, state: &mut Self::State, sense: &Sense<T>) -> Answer<T>;
 }
 
-/// No compensation: the control law alone.
+/// No compensation: the control law acts alone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoCompensation;
 

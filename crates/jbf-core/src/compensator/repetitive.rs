@@ -1,33 +1,33 @@
-//! Repetitive compensation: learning from lap to lap what a periodic task needs.
+//! Repetitive compensation: learns the correction of a periodic task from lap to lap.
 //!
 //! ```text
 //! u_r(phase) <- Q [ u_r(phase) ] - g e(phase + lead)
 //! ```
 //!
-//! with Q a three-point smoothing that keeps what a lap cannot teach (high frequencies) from
-//! building up; its phase is zero. The lap is `N` cells, read on straight lines between them.
+//! Here Q is a three-point smoothing of zero phase. It prevents the growth of high frequencies,
+//! which a lap cannot teach. The lap has `N` cells and is interpolated linearly between them.
 //!
-//! Source: Tung, Anwar & Tomizuka (1993); Tomizuka, Tsao & Chew (1989) for Q; Cohn (1998),
-//! section 2.4.1.
+//! Source: Tung, Anwar & Tomizuka (1993); Tomizuka, Tsao & Chew (1989) for Q; Cohn (1998), section
+//! 2.4.1.
 
 use super::{Answer, Compensator, Sense};
 use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
-/// Learning from lap to lap.
+/// Compensator that learns from lap to lap.
 #[derive(Clone, Copy, Debug)]
 pub struct Repetitive<T, const N: usize> {
     gain: T,
     smooth: T,
     cell_per_step: f32,
-    /// Steps in a cell, at least: the mean error of a cell teaches it.
+    /// Inverse of the number of steps per cell; the mean error of a cell updates it.
     inverse_steps: T,
     steps_per_lap: u32,
     lead_cells: u32,
     limit_v: T,
 }
 
-/// The lap's memory, V, and where in it the loop is.
+/// Memory of the lap, V, and the position of the loop in it.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -46,12 +46,15 @@ pub struct State<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Repetitive<T, N> {
-    /// A lap of `steps_per_lap` steps, the learning gain (V per unit of error and lap), the
-    /// smoothing (0 to 0.5), the lead in seconds by which the plant answers late, and the most
-    /// that any cell may hold, V.
+    /// Creates a compensator for a lap of `steps_per_lap` steps.
+    ///
+    /// - `gain`: learning gain, V per unit of error and lap.
+    /// - `smooth`: smoothing, 0 to 0.5.
+    /// - `lead_s`: delay of the plant's response, s.
+    /// - `limit_v`: largest value of a cell, V.
     ///
     /// # Errors
-    /// Names the number that breaks its rule. A lap must have at least as many steps as cells.
+    /// Names the number that violates its rule. A lap must have at least as many steps as cells.
     pub fn new(
         steps_per_lap: u32,
         gain: f64,
@@ -90,7 +93,7 @@ impl<T: Real, const N: usize> Repetitive<T, N> {
         })
     }
 
-    /// What the lap just left teaches a cell.
+    /// Updates a cell from the mean error in the cell just left.
     #[inline]
     fn teach(&self, state: &mut State<T, N>, cell: u32, error: T) {
         let n = N as u32;

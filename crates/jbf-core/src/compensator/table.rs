@@ -1,23 +1,25 @@
-//! A look-up table of friction, against the speed or against the angle of a turn.
+//! Look-up table of friction against speed or against the angle of a turn.
+//!
+//! Values between the entries are interpolated linearly.
 //!
 //! Source: Armstrong-Helouvry (1991), break-away torque against position; Cohn (1998), section
-//! 2.4.1. Values between the entries lie on straight lines.
+//! 2.4.1.
 
 use super::{Answer, Compensator, Sense};
 use crate::error::{check, finite, positive, Error};
 use crate::real::Real;
 
-/// What the table is read by.
+/// Independent variable of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Axis {
-    /// |speed|, from zero; beyond the last entry that entry holds.
+    /// Absolute speed, from zero; the last entry holds beyond the end of the table.
     Speed,
     /// Angle; the table is one period and repeats.
     Angle,
 }
 
-/// `N` levels of friction, V, at equal distances.
+/// `N` friction levels, V, at equal intervals.
 #[derive(Clone, Copy, Debug)]
 pub struct Table<T, const N: usize> {
     level_v: [T; N],
@@ -27,11 +29,11 @@ pub struct Table<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Table<T, N> {
-    /// Levels (V, unsigned) at distances of `width` (rad/s or rad), and a viscous friction beside
-    /// them (V s/rad).
+    /// Creates a table of levels (V, unsigned) at intervals of `width` (rad/s or rad), plus a
+    /// viscous friction (V s/rad).
     ///
     /// # Errors
-    /// At least two levels, all finite; the width positive.
+    /// Requires at least two levels, all finite, and a positive width.
     pub fn new(level_v: [T; N], axis: Axis, width: f64, viscous_v_s: f64) -> Result<Self, Error> {
         positive("width", width)?;
         check(N >= 2, "entries", N as f64, "must be at least 2")?;
@@ -47,7 +49,7 @@ impl<T: Real, const N: usize> Table<T, N> {
         })
     }
 
-    /// The level at a speed (rad/s) or an angle (rad), V.
+    /// Level at a speed (rad/s) or an angle (rad), V.
     #[inline]
     #[must_use]
     pub fn at(&self, place: T) -> T {

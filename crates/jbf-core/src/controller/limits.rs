@@ -1,27 +1,31 @@
-//! When a loop stops believing.
+//! Limits beyond which a loop no longer trusts its encoder or compensation.
 
 use crate::builder::with_fields;
 use crate::error::{check, positive, Error};
 
-/// A patience that outlasts every run.
+/// A patience longer than any run.
 const ENDLESS_S: f64 = 1e5;
 
-/// When a loop stops believing.
+/// Limits beyond which a loop no longer trusts its encoder or compensation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Limits {
     /// Largest output, V.
     pub output_v: f64,
-    /// A voltage that surely moves the shaft, V: a counter that stands still under it is frozen.
+    /// Voltage that certainly moves the shaft, V; a counter that does not change under it is
+    /// frozen.
     pub moving_v: f64,
-    /// Time after which a still counter is frozen, a limited output gives up compensation, and a
-    /// loop that sees again compensates again, s.
+    /// Time limit of three conditions, s.
+    ///
+    /// After this time an unchanged counter counts as frozen, and a saturated output gives up
+    /// compensation. After this time, too, a loop whose encoder recovered resumes compensation.
     pub patience_s: f64,
 }
 
 impl Limits {
-    /// A loop that only a jump of the counter stops, as the thesis's programs ran: what moves
-    /// the shaft, and for how long to believe it, are to be told.
+    /// Limits of a loop that only a jump of the counter stops, as in the thesis's programs.
+    ///
+    /// The voltage that moves the shaft and the patience must be set separately.
     #[must_use]
     pub const fn new(output_v: f64) -> Self {
         Self {

@@ -1,12 +1,12 @@
-//! The loop: encoder, velocity observer, control law, compensator, limit, and what to do when
-//! the loop is saturated or blind.
+//! Control loop: encoder, velocity observer, control law, compensator, output limit, and the
+//! fallback for a saturated or blind loop.
 //!
-//! A step costs no allocation, cannot panic, and gives a finite voltage for whatever it is given.
-//! Where the encoder is not to be believed, or the output has stood at its limit for longer than
-//! `patience_s`, nothing is learned and the control law acts alone ([`Status::FALLBACK`]).
+//! A step does not allocate, cannot panic, and returns a finite voltage for every input. Where the
+//! encoder is not trusted, or the output has been at its limit for longer than `patience_s`,
+//! nothing is learned. The control law then acts alone ([`Status::FALLBACK`]).
 //!
-//! A loop of 2 ms round the film model of Table 4.2, corrected by an observer, in `f32` as on a
-//! microcontroller:
+//! The example is a loop of 2 ms with the film model of Table 4.2, corrected by an observer, in
+//! `f32` as on a microcontroller:
 //!
 //! ```
 //! use jbf_core::compensator::{observed::Settings, Bare, Observed};
@@ -67,10 +67,10 @@ use crate::real::Real;
 use crate::reference::Target;
 use sight::Sight;
 
-/// Longest patience, in steps: room for doubts that double.
+/// Longest patience, in steps; leaves room for doubts that double.
 const MOST_STEPS: f64 = 1e7;
 
-/// A loop with its compensator.
+/// A control loop with its compensator.
 #[derive(Clone, Copy, Debug)]
 pub struct Controller<T, C> {
     /// The compensator.
@@ -82,10 +82,10 @@ pub struct Controller<T, C> {
     limit_v: T,
 }
 
-/// What changes in the loop.
+/// State of the loop.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T, S> {
-    /// The compensator's own.
+    /// State of the compensator.
     pub compensator: S,
     encoder: encoder::State,
     sight: sight::State,
@@ -96,7 +96,7 @@ pub struct State<T, S> {
 }
 
 impl<T: Real, C: Compensator<T>> Controller<T, C> {
-    /// Put a loop together.
+    /// Assembles a loop.
     ///
     /// # Errors
     /// Names the limit that is not positive and finite.
@@ -124,8 +124,9 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         })
     }
 
-    /// The loop at rest, knowing only what its compensator was told to start from; the next
-    /// sample is where angles count from. This is also the reset.
+    /// Returns the loop at rest, with only the initial values of its compensator.
+    ///
+    /// Angles count from the next sample. This also serves as the reset.
     #[must_use]
     pub fn start(&self) -> State<T, C::State> {
         State {
@@ -142,7 +143,8 @@ impl<T: Real, C: Compensator<T>> Controller<T, C> {
         }
     }
 
-    /// One step: the counter's value and where to be, in; the voltage, with its parts, out.
+    /// Computes one step: takes the counter value and the target, returns the voltage with its
+    /// parts.
     #[inline]
     #[must_use = "the voltage of this step is in the parts"]
     pub fn step(

@@ -1,10 +1,10 @@
-//! What one step of a loop says.
+//! Output of one step of a loop.
 
 use super::Status;
 use crate::compensator::Answer;
 use crate::real::Real;
 
-/// Everything about one step, for logging.
+/// All quantities of one step, for logging.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -13,20 +13,20 @@ pub struct Parts<T> {
     pub angle_rad: T,
     /// Speed estimate, rad/s.
     pub velocity_rad_s: T,
-    /// What is controlled minus its reference, rad or rad/s.
+    /// Controlled quantity minus its reference, rad or rad/s.
     pub error: T,
-    /// The control law's share, V.
+    /// Output of the control law, V.
     pub base_v: T,
-    /// The compensator's share and its parts.
+    /// Output of the compensator and its parts.
     pub compensation: Answer<T>,
-    /// What goes to the amplifier, V: finite, within the limit.
+    /// Voltage at the amplifier, V: finite and within the limit.
     pub output_v: T,
-    /// How the loop is.
+    /// Status of the loop.
     pub status: Status,
 }
 
 impl<T: Real> Parts<T> {
-    /// The same in another kind of number.
+    /// Converts to another number type.
     #[must_use]
     pub fn lift<U: Real>(&self) -> Parts<U> {
         let lift = |value: T| U::of(value.value());

@@ -1,39 +1,42 @@
-//! Is the encoder to be believed? Three things are held against it: no count under a voltage that
-//! surely moves the shaft, a compensator that knows the shaft to turn without one, a jump.
+//! Plausibility check of the encoder.
+//!
+//! Three conditions count against it: no count under a voltage that certainly moves the shaft, an
+//! observer that infers rotation without a count, and a jump.
 
 use super::Status;
 use crate::encoder;
 use crate::real::Real;
 
-/// A doubt lasts at most `2^this` times the patience.
+/// A doubt lasts at most `2^LONGEST_DOUBT` times the patience.
 const LONGEST_DOUBT: u32 = 7;
 
-/// What a loop asks of its encoder.
+/// Requirements of a loop on its encoder.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sight<T> {
-    /// A voltage that surely moves the shaft.
+    /// Voltage that certainly moves the shaft, V.
     pub(super) moving_v: T,
-    /// Steps after which a still counter is frozen, and after which a loop that sees again
-    /// compensates again.
+    /// Steps after which an unchanged counter is frozen, and after which a loop whose encoder
+    /// recovered resumes compensation.
     pub(super) patience: u32,
 }
 
-/// What is held against the encoder, in steps.
+/// Evidence against the encoder, in steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
-    /// Without a count under a voltage that moves the shaft.
+    /// Steps without a count under a voltage that moves the shaft.
     pushed: u32,
-    /// For which the compensator's doubt still holds.
+    /// Steps for which the compensator's doubt still holds.
     doubt: u32,
-    /// Doubts since the last count.
+    /// Number of doubts since the last count.
     doubts: u32,
-    /// For which the loop stays blind.
+    /// Steps for which the loop stays blind.
     blind: u32,
 }
 
 impl<T: Real> Sight<T> {
-    /// Look at a sample: the flags of the encoder, and whether the loop is blind: now, or so
-    /// short a time ago that it may be again.
+    /// Checks a sample; returns the status flags and whether the loop is blind.
+    ///
+    /// The loop is blind now, or was so recently that it may become blind again.
     #[inline]
     pub(super) fn step(
         &self,
@@ -72,14 +75,14 @@ impl<T: Real> Sight<T> {
         } else if applied_v.abs() >= self.moving_v {
             state.pushed = state.pushed.saturating_add(1);
         } else if state.pushed < self.patience {
-            // Once frozen, only a count shows that the encoder lives again.
+            // Once frozen, only a count shows that the encoder works again.
             state.pushed = 0;
         }
         if sample.still == 0 {
             (state.doubt, state.doubts) = (0, 0);
         } else if doubted {
-            // A doubt may be wrong, and the control law alone too weak to show it: compensation is
-            // tried again, after a time that doubles.
+            // A doubt may be wrong, and the control law alone may be too weak to disprove it.
+            // Compensation is therefore tried again after a time that doubles.
             state.doubt = self.patience << state.doubts.min(LONGEST_DOUBT);
             state.doubts = state.doubts.saturating_add(1);
         } else {
@@ -106,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Steps until the loop sees again, where nothing more is held against the encoder.
+    /// Steps until the loop recovers, without further evidence against the encoder.
     fn blind_for(state: &mut State, still: u32) -> u32 {
         (0..10_000)
             .take_while(|_| {

@@ -1,28 +1,28 @@
-//! What a loop says of itself.
+//! Status flags of a loop.
 
 use core::ops::{BitOr, BitOrAssign};
 
-/// Flags of one step; [`Status::OK`] is none of them.
+/// Flags of one step; [`Status::OK`] has no flag set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Status(u8);
 
 impl Status {
-    /// All is well.
+    /// No flag is set.
     pub const OK: Self = Self(0);
-    /// The output stands at its limit: nothing is learned.
+    /// The output is at its limit; nothing is learned.
     pub const SATURATED: Self = Self(1);
-    /// The counter stands still though the voltage should move the shaft.
+    /// The counter does not change although the voltage should move the shaft.
     pub const FROZEN: Self = Self(2);
-    /// The counter went further than the shaft can.
+    /// The counter changed by more than the shaft can move.
     pub const JUMPED: Self = Self(4);
-    /// The reference is not a finite number: the last one holds.
+    /// The reference is not finite; the last finite one is used.
     pub const NOT_FINITE: Self = Self(8);
     /// The control law acts alone, without compensation.
     pub const FALLBACK: Self = Self(16);
 
-    /// Every flag with its name, as logs and options spell it.
+    /// All flags with the names used in logs and options.
     pub const NAMED: [(&'static str, Self); 5] = [
         ("saturated", Self::SATURATED),
         ("frozen", Self::FROZEN),
@@ -31,7 +31,7 @@ impl Status {
         ("fallback", Self::FALLBACK),
     ];
 
-    /// True where any of `other`'s flags is set.
+    /// True if any of `other`'s flags is set.
     #[inline]
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0

@@ -1,34 +1,35 @@
-//! The imposed surface speed as a function of time.
+//! Imposed surface speed as a function of time.
 
 use crate::error::{finite, not_negative, positive, Error};
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI, TAU};
 
-/// An imposed surface speed, and where it is not smooth.
+/// An imposed surface speed and the instants at which it is not smooth.
 pub trait Excitation {
     /// Surface speed, signed, m/s.
     fn velocity_m_s(&self, time_s: f64) -> f64;
 
-    /// Its rate of change, m/s^2; at a kink, that after it.
+    /// Rate of change of the speed, m/s^2; at a kink, the value after it.
     fn acceleration_m_s2(&self, time_s: f64) -> f64;
 
-    /// The first instant after `time_s` at which the speed changes sign or one of its
-    /// derivatives jumps; infinity where there is none. Steps land on it. A change of sign that
-    /// is not told is found, if a step ends beyond it.
+    /// First instant after `time_s` at which the speed changes sign or one of its derivatives
+    /// jumps; infinity where there is none.
+    ///
+    /// Steps land on it. A change of sign that is not reported is found if a step ends beyond it.
     fn next_kink_s(&self, time_s: f64) -> f64;
 }
 
-/// `U = bias + amplitude sin(omega t)`.
+/// Biased sine `U = bias + amplitude sin(omega t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine {
     amplitude_m_s: f64,
     omega_rad_s: f64,
     bias_m_s: f64,
-    /// Phase of the first upward zero; none where the speed never changes sign.
+    /// Phase of the first upward zero crossing; `None` where the speed never changes sign.
     upward_rad: Option<f64>,
 }
 
 impl Sine {
-    /// `U = amplitude sin(omega t)`.
+    /// Creates `U = amplitude sin(omega t)`.
     ///
     /// # Errors
     /// The amplitude must be finite and not negative, the frequency positive and finite.
@@ -36,7 +37,7 @@ impl Sine {
         Self::with_bias(amplitude_m_s, omega_rad_s, 0.0)
     }
 
-    /// `U = bias + amplitude sin(omega t)`.
+    /// Creates `U = bias + amplitude sin(omega t)`.
     ///
     /// # Errors
     /// As [`Sine::new`]; the bias must be finite.
@@ -70,7 +71,7 @@ impl Excitation for Sine {
             return f64::INFINITY;
         };
         let phase = self.omega_rad_s * time_s;
-        // A kink that a step has just landed on is not the next one.
+        // A kink on which a step has just landed is not the next one.
         let margin = 1e-9 + 1e-15 * libm::fabs(phase);
         let after = |zero: f64| {
             let turns = libm::floor((phase + margin - zero) / TAU) + 1.0;
@@ -80,20 +81,23 @@ impl Excitation for Sine {
     }
 }
 
-/// Sine without a branch, so that samples are computed side by side: a trajectory asks for it more
-/// often than for anything else. Sums and products alone, the same bits everywhere; right to
-/// 4e-16, and beyond a million turns left to the library.
+/// Branch-free sine, so that samples are computed in parallel lanes.
+///
+/// A trajectory evaluates it more often than any other function. It uses only sums and products and
+/// gives the same bits on every target. Its error is below 4e-16; beyond a million turns it calls
+/// the library.
 #[inline]
 fn sine(x: f64) -> f64 {
-    // Adding it rounds to a whole number, whose last bit is then the last bit of the sum.
+    // Adding this constant rounds to a whole number, whose last bit is then the last bit of the
+    // sum.
     const ROUNDER: f64 = 6755399441055744.0;
-    // pi in three parts, the first two with room for a product with a whole number.
+    // pi in three parts; the first two leave room for an exact product with a whole number.
     const PI_PARTS: [f64; 3] = [
         3.141592651605606,
         1.9841871479187034e-09,
         1.1442377452219664e-17,
     ];
-    // (-1)^k / (2k+1)!: what is left out is below 1e-18 for |r| up to pi/2.
+    // (-1)^k / (2k+1)!; the truncation error is below 1e-18 for |r| up to pi/2.
     const TAYLOR: [f64; 10] = [
         -1.0 / 6.0,
         1.0 / 120.0,
@@ -113,7 +117,7 @@ fn sine(x: f64) -> f64 {
     let turns = shifted - ROUNDER;
     let r = ((x - turns * PI_PARTS[0]) - turns * PI_PARTS[1]) - turns * PI_PARTS[2];
     let z = r * r;
-    // In pairs (Estrin): a third of the waiting of one sum after the other.
+    // Evaluation in pairs (Estrin): a third of the latency of sequential sums.
     let (z2, pair) = (z * z, |i: usize| TAYLOR[i] + z * TAYLOR[i + 1]);
     let z4 = z2 * z2;
     let sum = (pair(0) + z2 * pair(2)) + z4 * ((pair(4) + z2 * pair(6)) + z4 * pair(8));
@@ -121,12 +125,12 @@ fn sine(x: f64) -> f64 {
     f64::from_bits(value.to_bits() ^ (shifted.to_bits() << 63))
 }
 
-/// Any smooth speed, given with its rate of change. Its zeros are found on the way.
+/// Any smooth speed, given with its rate of change; its zeros are found during integration.
 #[derive(Clone, Copy, Debug)]
 pub struct Function<V, A> {
-    /// Speed (m/s) at a time (s).
+    /// Speed (m/s) as a function of time (s).
     pub velocity_m_s: V,
-    /// Its rate of change, m/s^2.
+    /// Rate of change of the speed, m/s^2.
     pub acceleration_m_s2: A,
 }
 

@@ -1,4 +1,4 @@
-//! What the driver needs of a law: smooth equations between kinks.
+//! Interface between the driver and a film model: smooth equations between kinks.
 
 use crate::law::journal::film_linear::SmoothFilm;
 use crate::law::journal::Journal;
@@ -7,25 +7,27 @@ use crate::law::journal_full::JournalFull;
 use crate::real::Real;
 use crate::stepper::StiffSystem;
 
-/// What seals [`Film`]: the driver's error control knows these films.
+/// Seals [`Film`]: the error control of the driver is written for these films.
 mod sealed {
     pub trait Sealed {}
     impl<T> Sealed for crate::law::journal::Journal<T> {}
     impl<T> Sealed for crate::law::journal_full::JournalFull<T> {}
 }
 
-/// A film that the driver can follow: [`Journal`] or [`JournalFull`]. Its first two states are `eps cos(phi)`, `eps sin(phi)`.
+/// A film that the driver can integrate: [`Journal`] or [`JournalFull`].
+///
+/// Its first two states are `eps cos(phi)` and `eps sin(phi)`.
 pub trait Film<T: Real, const N: usize>: sealed::Sealed {
-    /// The equations with asperities in touch, or without them, smooth everywhere.
+    /// The equations with or without asperity contact, smooth everywhere.
     type System: StiffSystem<T, N> + Copy;
 
-    /// Those equations.
+    /// Returns the equations with (`touching`) or without asperity contact.
     fn system(&self, touching: bool) -> Self::System;
 
-    /// The state at a place, without velocity.
+    /// Returns the state at a position, without velocity.
     fn at(&self, xy: [T; 2]) -> [T; N];
 
-    /// The film without inertia: load, friction, clock.
+    /// Film without inertia: load, friction and clock.
     fn journal(&self) -> &Journal<T>;
 }
 

@@ -1,4 +1,4 @@
-//! The driver itself: a film along an excitation, from kink to kink, handed over at the samples.
+//! Integration of a film along an excitation, from kink to kink, with output at the samples.
 
 use super::goal::Goal;
 use super::kinks::polynomial;
@@ -9,8 +9,10 @@ use crate::real::Real;
 use crate::root::sqrt;
 use crate::stepper::{Linear, StiffSystem};
 
-/// Follow `film` along `excitation` from `start`, and hand the film at each of `times_s`
-/// (rising) to `sink` with its index, the friction coefficient right to about `tolerance`.
+/// Integrates `film` along `excitation` from `start`, with output at each of `times_s` (ascending).
+///
+/// Each sample is passed to `sink` with its index. The error of the friction coefficient is about
+/// `tolerance`.
 ///
 /// # Errors
 /// As [`super::trajectory`].
@@ -34,7 +36,7 @@ pub(super) fn radius<T: Real, const N: usize>(state: &[T; N]) -> f64 {
     sqrt((state[0] * state[0] + state[1] * state[1]).value())
 }
 
-/// A film on its way along an excitation.
+/// Integration in progress of a film along an excitation.
 pub(super) struct Way<'a, T, F, E, S, const N: usize> {
     pub(super) film: &'a F,
     pub(super) excitation: &'a E,
@@ -44,7 +46,7 @@ pub(super) struct Way<'a, T, F, E, S, const N: usize> {
     pub(super) time_s: f64,
     pub(super) state: [T; N],
     pub(super) touching: bool,
-    /// What the error control proposes for the next step, s.
+    /// Next step proposed by the error control, s.
     pub(super) step_s: f64,
     next: usize,
     pub(super) goal: Goal,
@@ -58,7 +60,7 @@ where
     E: Excitation,
     S: FnMut(usize, &Sample<T>),
 {
-    /// At the start, samples there handed over.
+    /// Creates the integration at the start, and outputs the samples there.
     pub(super) fn from_start(
         film: &'a F,
         excitation: &'a E,
@@ -95,7 +97,7 @@ where
         Ok(way)
     }
 
-    /// Are all samples handed over?
+    /// True if all samples have been output.
     #[inline]
     pub(super) fn done(&self) -> bool {
         self.next >= self.times_s.len()
@@ -106,7 +108,7 @@ where
         system.linearise(&self.state, ub)
     }
 
-    /// Do asperities that part, or a free film, approach each other here?
+    /// True if the eccentricity increases here with the equations without asperity contact.
     fn closes_in(&mut self) -> bool {
         let ub = T::of(libm::fabs(self.excitation.velocity_m_s(self.time_s)));
         let ub = ub * self.film.journal().inverse_u_tr;
@@ -121,7 +123,7 @@ where
         }
     }
 
-    /// Hand over the samples of a step.
+    /// Outputs the samples inside a step.
     pub(super) fn emit(&mut self, along: &[[T; 5]; 2], step_s: f64, to: f64) {
         let (from, inverse) = (self.time_s, 1.0 / step_s);
         while let Some(&t) = self.times_s.get(self.next) {

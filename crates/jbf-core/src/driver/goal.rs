@@ -1,37 +1,40 @@
-//! The error that a step may make, measured in friction.
+//! Error allowed per step, measured in friction.
 
 use super::Film;
 use crate::law::journal::Loaded;
 use crate::real::Real;
 use crate::root::sqrt;
 
-/// Share of the tolerance that one step may err by: errors mostly die before the next. With
-/// inertia they die later.
+/// Error allowed per step, in multiples of the tolerance. Most errors decay before the next step;
+/// with inertia they decay more slowly.
 const STEP_SHARE: f64 = 4.0;
 const STEP_SHARE_INERTIA: f64 = 1.5;
-/// An error far from the asperities weighs this much of one where they carry the whole load: it
-/// is forgotten in part before they touch.
+/// Weight of an error far from asperity contact, relative to an error where the asperities carry
+/// the whole load. It decays in part before the asperities touch.
 const FREE_WEIGHT: f64 = 0.1;
-/// Share of the gap between journal and wall that a step may err by, whatever the tolerance.
+/// Largest error per step, as a fraction of the gap between journal and wall, for any tolerance.
 const GAP_SHARE: f64 = 0.01;
-/// Errors of place below this are rounding.
+/// Position errors below this value are rounding.
 const ROUNDING: f64 = 2e-14;
 
-/// How the step follows from the error. On films that are stiff at their step the estimate falls
-/// with the fourth power of the step, not the fifth of the smooth theory.
+/// Step factor as a function of the error share.
+///
+/// For films that are stiff at their step, the error estimate falls with the fourth power of the
+/// step, not with the fifth power of the smooth theory.
 #[inline]
 pub(super) fn inverse_root(share: f64) -> f64 {
     1.0 / sqrt(sqrt(share))
 }
 
-/// The error that a step may make.
+/// Error allowed per step.
 pub(super) struct Goal {
     tolerance: f64,
-    /// `d f / d eps` over the depth of touch.
+    /// Slope `d f / d eps` per depth of contact.
     steepness: f64,
-    /// Least weight of an error of place.
+    /// Least weight of a position error.
     least: f64,
-    /// Eccentricity may pass eps_tr by this much unseen: friction errs by the square.
+    /// Amount by which the eccentricity may pass eps_tr undetected; the friction error is quadratic
+    /// in it.
     pub(super) band: f64,
 }
 
@@ -58,7 +61,7 @@ impl Goal {
         }
     }
 
-    /// An error of place over what is allowed.
+    /// Position error relative to the allowed error.
     #[inline]
     pub(super) fn share(&self, error: [f64; 2], depth: f64, eps: f64) -> f64 {
         let size = sqrt(error[0] * error[0] + error[1] * error[1]);

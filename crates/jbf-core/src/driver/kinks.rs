@@ -1,14 +1,14 @@
-//! Finding the kinks: roots of a function with a change of sign.
+//! Location of kinks: roots of a function with a change of sign.
 
 use crate::real::Real;
 
-/// Value of a polynomial of degree four.
+/// Evaluates a polynomial of degree four.
 #[inline]
 pub(super) fn polynomial<T: Real>(c: &[T; 5], s: T) -> T {
     c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * c[4])))
 }
 
-/// Eccentricity ratio along a step.
+/// Eccentricity ratio at `s` along a step.
 pub(super) fn eps_along<T: Real>(along: &[[T; 5]; 2], s: f64) -> f64 {
     let (x, y) = (
         polynomial(&along[0], T::of(s)).value(),
@@ -17,8 +17,10 @@ pub(super) fn eps_along<T: Real>(along: &[[T; 5]; 2], s: f64) -> f64 {
     crate::root::sqrt(x * x + y * y)
 }
 
-/// A root between `low` and `high`, where `f` changes its sign: false position
-/// with Illinois weights (Dowell & Jarratt, BIT 11, 1971), kept inside its bracket by halving.
+/// Root between `low` and `high`, where `f` changes sign.
+///
+/// The method is false position with Illinois weights (Dowell & Jarratt, BIT 11, 1971), kept inside
+/// its bracket by bisection.
 pub(super) fn root(mut low: f64, mut high: f64, within: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut f_low, mut f_high) = (f(low), f(high));
     for round in 0..100 {
@@ -39,7 +41,8 @@ pub(super) fn root(mut low: f64, mut high: f64, within: f64, f: impl Fn(f64) -> 
             (high, f_high) = (mid, f_mid);
             f_low *= 0.5;
         }
-        // False position closes in from one side: its last move tells how far it is.
+        // False position converges from one side, so the residual at the last point measures the
+        // distance.
         if libm::fabs(f_mid) <= 1e-15 {
             return mid;
         }

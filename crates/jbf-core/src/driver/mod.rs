@@ -1,7 +1,9 @@
-//! Trajectories to a tolerance, for analysis: steps as long as the error of the friction
-//! coefficient allows, which land on every reversal and on every touch of the asperities, where
-//! the model has kinks. Samples come from a polynomial along each step, so that their number
-//! does not set the number of steps. A loop uses [`Law::advance`](crate::law::Law::advance).
+//! Trajectories to a tolerance, for analysis.
+//!
+//! Steps are as long as the error of the friction coefficient allows. They land on every reversal
+//! and on every asperity contact, where the model has kinks. Samples come from a polynomial along
+//! each step, so their number does not determine the number of steps. A control loop uses
+//! [`Law::advance`](crate::law::Law::advance) instead.
 //!
 //! ```
 //! use jbf_core::driver::{trajectory, Sine};
@@ -37,14 +39,16 @@ use crate::error::{check, positive, Error};
 use crate::law::journal::START_PHI_RAD;
 use crate::real::Real;
 
-/// Where a trajectory starts; by default at time zero, as [`Law::start`](crate::law::Law::start)
-/// has it: asperities just in touch, attitude angle 0.15 rad, no velocity.
+/// Start of a trajectory.
+///
+/// The default is time zero with the state of [`Law::start`](crate::law::Law::start): asperities
+/// just in contact, attitude angle 0.15 rad, no velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Start<T> {
     /// Time, s.
     pub time_s: f64,
-    /// Eccentricity ratio; none for eps_tr.
+    /// Eccentricity ratio; `None` for eps_tr.
     pub eps: Option<T>,
     /// Attitude angle, rad.
     pub phi_rad: T,
@@ -61,21 +65,21 @@ impl<T: Real> Default for Start<T> {
 }
 
 impl<T: Real> Start<T> {
-    /// The same at another time, s.
+    /// Sets the time, s.
     #[must_use]
     pub fn with_time_s(mut self, time_s: f64) -> Self {
         self.time_s = time_s;
         self
     }
 
-    /// The same at another eccentricity ratio; none for eps_tr.
+    /// Sets the eccentricity ratio; `None` for eps_tr.
     #[must_use]
     pub fn with_eps(mut self, eps: Option<T>) -> Self {
         self.eps = eps;
         self
     }
 
-    /// The same at another attitude angle, rad.
+    /// Sets the attitude angle, rad.
     #[must_use]
     pub fn with_phi_rad(mut self, phi_rad: T) -> Self {
         self.phi_rad = phi_rad;
@@ -83,16 +87,16 @@ impl<T: Real> Start<T> {
     }
 }
 
-/// The film at one sample.
+/// State of the film at one sample.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Sample<T> {
-    /// `eps cos(phi)` and `eps sin(phi)`.
+    /// Position `eps cos(phi)` and `eps sin(phi)`.
     pub xy: [T; 2],
     /// Eccentricity ratio.
     pub eps: T,
-    /// Friction coefficient, with the sign of the speed; at rest without its asperities' part,
-    /// which is set-valued there.
+    /// Friction coefficient with the sign of the speed; at rest without the asperity part, which is
+    /// set-valued there.
     pub coefficient: T,
 }
 
@@ -103,29 +107,30 @@ impl Sample<f64> {
     }
 }
 
-/// What a trajectory cost.
+/// Computational cost of a trajectory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Cost {
     /// Steps taken.
     pub steps: u32,
-    /// Steps computed and thrown away, because the error was too large or a kink lay inside.
+    /// Steps computed and discarded, because the error was too large or a kink was inside.
     pub rejected: u32,
     /// Evaluations of the equations of motion.
     pub slopes: u32,
-    /// Evaluations with derivatives.
+    /// Evaluations of the equations with derivatives.
     pub linearisations: u32,
-    /// Steps as short as time itself resolves, taken whatever their error.
+    /// Steps at the resolution of time, accepted regardless of their error.
     pub forced: u32,
 }
 
-/// Friction coefficients at `times_s` (rising, none before zero), to about `tolerance`.
+/// Friction coefficients at `times_s` (ascending, from zero), to about `tolerance`.
 ///
-/// `out` takes as many as it has room for.
+/// `out` receives as many values as it has elements.
 ///
 /// # Errors
-/// Names the first of `tolerance` (positive, finite) and `times_s` (rising, finite) that breaks
-/// its rule. Any tolerance works: the coarsest used is 0.1, the finest is what rounding leaves.
+/// Names the first of `tolerance` (positive, finite) and `times_s` (ascending, finite) that
+/// violates its rule. Any tolerance is accepted: the coarsest value used is 0.1, the finest is
+/// limited by rounding.
 pub fn trajectory<T: Real, F: Film<T, N>, E: Excitation, const N: usize>(
     film: &F,
     excitation: &E,

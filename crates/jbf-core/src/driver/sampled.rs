@@ -1,11 +1,12 @@
-//! A recorded speed, straight lines between its samples.
+//! Recorded speed, interpolated linearly between its samples.
 
 use super::Excitation;
 use crate::error::{check, finite, Error};
 
-/// Speed on straight lines between samples, constant before the first and after the last. A step
-/// lands on every sample: what a record does between two is not known, and a longer step could
-/// miss what it does at them.
+/// Speed that is linear between samples, constant before the first and after the last.
+///
+/// A step lands on every sample. The motion between two samples is unknown, and a longer step could
+/// miss the changes at the samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampled<'a> {
     time_s: &'a [f64],
@@ -13,10 +14,11 @@ pub struct Sampled<'a> {
 }
 
 impl<'a> Sampled<'a> {
-    /// A record of at least two samples.
+    /// Creates an excitation from a record of at least two samples.
     ///
     /// # Errors
-    /// The slices must have one length, of two or more; times must rise; all must be finite.
+    /// The slices must have the same length, of two or more; times must rise; all values must be
+    /// finite.
     pub fn new(time_s: &'a [f64], velocity_m_s: &'a [f64]) -> Result<Self, Error> {
         check(
             time_s.len() == velocity_m_s.len() && time_s.len() >= 2,
@@ -41,7 +43,7 @@ impl<'a> Sampled<'a> {
         })
     }
 
-    /// The samples round a time: their times and speeds; none outside the record.
+    /// Times and speeds of the samples around a time; `None` outside the record.
     fn round(&self, time_s: f64) -> Option<([f64; 2], [f64; 2])> {
         let after = self.time_s.partition_point(|&t| t <= time_s);
         let before = after.checked_sub(1)?;
@@ -79,7 +81,7 @@ impl Excitation for Sampled<'_> {
         };
         if v0 * v1 < 0.0 {
             let zero = t0 + (t1 - t0) * (v0 / (v0 - v1));
-            // A zero that a step has just landed on is not the next one.
+            // A zero on which a step has just landed is not the next one.
             if zero > time_s + 1e-9 * (t1 - t0) && zero < t1 {
                 return zero;
             }

@@ -1,9 +1,11 @@
-//! Films without inertia along several excitations at once. Steps to a tolerance are of unlike lengths
-//! and number, but the stages of one are the same operations as those of another: of several ways the
-//! next step of each is computed in lanes, and each then goes on as its own step says.
+//! Parallel integration of films without inertia along several excitations.
 //!
-//! A step of one film waits for its own roots and divisions; of several they overlap. The bits are those
-//! of [`super::follow`].
+//! Steps to a tolerance differ in length and number, but the stages of one step are the same
+//! operations as those of another. The next steps of several trajectories are computed in lanes,
+//! and each trajectory then continues on its own.
+//!
+//! A step of one film waits for its own roots and divisions; those of several films overlap. The
+//! result is identical bit for bit to that of [`super::follow`].
 
 use super::follow::Way;
 use super::stretch::Stretch;
@@ -18,21 +20,23 @@ use crate::stepper::Linear;
 
 type Step = Asked<f64, SmoothFilm<f64>, 2>;
 
-/// One way: its excitation, its samples (s, rising), and what takes them.
+/// One trajectory: its excitation, its sample times (s, ascending), and the receiver of its
+/// samples.
 pub struct Along<'a, E, S> {
-    /// The imposed speed.
+    /// Imposed speed.
     pub excitation: &'a E,
-    /// Where its samples are, s.
+    /// Sample times, s.
     pub times_s: &'a [f64],
-    /// Takes each sample with its index.
+    /// Receives each sample with its index.
     pub sink: S,
 }
 
-/// [`super::follow`] along at most `K` excitations from one start; `lanes` computes the next step of
-/// each, as [`step`] does.
+/// Integrates at most `K` excitations from one start, each as [`super::follow`] does.
+///
+/// `lanes` computes the next step of each, as [`step`] does.
 ///
 /// # Errors
-/// As [`super::trajectory`], of the first excitation that breaks a rule.
+/// As [`super::trajectory`], for the first excitation that violates a rule.
 pub fn follow_side_by_side<E: Excitation, S: FnMut(usize, &Sample<f64>), const K: usize>(
     film: &Journal<f64>,
     along: [Option<Along<'_, E, S>>; K],
@@ -65,7 +69,7 @@ pub fn follow_side_by_side<E: Excitation, S: FnMut(usize, &Sample<f64>), const K
         if on == [false; K] {
             break;
         }
-        // A way that has come to its end repeats its last step.
+        // A finished trajectory repeats its last step.
         lanes(&steps, &mut stages);
         for i in 0..K {
             if let (true, Some(way), Some(stretch)) = (on[i], &mut ways[i], &mut stretches[i]) {
@@ -76,7 +80,9 @@ pub fn follow_side_by_side<E: Excitation, S: FnMut(usize, &Sample<f64>), const K
     Ok(ways.map(|way| way.map_or(Cost::default(), |way| way.cost)))
 }
 
-/// The next step of a way, on the next stretch where one has ended; false at the last sample.
+/// Prepares the next step of a trajectory, on the next segment where one has ended.
+///
+/// Returns false at the last sample.
 #[inline]
 fn next<E: Excitation, S: FnMut(usize, &Sample<f64>)>(
     way: &mut Way<'_, f64, Journal<f64>, E, S, 2>,
@@ -100,7 +106,7 @@ fn next<E: Excitation, S: FnMut(usize, &Sample<f64>)>(
 }
 
 impl Step {
-    /// No step: numbers that stay finite.
+    /// Placeholder step with values that stay finite.
     const NONE: Self = Self {
         system: SmoothFilm::NONE,
         linear: Linear {
@@ -121,8 +127,10 @@ impl Step {
     };
 }
 
-/// The steps, one array a number, so that a compiler can put neighbours into the lanes of one register;
-/// `T` is meant to be a lane ([`Real::SIDE_BY_SIDE`]).
+/// Computes `K` steps, stored as one array per variable.
+///
+/// A compiler can then place neighbours in the lanes of one register. `T` is meant to be a lane
+/// ([`Real::SIDE_BY_SIDE`]).
 #[inline(always)]
 pub fn step<T: Real, const K: usize>(steps: &[Step; K], out: &mut [Stages<f64, 2>; K]) {
     let of = |pick: fn(&Step) -> f64| -> [f64; K] { core::array::from_fn(|i| pick(&steps[i])) };

@@ -1,7 +1,8 @@
-//! A stretch: from one kink of the excitation to the next, in steps that the error allows.
+//! Integration of a segment: from one kink of the excitation to the next, in steps that the error
+//! allows.
 //!
-//! A step is tried and judged (`trial.rs`), then taken or not. What a stretch remembers from one
-//! trial to the next is its [`Aim`]:
+//! A step is tried and assessed (`trial.rs`), then accepted or not. The memory of a segment from
+//! one trial to the next is its [`Aim`]:
 //!
 //! ```text
 //! aim            what the step does                          next aim
@@ -20,32 +21,32 @@ use crate::real::Real;
 use crate::stepper::rodas5p::Stages;
 use crate::stepper::Linear;
 
-/// What the next step is to do.
+/// Purpose of the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Aim {
-    /// Go as far as the error allows.
+    /// Advance as far as the error allows.
     Ahead,
-    /// Land on eps_tr, which lies so many seconds ahead; beyond it the other side begins.
+    /// Land on eps_tr, this many seconds ahead; beyond it the other side begins.
     Touch(f64),
-    /// Go ahead on a side that was just found out; where even that seems wrong, the journal stands
-    /// at eps_tr, and the step is taken.
+    /// Advance on the side that was just detected. If even that side appears wrong, the journal is
+    /// at eps_tr and the step is accepted.
     Turned,
 }
 
-/// The equations where a step begins.
+/// Equations at the start of a step.
 pub(super) struct Here<T, const N: usize> {
     /// Speed, m/s.
     pub(super) speed_m_s: f64,
     pub(super) linear: Linear<T, N>,
-    /// Rate of the equations' input.
+    /// Rate of change of the input of the equations.
     pub(super) rate: T,
 }
 
-/// A stretch on its way.
+/// A segment in progress.
 pub(super) struct Stretch<T, Y, const N: usize> {
     /// Sign of the speed.
     pub(super) direction: f64,
-    /// Where it ends, s.
+    /// End of the segment, s.
     pub(super) end_s: f64,
     pub(super) system: Y,
     pub(super) aim: Aim,
@@ -59,7 +60,7 @@ where
     E: Excitation,
     S: FnMut(usize, &Sample<T>),
 {
-    /// From here to the next kink of the excitation or the last sample.
+    /// Integrates to the next kink of the excitation or to the last sample.
     pub(super) fn stretch(&mut self) {
         let mut stretch = self.begin();
         while self.time_s < stretch.end_s {
@@ -69,7 +70,7 @@ where
         self.time_s = stretch.end_s;
     }
 
-    /// Do as the stages of a step say.
+    /// Acts on the result of a tried step.
     #[inline]
     pub(super) fn answer(
         &mut self,
@@ -125,19 +126,19 @@ where
         }
     }
 
-    /// Sign of the speed on the stretch that ends at `end_s`.
+    /// Sign of the speed on the segment that ends at `end_s`.
     fn direction(&self, end_s: f64) -> f64 {
         let ahead = (0.01 * self.step_s).min(0.5 * (end_s - self.time_s));
         self.excitation.velocity_m_s(self.time_s + ahead).sign()
     }
 
-    /// The input of the equations at an unsigned speed, m/s.
+    /// Input of the equations at an unsigned speed, m/s.
     #[inline]
     pub(super) fn input(&self, speed_m_s: f64) -> T {
         T::of(speed_m_s) * self.film.journal().inverse_u_tr
     }
 
-    /// Its rate here.
+    /// Rate of change of the input at the present time.
     #[inline]
     fn input_rate(&self, direction: f64) -> T {
         let journal = self.film.journal();
@@ -146,7 +147,7 @@ where
             * (T::ONE / journal.rate)
     }
 
-    /// The equations anew, where the place or the side has changed.
+    /// Re-evaluates the equations after a change of the position or the side.
     #[inline]
     fn look(&mut self, stretch: &mut Stretch<T, F::System, N>) {
         let input = self.input(stretch.direction * stretch.here.speed_m_s);
@@ -159,7 +160,7 @@ where
         stretch.system = self.film.system(self.touching);
     }
 
-    /// Take a sound step: to its end, and, where it was to land on eps_tr, to the other side.
+    /// Accepts a sound step. If it was to land on eps_tr, changes to the other side.
     #[inline]
     fn take(
         &mut self,
@@ -183,7 +184,7 @@ where
         self.go_on(stretch, tried);
     }
 
-    /// Nothing left to try: the film waits where it is.
+    /// Keeps the film at its position when no step is possible.
     #[cold]
     fn wait(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<'_, T, N>) {
         let [x, y] = [self.state[0], self.state[1]];
@@ -197,7 +198,7 @@ where
         self.go_on(stretch, tried);
     }
 
-    /// Stand at the end of a step, and look there if the stretch goes on.
+    /// Moves to the end of a step, and re-evaluates the equations if the segment continues.
     #[inline]
     fn go_on(&mut self, stretch: &mut Stretch<T, F::System, N>, tried: &Tried<'_, T, N>) {
         self.time_s = tried.to_s;

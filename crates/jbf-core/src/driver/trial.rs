@@ -1,4 +1,4 @@
-//! One step of a stretch, tried and judged; it changes nothing but the count of what it cost.
+//! Trial and assessment of one step of a segment; only the cost counters change.
 
 use super::follow::{radius, Way};
 use super::goal::inverse_root;
@@ -10,14 +10,14 @@ use crate::stepper::rodas5p::{self, Input, Stages};
 use crate::stepper::rodas5p_tableau::NODES;
 use crate::stepper::{Linear, StiffSystem};
 
-/// A step that is asked for: what its stages are computed from, and where it ends.
+/// A requested step: the inputs of its stages, and its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<T, Y, const N: usize> {
     pub(super) system: Y,
     pub(super) linear: Linear<T, N>,
     pub(super) state: [T; N],
     pub(super) input: Input<T>,
-    /// Its length on the film's clock.
+    /// Length of the step on the film's clock.
     pub(super) dt: T,
     pub(super) step_s: f64,
     pub(super) to_s: f64,
@@ -25,7 +25,7 @@ pub struct Asked<T, Y, const N: usize> {
 }
 
 impl<T: Real, Y: StiffSystem<T, N>, const N: usize> Asked<T, Y, N> {
-    /// Compute it.
+    /// Computes the stages of the step.
     #[inline]
     pub(super) fn stages(&self) -> Stages<T, N> {
         rodas5p::step(
@@ -41,39 +41,39 @@ impl<T: Real, Y: StiffSystem<T, N>, const N: usize> Asked<T, Y, N> {
 /// A step that was tried.
 pub(super) struct Tried<'a, T, const N: usize> {
     pub(super) step_s: f64,
-    /// Where it ends, s, and the speed there, m/s.
+    /// End of the step, s, and the speed there, m/s.
     pub(super) to_s: f64,
     pub(super) speed_m_s: f64,
     pub(super) stages: &'a Stages<T, N>,
-    /// Its error over what is allowed.
+    /// Error relative to the allowed error.
     pub(super) share: f64,
-    /// Finite, and no leap across the gap.
+    /// True if the result is finite and does not jump across the gap.
     pub(super) sound: bool,
-    /// The shortest step that time resolves here, s.
+    /// Shortest step that the time resolves here, s.
     pub(super) shortest_s: f64,
 }
 
-/// What a tried step turned out to be.
+/// Result of the assessment of a tried step.
 pub(super) enum Verdict<T> {
-    /// Its error is too large: try this much of it.
+    /// The error is too large; try this fraction of the step.
     TooLong(f64),
-    /// As short as time resolves, and still none that the film could take.
+    /// The step is at the resolution of time and still not acceptable.
     Stuck,
-    /// The speed changes its sign at this time inside it.
+    /// The speed changes sign at this time inside the step.
     Reverses(f64),
-    /// Asperities touch or part inside it, so many seconds from its start.
+    /// Asperities touch or separate inside the step, this many seconds from its start.
     Touches(f64),
-    /// It began on the other side of eps_tr than was thought.
+    /// The step began on the other side of eps_tr than assumed.
     WrongSide,
-    /// Sound; place along it, as polynomials.
+    /// The step is sound; positions along it, as polynomials.
     Sound([[T; 5]; 2]),
 }
 
-/// What a step does at eps_tr.
+/// Behaviour of a step at eps_tr.
 enum Touch {
     /// It stays on its side.
     No,
-    /// It passes at this share of its length.
+    /// It passes eps_tr at this fraction of its length.
     At(f64),
     /// It began on the other side already.
     Wrong,
@@ -86,7 +86,7 @@ where
     E: Excitation,
     S: FnMut(usize, &Sample<T>),
 {
-    /// How long the next step shall be, s: never a remainder too short to be worth a step.
+    /// Length of the next step, s; leaves no remainder too short for a step.
     #[inline]
     fn length(&self, stretch: &Stretch<T, F::System, N>) -> f64 {
         let room = stretch.end_s - self.time_s;
@@ -103,7 +103,7 @@ where
         }
     }
 
-    /// What the next step is to be.
+    /// Prepares the next step.
     #[inline]
     pub(super) fn ask(&self, stretch: &Stretch<T, F::System, N>) -> Asked<T, F::System, N> {
         let step_s = self.length(stretch);
@@ -133,7 +133,7 @@ where
         }
     }
 
-    /// What a step that was asked for turned out to be.
+    /// Evaluates the result of a requested step.
     #[inline]
     pub(super) fn tried<'s>(
         &mut self,
@@ -160,8 +160,8 @@ where
             speed_m_s,
             stages,
             share,
-            // No step takes more than three quarters of the gap: asperities told to be free hold
-            // nothing back.
+            // No step may use more than three quarters of the gap: without the asperity term
+            // nothing resists.
             sound: share.is_finite() && 1.0 - eps > 0.25 * (1.0 - eps_here),
             shortest_s: 1e-14 / clock + 4e-16 * libm::fabs(self.time_s),
         }
@@ -205,7 +205,7 @@ where
         }
     }
 
-    /// Where inside a step the speed leaves `direction`, if it does.
+    /// Time inside a step at which the speed leaves `direction`, if it does.
     #[inline]
     fn untold_reversal(&self, direction: f64, tried: &Tried<'_, T, N>) -> Option<f64> {
         if tried.speed_m_s * direction > 0.0 || tried.speed_m_s == direction {
@@ -217,7 +217,7 @@ where
     #[cold]
     fn reversal_before(&self, to_s: f64, at_end: f64) -> Option<f64> {
         let speed = |t: f64| self.excitation.velocity_m_s(t);
-        // A kink that was told: landed on, but for rounding.
+        // A reported kink on which the step landed, apart from rounding.
         let ahead = 1e-3 * (to_s - self.time_s);
         if libm::fabs(at_end) <= 1e-9 * libm::fabs(speed(to_s - ahead) - at_end) / 1e-3 {
             return None;
@@ -226,7 +226,7 @@ where
         (zero > self.time_s + ahead).then_some(zero)
     }
 
-    /// Does the eccentricity leave its side of eps_tr along a step?
+    /// Determines whether the eccentricity leaves its side of eps_tr along a step.
     fn passes_touch(&self, along: &[[T; 5]; 2]) -> Touch {
         let side = if self.touching { 1.0 } else { -1.0 };
         let eps_tr = self.loaded.eps_tr.value();
@@ -251,8 +251,8 @@ mod tests {
     use crate::law::journal::{Journal, Parameters};
     use crate::{Bearing, Clock};
 
-    /// A step is sound up to three quarters of the gap to the edge, whatever its error is; one out
-    /// of the bearing is not, nor one that is no number.
+    /// A step is sound up to three quarters of the gap to the edge, whatever its error is. A step
+    /// out of the bearing and a step that is not a number are not sound.
     #[test]
     fn a_sound_step_leaves_a_quarter_of_the_gap() {
         let law = Journal::new(

@@ -1,16 +1,16 @@
-//! Play in the drive: turning round, the drive crosses a gap before it takes the journal along.
+//! Backlash in the drive: after a reversal the drive crosses a gap before it moves the journal.
 //!
 //! ```text
 //! th_j stands while th_m crosses the gap; at a flank it follows
 //! ```
 //!
-//! The play operator of hysteresis (Brokate & Sprekels 1996). While the gap is crossed nothing
-//! turns the journal: it stands, and the load cell sees no friction at all, for nothing but the
-//! drive could hold a friction up. The film feels a journal at rest.
+//! This is the play operator of hysteresis (Brokate & Sprekels 1996). While the gap is crossed
+//! nothing turns the journal: it is at rest, and the load cell measures no friction, because only
+//! the drive could balance it. The film sees a journal at rest.
 //!
-//! The first motion of a run finds its flank closed. The friction comes up on a ramp that is one
-//! step long and has its middle where the flank closes: the reading is then continuous in the gap,
-//! and so has a slope for an optimiser.
+//! The first motion of a run starts with its flank closed. The friction rises on a ramp of one
+//! step, whose middle is where the flank closes. The reading is then continuous in the gap and has
+//! a derivative for an optimiser.
 
 use super::{Drive, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -24,24 +24,26 @@ pub struct Backlash<T> {
     gap_rad: T,
 }
 
-/// Where in the gap the drive stands.
+/// Position of the drive in the gap.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
-    /// Way from the middle of the gap, m: half the gap at the flank that drives forward.
+    /// Distance from the middle of the gap, m: half the gap at the flank that drives forward.
     place_m: T,
-    /// The flank that is closed: +1 drives forward, -1 backward; 0 within the gap.
+    /// Closed flank: +1 drives forward, -1 backward; 0 inside the gap.
     closed: i8,
     /// False before the first motion.
     begun: bool,
-    /// `place_m` where the run began to move: there the journal's angle was the drive's.
+    /// `place_m` at the start of motion, where the angles of journal and drive were equal.
     first_m: T,
     /// Speed of the drive at the end of the last step, m/s.
     speed_m_s: T,
 }
 
 impl<T: Real> State<T> {
-    /// The drive moves by `way_m`, signed; gives how far the journal then is on the ramp from
-    /// standing to following, 0 to 1.
+    /// Moves the drive by the signed distance `way_m`.
+    ///
+    /// Returns the position of the journal on the ramp between rest and following the drive, 0 to
+    /// 1.
     #[inline(always)]
     fn advance(&mut self, way_m: T, half_m: T) -> T {
         let ahead = if way_m > T::ZERO { 1 } else { -1 };
@@ -58,8 +60,8 @@ impl<T: Real> State<T> {
         let closes = beyond.value() >= 0.0;
         self.closed = if closes { ahead } else { 0 };
         self.place_m = if closes { flank } else { there };
-        // Half a step early, so that the ramp has its middle where the flank closes; a gap that
-        // is smaller than a step has no room for it.
+        // Half a step early, so that the middle of the ramp is where the flank closes. A gap
+        // smaller than a step has no room for it.
         let early = (half_m + half_m).min(way_m.abs()) * T::of(0.5) / way_m.abs();
         let share = beyond + early;
         if share.value() > 1.0 {
@@ -88,7 +90,7 @@ impl<T: Real> Effect<T> for Backlash<T> {
             "rad",
             "angle between the flanks",
             [0.0, 1.0],
-            // A gap that is crossed within a few samples is found from one as small only.
+            // A gap that is crossed within a few samples is found only from a start value as small.
             &[0.0215, 0.0043, 0.000_86],
         )
         .null(0.0)
@@ -129,13 +131,13 @@ impl<T: Real> Drive<T> for Backlash<T> {
         state.speed_m_s = v1;
         let half_s = T::of(0.5) * dt_s;
         let mut driven = if let Some(share) = crossing(v0, v1) {
-            // Out, then back.
+            // First in the old direction, then back.
             state.advance(v0 * share * half_s, half_m);
             state.advance(v1 * (T::ONE - share) * half_s, half_m)
         } else {
             state.advance((v0 + v1) * half_s, half_m)
         };
-        // At rest a soft drive may still push, but only through the flank that it leans on.
+        // At rest a compliant drive may still push, but only through the flank that it presses on.
         if v1 == T::ZERO && to.direction != T::ZERO {
             let leans = state.closed == if to.direction > T::ZERO { 1 } else { -1 };
             driven = if leans { T::ONE } else { T::ZERO };

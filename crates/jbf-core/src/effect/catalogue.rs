@@ -1,4 +1,4 @@
-//! The catalogue of effects: the signal chain's fixed order, in one place.
+//! Catalogue of effects: the fixed order of the signal chain, in one place.
 
 use super::place::{
     AsBristle, Beside, InContact, InDrive, InFilm, InInstrument, InLubricant, InTransmission,
@@ -23,7 +23,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::{same, values_fit};
 use crate::real::Real;
 
-// Inside a stage effects act from left to right.
+// Inside a stage, effects act from left to right.
 signal_chain! {
     drive: InDrive [drive_compliance::DriveCompliance, backlash::Backlash],
     lubricant: InLubricant [
@@ -74,17 +74,18 @@ signal_chain! {
 }
 
 impl<T: Real> Effects<T> {
-    /// The same effects with one's own beside them, which come last at every stage; see
+    /// Combines these effects with user-defined ones, which act last at every stage; see
     /// [`super::place`].
     pub fn with<E: EffectSet<T>>(self, own: E) -> (Self, E) {
         (self, own)
     }
 }
 
-/// Each stage asks the effects of its own line only.
+/// Each stage calls the effects of its own line only.
 ///
-/// The code of all effects is inlined where a chain holds `Effects` itself. With debug assertions each
-/// stage is a function of its own instead: tests are compiled in a fraction of the time.
+/// The code of all effects is inlined where a chain holds `Effects` itself. With debug assertions
+/// each stage is a separate function instead, which reduces the compile time of tests to a
+/// fraction.
 impl<T: Real> EffectSet<T> for Effects<T> {
     type State = States<T>;
 
@@ -236,9 +237,10 @@ impl<T: Real> EffectSet<T> for Effects<T> {
     }
 }
 
-/// True where the catalogue has an effect of that name, and the values are as many as its
-/// parameters and each within its bounds. A constant can be checked by it while a program is
-/// compiled; what `jbf export` writes is.
+/// True if the catalogue has an effect of this name and the values fit its parameters.
+///
+/// The number of values must be that of the parameters, and each value must be within its bounds.
+/// The function can check a constant at compile time, such as those that `jbf export` writes.
 ///
 /// ```
 /// const _: () = assert!(jbf_core::effect::fits("coulomb_drag", &[0.8]));

@@ -1,11 +1,12 @@
-//! A force that comes again with every pitch of the way: `+ A sin(2 pi x/p - phi)`.
+//! Force that repeats with every pitch of the travel: `+ A sin(2 pi x/p - phi)`.
 //!
-//! Magnets that look for teeth: the motor pushes and holds back in turn, moving or at rest, whatever
-//! the friction. In a rotary motor the pitch is a turn over the least common multiple of poles and
-//! slots, in a linear one the magnets'; behind a gear or a screw it is that much shorter.
+//! Magnets attracted by teeth: the motor alternately pushes and holds back, in motion or at rest,
+//! independently of friction. In a rotary motor the pitch is one turn divided by the least common
+//! multiple of poles and slots. In a linear motor it is the pitch of the magnets. A gear or a screw
+//! shortens it by its ratio.
 //!
-//! `gravity` is once a turn of the shaft; this is at any pitch, which the fit has to find.
-//! `pitch_ripple` scales friction instead, and has nothing to say of a drive that stands.
+//! `gravity` repeats once per turn of the shaft; this effect has any pitch, which the fit must
+//! find. `pitch_ripple` scales friction instead and has no effect on a drive at rest.
 //!
 //! Source: Zhu & Howe (2000) for rotary machines; Otten et al. (1997) for linear ones.
 
@@ -17,14 +18,14 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// A force over a pitch.
+/// Force that is periodic in the position.
 #[derive(Clone, Copy, Debug)]
 pub struct Cogging<T> {
     amplitude_n: T,
     pitch: Pitch<T>,
 }
 
-/// The pages of its parameters.
+/// Descriptions of the parameters.
 pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter::new("A_n", "N", "amplitude", [0.0, 1e7], &[1.0])
         .null(0.0)

@@ -1,7 +1,7 @@
-//! A second force over a pitch beside `cogging`, at a pitch of its own: `+ A sin(2 pi x/p - phi)`.
+//! Second periodic force in addition to `cogging`, with its own pitch: `+ A sin(2 pi x/p - phi)`.
 //!
-//! Slots and poles cog at one pitch, an uneven magnet once a turn, and each has harmonics: a second
-//! wave at half the pitch, or at another. Which it is, the pitch that the fit finds says.
+//! Slots and poles cog at one pitch, an uneven magnet once per turn, and each has harmonics. The
+//! second wave is therefore at half the pitch or at another one; the fitted pitch shows which.
 //!
 //! Source: that of `cogging`.
 
@@ -12,7 +12,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// A force over another pitch.
+/// Second force that is periodic in the position.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondCogging<T>(Cogging<T>);
 

@@ -1,5 +1,5 @@
-//! Sets of effects made of others: two beside each other, the first first at every stage, and one
-//! that may be there.
+//! Composition of sets of effects: a pair, whose first set acts first at every stage, and an
+//! optional set.
 
 use super::{EffectSet, Resistance, Rig, Signal};
 use crate::friction::Friction;
@@ -7,7 +7,7 @@ use crate::law::Scales;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Two sets beside each other.
+/// Two sets in combination; the first acts first at every stage.
 impl<T: Real, A: EffectSet<T>, B: EffectSet<T>> EffectSet<T> for (A, B) {
     type State = (A::State, B::State);
 
@@ -122,7 +122,7 @@ impl<T: Real, A: EffectSet<T>, B: EffectSet<T>> EffectSet<T> for (A, B) {
     }
 }
 
-/// A set that may be there.
+/// An optional set.
 impl<T: Real, A: EffectSet<T>> EffectSet<T> for Option<A> {
     type State = Option<A::State>;
 

@@ -1,4 +1,4 @@
-//! `+ F_d sgn v`: dry friction that does not depend on the bearing's load.
+//! Coulomb drag `+ F_d sgn v`: dry friction that does not depend on the load of the bearing.
 //!
 //! Source: Cohn (1998), section 6.6 (the rig's ball bearings and seals); Coulomb (1785).
 

@@ -1,4 +1,4 @@
-//! Friction times `1 + a sgn v`: one way is harder than the other.
+//! Direction-dependent friction: friction times `1 + a sgn v`.
 //!
 //! Source: mounted bearings and belts, whose side load adds to one direction and takes from the
 //! other; listed among the departures from symmetry by Armstrong-Helouvry et al. (1994).

@@ -1,17 +1,18 @@
-//! A soft drive: the encoder side is imposed, the journal follows through a spring.
+//! Compliant drive: the motion of the encoder side is imposed, and the journal follows through a
+//! spring.
 //!
 //! ```text
 //! J theta_j'' = k (theta_m - theta_j) + c (theta_m' - theta_j') - n R F(theta_j')
 //! ```
 //!
-//! with F set-valued at rest: the journal sticks while the twist torque is below the
-//! sliding friction, and the load cell then sees the twist torque.
+//! F is set-valued at rest: the journal sticks while the twist torque is below the sliding
+//! friction, and the load cell then measures the twist torque.
 //!
-//! A linear axis is a rotary one of radius 1 m: k is then in N/m, c in N s/m, J in kg.
+//! A linear axis is treated as a rotary one of radius 1 m: k is then in N/m, c in N s/m, J in kg.
 //!
-//! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994).
-//! The step is the midpoint rule with the set-valued force solved implicitly (a proximal
-//! step, after Moreau): it sticks, and it does not chatter.
+//! Source: Cohn (1998), section 5.1 and Figures 5.1, 5.4, 5.7, 5.10; Harnoy et al. (1994). The step
+//! is the midpoint rule with the set-valued force solved implicitly (a proximal step, after
+//! Moreau): it sticks, and it does not chatter.
 
 use super::{Drive, Effect, Info, Need, Parameter, Resistance, Rig, Stage};
 use crate::error::ParameterError;
@@ -19,11 +20,13 @@ use crate::motion::{sag, JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Inner steps of one step at most. At steps of 5 ms they follow a free journal up to 230 Hz; of a
-/// stiffer drive, which the midpoint rule carries as well, the ringing is not resolved.
+/// Largest number of inner steps per step.
+///
+/// At steps of 5 ms they resolve a free journal up to 230 Hz. The midpoint rule is stable for a
+/// stiffer drive too, but its ringing is not resolved.
 const MOST_INNER_STEPS: f64 = 24.0;
 
-/// A step before that was shorter than this, s, tells nothing of how resistance changes.
+/// Shortest previous step, s, from which a change of the resistance can be extrapolated.
 const SHORTEST_STEP_S: f64 = 1e-12;
 
 /// A spring and a damper between encoder and journal.
@@ -36,21 +39,21 @@ pub struct DriveCompliance<T> {
     inner_step_s: f64,
 }
 
-/// The journal's own angle and speed, and where the encoder side was.
+/// Angle and speed of the journal, and the last motion of the encoder side.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     angle_rad: T,
     speed_rad_s: T,
     encoder_rad: T,
     encoder_m_s: T,
-    /// What holds the journal now, and what did a step ago; how long that step was, s.
+    /// Resistance of the journal now and one step ago, and the length of that step, s.
     resistance: Resistance<T>,
     before: Resistance<T>,
     step_before_s: f64,
 }
 
 impl<T: Real> State<T> {
-    /// What holds the journal a `share` of a step from now, on a straight line through the last two.
+    /// Resistance at a `share` of a step from now, extrapolated linearly from the last two.
     #[inline(always)]
     fn ahead(&self, share: f64) -> Resistance<T> {
         let on = |a: T, b: T| (b + (b - a) * T::of(share)).max(T::ZERO);
@@ -69,8 +72,8 @@ impl<T: Real> Effect<T> for DriveCompliance<T> {
             Parameter::new("c_n_m_s_rad", "N m s/rad", "damping beside the spring", [1e-5, 1e3], &[0.1]).log().start(Start::DriveDamping),
             Parameter::new("J_kg_m2", "kg m^2", "inertia of the journal side", [1e-6, 1e2], &[2e-3]).log().start(Start::DriveInertia),
         ]).needs(&[Need::Path, Need::NoBristle]).longest_step_s(0.005);
-    // It rings, often faster than half the rate of the samples: frequencies that these cannot tell
-    // apart make a peak each.
+    // The drive rings, often faster than half the sampling rate. Frequencies that the samples
+    // cannot distinguish each give a peak of the likelihood.
     const PEAKS: Option<&'static str> = Some("J_kg_m2");
     type State = State<T>;
 
@@ -111,7 +114,7 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T> {
-        // What holds the journal follows from how it moves: it is looked for ahead.
+        // The resistance depends on the motion of the journal and is extrapolated.
         let share = (dt_s.value() / state.step_before_s).min(1.0);
         let (middle, end) = (state.ahead(0.5 * share), state.ahead(share));
         let arm = rig.count * rig.radius_m;
@@ -123,11 +126,11 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
         let h = dt_s.times(inverse_steps);
         let half = h.times(0.5);
         let (k, c) = (self.stiffness_n_m_rad, self.damping_n_m_s_rad);
-        // Everything that multiplies the midpoint speed.
+        // Sum of all coefficients of the midpoint speed.
         let inertia = self.inertia_kg_m2.times(2.0) / h;
         let inverse_drag = T::ONE / (inertia + k * half + c + slope);
-        // What the encoder side pushes with, from where it was: at first, what a straight line
-        // adds, and what the bend of its path takes away.
+        // Force of the encoder side along its path: the initial value, the linear change, and the
+        // reduction by the curvature of the path.
         let change_m_s = to.velocity_m_s - state.encoder_m_s;
         let first = c * (state.encoder_m_s * inverse_radius);
         let line = k * (to.angle_rad - state.encoder_rad) + c * (change_m_s * inverse_radius);
@@ -162,12 +165,12 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
                 after
             };
         }
-        // A stuck journal stays where it is, to the bit.
+        // A stuck journal keeps its position exactly.
         if ahead != from {
             state.angle_rad = state.encoder_rad + ahead;
         }
         if direction == T::ZERO {
-            // Stuck: the friction is whatever holds the journal.
+            // Stuck: the friction equals the force that holds the journal.
             let torque =
                 k * (to.angle_rad - state.angle_rad) + c * (to.velocity_m_s * inverse_radius);
             let hold = arm * end.level_n;
@@ -189,7 +192,7 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
 
     #[inline(always)]
     fn resist(&self, state: &mut State<T>, resistance: &Resistance<T>, dt_s: T) {
-        // A run begins with a resistance that has not changed.
+        // At the start of a run the resistance is taken as unchanged.
         state.before = if dt_s > T::ZERO {
             state.resistance
         } else {

@@ -1,10 +1,12 @@
-//! Dry friction times `1 + a sgn v`: one way is harder than the other, by the same share at every speed.
+//! Direction-dependent dry friction: dry friction times `1 + a sgn v`, with the same `a` at every
+//! speed.
 //!
-//! A preload that a wedge, a wiper or a helix angle adds to one way and takes from the other changes
-//! what jumps with the direction, level and Stribeck peak alike; viscous friction is not pressed.
+//! A preload by a wedge, a wiper or a helix angle adds to one direction and takes from the other.
+//! It changes the part that jumps with the direction, level and Stribeck peak alike; viscous
+//! friction does not depend on the preload.
 //!
-//! Where the dry level is the same at every speed, place and load, this is in motion a force one way,
-//! `sensor_offset`; at rest that force is there and this is not.
+//! Where the dry level is the same at every speed, position and load, this effect in motion equals
+//! a constant force, `sensor_offset`. At rest only the constant force remains.
 //!
 //! Source: listed among the departures from symmetry by Armstrong-Helouvry et al. (1994).
 

@@ -1,11 +1,11 @@
-//! Dry friction that grows with the load: `+ mu F` to the level that jumps with the direction.
+//! Load-dependent dry friction: `+ mu F` on the level that jumps with the direction.
 //!
-//! Source: Amontons (1699) and Coulomb (1785); of gears and strain-wave drives, whose friction grows
-//! with the torque that they transmit, Hamon, Gautier & Garrec (2010); of a seal, that the pressure
-//! presses on its rod.
+//! Source: Amontons (1699) and Coulomb (1785). Hamon, Gautier & Garrec (2010) for gears and
+//! strain-wave drives, whose friction grows with the transmitted torque. It also describes a seal
+//! that the pressure presses on its rod.
 //!
-//! A law in newtons knows no load: its level is that of no load here. A bristle bends towards the
-//! whole level.
+//! A law in newtons does not depend on the load; its level here is that without load. A bristle
+//! deflects towards the whole level.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -13,7 +13,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// A coefficient of friction beside a level.
+/// A coefficient of friction in addition to the dry level.
 #[derive(Clone, Copy, Debug)]
 pub struct DryLoadDependence<T> {
     coefficient: T,

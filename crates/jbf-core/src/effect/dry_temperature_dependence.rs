@@ -1,9 +1,10 @@
-//! Dry friction that changes with the recorded temperature, times `1 + a (T - T_0)`.
+//! Temperature-dependent dry friction: dry friction times `1 + a (T - T_0)`, T the recorded
+//! temperature.
 //!
-//! Source: Bittencourt & Gunnarsson (2012), who find the static friction of a robot's joint linear in
-//! the temperature, and Simoni et al. (2019), a polynomial of it; of a preloaded gear, a bearing or a
-//! seal the fit changes as its parts expand. A straight line has an end: the level never falls below
-//! zero.
+//! Source: Bittencourt & Gunnarsson (2012), who find the static friction of a robot joint linear in
+//! the temperature; Simoni et al. (2019), who use a polynomial. In a preloaded gear, a bearing or a
+//! seal the fit of the parts changes with thermal expansion. The level is limited to zero from
+//! below.
 
 use super::vogel::REFERENCE;
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
@@ -12,7 +13,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// A level by a thermometer.
+/// Dry friction level that depends on the recorded temperature.
 #[derive(Clone, Copy, Debug)]
 pub struct DryTemperatureDependence<T> {
     slope_1_k: T,

@@ -1,5 +1,7 @@
-//! After a rest of length t_d: `+ a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0)`, s the distance slid
-//! since: contacts grow while they rest and are torn off as they slide.
+//! Dwell-time stiction: after a rest of length t_d, `+ a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0)`, with
+//! s the sliding distance since.
+//!
+//! Contacts grow during a rest and are sheared off by sliding.
 //!
 //! Source: Kato et al. (1972); Cohn (1998), section 2.1.5.
 
@@ -18,7 +20,7 @@ pub struct DwellStiction<T> {
     inverse_distance_1_m: T,
 }
 
-/// The last rest, and the distance since.
+/// Length of the last rest, and the sliding distance since.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     rest_s: T,

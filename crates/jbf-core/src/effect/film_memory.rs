@@ -1,5 +1,6 @@
-//! The film's clock times a factor: it follows the speed sooner or later than the short-bearing
-//! theory says.
+//! Film memory: a factor on the film's clock.
+//!
+//! The film follows the speed earlier or later than short-bearing theory predicts.
 //!
 //! Source: Cohn (1998): the bearing is of medium length (section 3.2), and the thesis's own
 //! programs run the film on another clock (appendices D and E).
@@ -9,7 +10,7 @@ use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// A film that is faster or slower than the law's.
+/// Film that is faster or slower than the law's.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmMemory<T> {
     factor: T,

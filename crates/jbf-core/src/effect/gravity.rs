@@ -1,7 +1,7 @@
-//! The weight of a link: `+ G sin(theta - theta_0)`.
+//! Weight of a link: `+ G sin(theta - theta_0)`.
 //!
-//! Source: any textbook on robots, such as Siciliano et al. (2009), section 7.3. Of an axis that
-//! slides at an angle it is a constant, which `sensor_offset` says.
+//! Source: any textbook on robots, such as Siciliano et al. (2009), section 7.3. For an axis that
+//! slides at an angle the weight is a constant, which is `sensor_offset`.
 
 use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -11,7 +11,7 @@ use crate::page::Start;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A force that goes once a turn with the angle.
+/// Force that varies with the angle, once per turn.
 #[derive(Clone, Copy, Debug)]
 pub struct Gravity<T> {
     weight_n: T,
@@ -67,7 +67,7 @@ impl<T: Real> Effect<T> for Gravity<T> {
 impl<T: Real> OtherFriction<T> for Gravity<T> {
     #[inline(always)]
     fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
-        // sin(theta - theta_0) with the offset's own cosine and sine taken once.
+        // sin(theta - theta_0) from the precomputed cosine and sine of the offset.
         let level =
             journal.angle_rad.sin() * self.cos_offset - journal.angle_rad.cos() * self.sin_offset;
         Friction {

@@ -1,4 +1,4 @@
-//! `+ m_e dv/dt`: the load cell also feels a mass that is accelerated.
+//! Reflected inertia: `+ m_e dv/dt`; the load cell also measures the force on an accelerated mass.
 //!
 //! Source: d'Alembert; the housing on the arm of Cohn's apparatus (1998, section 4.1), and any
 //! drive force measured ahead of the moving mass.

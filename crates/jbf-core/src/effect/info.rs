@@ -1,5 +1,5 @@
-//! The catalogue's page of an effect: the one source for the command line, the docs and
-//! the fit's bounds and starting values.
+//! Description of an effect: the single source for the command line, the documentation, and the
+//! bounds and start values of the fit.
 
 use super::need::Need;
 use crate::error::ParameterError;
@@ -8,20 +8,20 @@ use crate::page::{in_bounds, Parameter};
 use crate::real::Real;
 use core::fmt;
 
-/// Where in the signal chain an effect sits.
+/// Position of an effect in the signal chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Between encoder and journal.
     Drive,
-    /// The oil.
+    /// Properties of the oil.
     Lubricant,
-    /// The film's own dynamics.
+    /// Dynamics of the film.
     Film,
     /// Between the surfaces.
     Contact,
-    /// Friction beside the bearing's.
+    /// Friction in addition to that of the bearing.
     Other,
-    /// Between force and record.
+    /// Between the force and the record.
     Instrument,
 }
 
@@ -38,7 +38,7 @@ impl fmt::Display for Stage {
     }
 }
 
-/// The page of one effect.
+/// Description of one effect.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Info {
@@ -46,31 +46,35 @@ pub struct Info {
     pub name: &'static str,
     /// Stage of the signal chain.
     pub stage: Stage,
-    /// One line: what it is in a machine.
+    /// Physical meaning in a machine, in one line.
     pub summary: &'static str,
-    /// The form, in plain characters.
+    /// Equation, in plain characters.
     pub equation: &'static str,
-    /// Where the form comes from.
+    /// Source of the equation.
     pub source: &'static str,
-    /// Where the form stops being true.
+    /// Limits of validity of the equation.
     pub limits: &'static str,
-    /// Parameters in order.
+    /// Parameters, in order.
     pub parameters: &'static [Parameter],
-    /// What the law and the record must have for the effect to mean something.
+    /// Requirements on the law and the record without which the effect has no meaning.
     pub needs: &'static [Need],
-    /// Longest inner step at which the effect is still exact to a hundredth of a usual noise, s.
+    /// Longest inner step, s, at which the error of the effect is at most a hundredth of a usual
+    /// noise.
     pub longest_step_s: f64,
-    /// True of a force, beside friction, that the drive's transmission carries: a weight, a mass.
+    /// True for a force other than friction that the drive's transmission carries: a weight, a
+    /// mass.
     pub transmitted: bool,
-    /// The effect of which this is a further one: without that beside it, it is that one.
+    /// Name of the effect that this effect repeats; without that effect, this one is equal to it.
     pub further_of: Option<&'static str>,
-    /// True where a run's first sample does not tell the state in which it begins, and no time lets
-    /// that be forgotten: only a turn of what acts on it does.
+    /// True if the first sample of a run does not determine the initial state and the state does
+    /// not decay with time.
+    ///
+    /// Only a reversal of its input erases such a state.
     pub unknown_start: bool,
 }
 
 impl Info {
-    /// A page to be filled in: no parameters, no needs, steps of 20 ms.
+    /// Creates an empty description: no parameters, no requirements, steps of 20 ms.
     pub const fn new(name: &'static str, stage: Stage) -> Self {
         Self {
             name,
@@ -88,68 +92,69 @@ impl Info {
         }
     }
 
-    /// What it is in a machine, in one line.
+    /// Sets the physical meaning in a machine, in one line.
     pub const fn summary(mut self, text: &'static str) -> Self {
         self.summary = text;
         self
     }
 
-    /// The form, in plain characters.
+    /// Sets the equation, in plain characters.
     pub const fn equation(mut self, text: &'static str) -> Self {
         self.equation = text;
         self
     }
 
-    /// Where the form comes from.
+    /// Sets the source of the equation.
     pub const fn source(mut self, text: &'static str) -> Self {
         self.source = text;
         self
     }
 
-    /// Where the form stops being true.
+    /// Sets the limits of validity of the equation.
     pub const fn limits(mut self, text: &'static str) -> Self {
         self.limits = text;
         self
     }
 
-    /// Parameters in order.
+    /// Sets the parameters, in order.
     pub const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
         self.parameters = pages;
         self
     }
 
-    /// What the law and the record must have.
+    /// Sets the requirements on the law and the record.
     pub const fn needs(mut self, needs: &'static [Need]) -> Self {
         self.needs = needs;
         self
     }
 
-    /// Longest inner step that is still exact, s.
+    /// Sets the longest inner step that is still exact, s.
     pub const fn longest_step_s(mut self, step_s: f64) -> Self {
         self.longest_step_s = step_s;
         self
     }
 
-    /// A force that the drive's transmission carries.
+    /// Marks a force that the drive's transmission carries.
     pub const fn transmitted(mut self) -> Self {
         self.transmitted = true;
         self
     }
 
-    /// A further one of the effect of that name.
+    /// Marks the effect as a repetition of the effect of that name.
     pub const fn further(mut self, of: &'static str) -> Self {
         self.further_of = Some(of);
         self
     }
 
-    /// A state that the first sample does not tell, and that lasts.
+    /// Marks an initial state that the first sample does not determine and that persists.
     pub const fn unknown_start(mut self) -> Self {
         self.unknown_start = true;
         self
     }
 
-    /// Check a list of values against the bounds. A null value is always allowed, even
-    /// where it is infinite.
+    /// Checks a list of values against the bounds.
+    ///
+    /// A null value is always allowed, even where it is infinite.
     ///
     /// # Errors
     /// Names the first value that is missing or out of bounds.
@@ -157,13 +162,14 @@ impl Info {
         in_bounds(self.parameters, values)
     }
 
-    /// The need that a law leaves open, where there is one: the effect then does not apply.
+    /// First requirement that a law does not meet, if any; the effect then does not apply.
     pub fn lacking(&self, law: &law::Info) -> Option<Need> {
         self.needs.iter().copied().find(|need| !need.met_by(law))
     }
 
-    /// True where a parameter stands at an infinite null: the effect is then left out
-    /// altogether, which is the only exact way to take such a limit.
+    /// True if a parameter has an infinite null value.
+    ///
+    /// The effect is then omitted, which is the only exact form of this limit.
     pub fn absent<T: Real>(&self, values: &[T]) -> bool {
         self.parameters.iter().zip(values).any(|(p, v)| {
             p.null

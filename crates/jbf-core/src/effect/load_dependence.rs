@@ -1,30 +1,31 @@
-//! U_tr and K0 as powers of the load about the rig's own.
+//! Load dependence of the film: U_tr and K0 as powers of the load relative to the rig's load.
 //!
 //! ```text
 //! U_tr -> U_tr (F/F_0)^p,  K0 -> K0 (F/F_0)^q,  F_0 the rig's load
 //! ```
 //!
-//! Cohn (1998) had to fit U_tr and K0 anew at each load: Tables 4.2 and 4.3 (two-way motion)
-//! have 0.06 m/s and 7.5e5 at 104 N, 0.05 m/s and 6.25e5 at 83.5 N, which is p = q = 0.83;
-//! Tables 4.4 and 4.5 (one-way) p = 0, q = 1.50.
+//! Cohn (1998) had to fit U_tr and K0 anew at each load. Tables 4.2 and 4.3 (two-way motion) have
+//! 0.06 m/s and 7.5e5 at 104 N, 0.05 m/s and 6.25e5 at 83.5 N, which is p = q = 0.83. Tables 4.4
+//! and 4.5 (one-way) give p = 0, q = 1.50.
 //!
-//! Under the rig's load nothing changes: records of one load say nothing of the exponents.
+//! Under the rig's load the effect changes nothing: records at one load do not determine the
+//! exponents.
 
 use super::{Effect, Info, Loading, Need, Parameter, Rig, Scales, Stage};
 use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// The load's share of the rig's beyond which, up or down, the power is no longer followed.
+/// Largest ratio of the load to the rig's load, up or down, at which the power law is evaluated.
 const FURTHEST: f64 = 10.0;
 
-/// Two exponents.
+/// The two exponents.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadDependence<T> {
     exponents: [T; 2],
 }
 
-/// The share that was last asked for, and its factors.
+/// The last load ratio and its factors.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     share: T,

@@ -1,12 +1,12 @@
-//! What a rig adds between the commanded motion and the recorded friction, one effect a
-//! file, each at one stage of the signal chain:
+//! Effects between the commanded motion and the recorded friction, one per file, each at one stage
+//! of the signal chain:
 //!
 //! ```text
 //! commanded motion -> drive -> lubricant -> load -> film (the law) -> contact -> other -> instrument
 //! ```
 //!
-//! An effect knows its own stage and nothing of the others. To add one: write its file, name the
-//! file below, and name the effect in its stage's line of `catalogue.rs`.
+//! An effect knows only its own stage. To add an effect, write its file, declare the module below,
+//! and add the effect to the line of its stage in `catalogue.rs`.
 
 pub mod backlash;
 pub mod cogging;
@@ -82,44 +82,47 @@ use crate::motion::Motion;
 use crate::real::Real;
 use core::fmt::Debug;
 
-/// What every effect has: a page in the catalogue, a checked constructor, a state.
+/// Common interface of all effects: a description in the catalogue, a checked constructor, a state.
 pub trait Effect<T: Real>: Copy + Debug {
-    /// The page in the catalogue.
+    /// Description in the catalogue.
     const INFO: Info;
-    /// True where a parameter moves the instants at which friction jumps: no fit may lean on the
-    /// samples next to such a jump.
+    /// True if a parameter moves the instants at which friction jumps.
+    ///
+    /// A fit must not rely on the samples next to such a jump.
     const MOVES_JUMPS: bool = false;
-    /// True where what is read of a jump lasts: an error in the jump's instant is read as long, and
-    /// not in the samples next to it alone.
+    /// True if the reading of a jump persists.
+    ///
+    /// An error in the instant of the jump then affects more than the samples next to it.
     const SPREADS_JUMPS: bool = false;
-    /// A parameter along which the likelihood of a record has peak beside peak: a fit looks for
+    /// Parameter along which the likelihood of a record has several peaks; a fit searches for
     /// higher ones.
     const PEAKS: Option<&'static str> = None;
-    /// What the effect remembers; `()` for most.
+    /// State of the effect; `()` for most.
     type State: Copy + Debug;
 
-    /// Build from the parameters in the order of `INFO.parameters`.
+    /// Creates the effect from its parameters, in the order of `INFO.parameters`.
     ///
     /// # Errors
     /// Names the first parameter that is missing or out of its bounds.
     fn new(parameters: &[T]) -> Result<Self, ParameterError>;
 
-    /// The state at the start of a run that begins with `motion`.
+    /// State at the start of a run that begins with `motion`.
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State;
 }
 
-/// The few numbers of a rig that effects need.
+/// Properties of the rig that effects need.
 #[derive(Clone, Copy, Debug)]
 pub struct Rig<T> {
     /// Journal radius, m.
     pub radius_m: T,
-    /// Bearings on the shaft.
+    /// Number of bearings on the shaft.
     pub count: T,
 }
 
 impl<T: Real> Rig<T> {
-    /// That of a shaft in this bearing. Without one the axis is a linear one: a rotary one of
-    /// radius 1 m.
+    /// Properties of the rig of a shaft in this bearing.
+    ///
+    /// Without a bearing the axis is linear and treated as a rotary one of radius 1 m.
     pub fn on(bearing: Option<&Bearing>) -> Self {
         Self {
             radius_m: T::of(bearing.map_or(1.0, |b| b.radius_m)),

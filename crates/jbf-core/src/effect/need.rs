@@ -1,36 +1,37 @@
-//! What an effect needs of the law and the effects beside it, and of the record.
+//! Requirements of an effect on the law, on other effects and on the record.
 
 use crate::law;
 
-/// One need. Those of a law are answered by its page; those of a record by whoever reads it;
-/// without the effect that it needs beside it an effect changes nothing.
+/// One requirement of an effect.
+///
+/// Requirements on the law are checked against its description, those on the record by its reader.
+/// Without the other effect that it requires, an effect changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// Of the law: a lubricant film.
+    /// The law has a lubricant film.
     Film,
-    /// Of the law: that it is one in newtons, which knows no load.
+    /// The law is in newtons and does not depend on the load.
     NoFilm,
-    /// Of the law: that it jumps at zero speed, so that a bristle or a soft drive can take the
-    /// jump's place.
+    /// The law jumps at zero speed, so that a bristle or a compliant drive can replace the jump.
     NoBristle,
-    /// Of the law: no dry friction of its own that depends on no load.
+    /// The law has no dry friction that is independent of the load.
     NoDryLevel,
-    /// Of the effects beside it: one whose force the drive transmits ([`super::Info::transmitted`]).
+    /// Another effect has a force that the drive transmits ([`super::Info::transmitted`]).
     Transmitted,
-    /// Of the record: the shaft's angle.
+    /// The record has the angle of the shaft.
     Angle,
-    /// Of the record: how far the drive has gone, as an angle or on a line.
+    /// The record has the travel of the drive, as an angle or on a line.
     Path,
-    /// Of the record: where the drive stands, as an angle or on a line.
+    /// The record has the position of the drive, as an angle or on a line.
     Position,
-    /// Of the record: loads that differ, within a run or from run to run.
+    /// The record has loads that differ, within a run or between runs.
     Loads,
-    /// Of the record: temperatures that differ, within a run or from run to run.
+    /// The record has temperatures that differ, within a run or between runs.
     Temperatures,
 }
 
 impl Need {
-    /// The name used in files.
+    /// Name used in files.
     pub const fn name(self) -> &'static str {
         match self {
             Need::Film => "film",
@@ -46,7 +47,7 @@ impl Need {
         }
     }
 
-    /// True where a law gives what is needed, or where it is not the law's to give.
+    /// True if the law meets the requirement, or if the requirement is not on the law.
     pub const fn met_by(self, law: &law::Info) -> bool {
         match self {
             Need::Film => law.has_film,
@@ -62,7 +63,8 @@ impl Need {
         }
     }
 
-    /// Why a law that leaves the need open does not go with the effect: "the law ...".
+    /// Reason why a law that does not meet the requirement excludes the effect, to follow "the law
+    /// ...".
     pub const fn why_not(self) -> &'static str {
         match self {
             Need::Film => "has no lubricant film",

@@ -1,11 +1,11 @@
-//! A pitch of the way and the place within it, as `cogging` and `pitch_ripple` have them.
+//! Pitch of the travel and phase within it, as used by `cogging` and `pitch_ripple`.
 
 use super::Parameter;
 use crate::page::Start;
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The page of a pitch that the fit has to find.
+/// Description of a pitch that the fit must find.
 pub(super) const PITCH: Parameter = Parameter::new(
     "pitch_m",
     "m",
@@ -16,7 +16,7 @@ pub(super) const PITCH: Parameter = Parameter::new(
 .log()
 .start(Start::Pitch);
 
-/// The page of the place at which a period begins.
+/// Description of the phase at which a period begins.
 pub(super) const PHASE: Parameter = Parameter::new(
     "phase_rad",
     "rad",
@@ -27,7 +27,7 @@ pub(super) const PHASE: Parameter = Parameter::new(
 .period(TAU)
 .signed();
 
-/// `2 pi x/p - phi`.
+/// Phase angle `2 pi x/p - phi`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pitch<T> {
     inverse_1_m: T,
@@ -42,7 +42,8 @@ impl<T: Real> Pitch<T> {
         }
     }
 
-    /// The angle at a place, m, less whole periods: single precision has none to lose.
+    /// Phase angle at a position (m), without whole periods, which would cost digits in single
+    /// precision.
     #[inline(always)]
     pub(super) fn angle(&self, place_m: T) -> T {
         let periods = place_m * self.inverse_1_m;

@@ -1,7 +1,8 @@
-//! Friction that rises and falls with every pitch of the way: times `1 + a cos(2 pi x/p - phi)`.
+//! Friction ripple over a pitch of the travel: friction times `1 + a cos(2 pi x/p - phi)`.
 //!
-//! A screw's lead, the balls that come round, a gear's teeth, a belt's: what presses changes from
-//! place to place, and friction with it. `position_ripple` is once a turn of the shaft.
+//! The pitch is that of a screw's lead, of recirculating balls, or of the teeth of a gear or belt.
+//! The contact pressure changes with the position, and friction with it. `position_ripple` repeats
+//! once per turn of the shaft.
 //!
 //! Source: Armstrong-Helouvry (1991), chapter 3, whose friction of gears depends on the position at
 //! the pitch of the teeth.
@@ -14,14 +15,14 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Friction that depends on the place within a pitch.
+/// Friction that depends on the position within a pitch.
 #[derive(Clone, Copy, Debug)]
 pub struct PitchRipple<T> {
     depth: T,
     pitch: Pitch<T>,
 }
 
-/// The pages of its parameters.
+/// Descriptions of the parameters.
 pub(super) const PARAMETERS: &[Parameter] = &[
     Parameter::new("a", "-", "depth of the ripple", [0.0, 1.0], &[0.1]).null(0.0),
     PITCH.start(Start::RipplePitch),

@@ -1,7 +1,8 @@
-//! A second ripple beside `pitch_ripple`, at a pitch of its own: times `1 + a cos(2 pi x/p - phi)`.
+//! Second friction ripple in addition to `pitch_ripple`, with its own pitch: friction times `1 + a
+//! cos(2 pi x/p - phi)`.
 //!
-//! A ripple is rarely one wave. Its second harmonic has half the pitch; the balls of a screw come round
-//! at another pitch than its lead. Which it is, the pitch that the fit finds says.
+//! A ripple is rarely a single wave. Its second harmonic has half the pitch; the balls of a screw
+//! recirculate at another pitch than its lead. The fitted pitch shows which it is.
 //!
 //! Source: that of `pitch_ripple`.
 
@@ -12,7 +13,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Friction that depends on the place within another pitch.
+/// Friction that depends on the position within a second pitch.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondPitchRipple<T>(PitchRipple<T>);
 

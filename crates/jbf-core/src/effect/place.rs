@@ -1,12 +1,14 @@
-//! One effect in its place, as a set of one: how each stage of the signal chain asks an effect. The
-//! catalogue's effects stand in these places, and so may one's own: write a type with
-//! [`Effect`](super::Effect) and its stage's trait, from outside this crate, and put it there.
+//! Adapters that make one effect a set of effects: how each stage of the signal chain calls an
+//! effect.
+//!
+//! The effects of the catalogue use these adapters, and so can user-defined ones. Outside this
+//! crate, write a type with [`Effect`](super::Effect) and the trait of its stage, and wrap it:
 //!
 //! ```ignore
 //! let effects = Effects::NONE.with(Beside::<MyWiper<f64>>::new(&[0.5])?);
 //! ```
 //!
-//! `cargo run --example own_effect` shows the whole of it.
+//! `cargo run --example own_effect` shows a complete example.
 
 use super::{
     Bristle, Contact, Drive, EffectSet, Film, Info, Instrument, Loading, Lubricant, OtherFriction,
@@ -18,21 +20,23 @@ use crate::law::Scales;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// A place, with an effect in it that can be built from a list of values.
+/// Adapter for one stage, with an effect that can be built from a list of values.
 pub trait Place<T: Real>: EffectSet<T> {
-    /// The page of the effect.
+    /// Description of the effect.
     const INFO: Info;
 
-    /// Build the effect from its parameters, in the order of its page, and put it here.
+    /// Creates the effect from its parameters, in the order of its description, and wraps it.
     ///
     /// # Errors
-    /// Names the first parameter that is missing, out of its bounds, or at an infinite null: such
-    /// an effect is to be left out.
+    /// Names the first parameter that is missing, out of its bounds, or at an infinite null. In the
+    /// last case the effect must be omitted.
     fn new(parameters: &[T]) -> Result<Self, ParameterError>;
 }
 
-/// The places: a name, the trait of the effects that stand in it, and the stage that their pages
-/// must say, which is asked while a program is compiled.
+/// Defines the adapters: name, trait of the effects, and the stage that their descriptions must
+/// have.
+///
+/// The stage is checked at compile time.
 macro_rules! places {
     ($($(#[$doc:meta])* $Place:ident: $Trait:ident at $stage:pat,)*) => {$(
         $(#[$doc])*
@@ -66,23 +70,23 @@ macro_rules! places {
 }
 
 places! {
-    /// Between the encoder and the journal.
+    /// Effect between the encoder and the journal.
     InDrive: Drive at Stage::Drive,
-    /// In the oil.
+    /// Effect on the oil.
     InLubricant: Lubricant at Stage::Lubricant,
-    /// On the law's own parameters under a load.
+    /// Effect of the load on the parameters of the law.
     UnderLoad: Loading at Stage::Film,
-    /// In the film's dynamics.
+    /// Effect on the dynamics of the film.
     InFilm: Film at Stage::Film,
-    /// Between the surfaces.
+    /// Effect between the surfaces.
     InContact: Contact at Stage::Contact,
-    /// In the drive's transmission, after the contact.
+    /// Effect in the drive's transmission, after the contact.
     InTransmission: Transmission at Stage::Contact,
-    /// In the place of the motion's sign, last in the contact.
+    /// Effect that replaces the sign of the motion, last in the contact.
     AsBristle: Bristle at Stage::Contact,
-    /// Beside the bearing's friction.
+    /// Friction in addition to that of the bearing.
     Beside: OtherFriction at Stage::Other,
-    /// Between the force and its record.
+    /// Effect between the force and its record.
     InInstrument: Instrument at Stage::Instrument,
 }
 

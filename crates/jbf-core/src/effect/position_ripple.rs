@@ -1,7 +1,7 @@
-//! Friction times `1 + a cos(theta - theta_0)`: it changes once a turn.
+//! Friction ripple over a turn: friction times `1 + a cos(theta - theta_0)`.
 //!
-//! Source: Cohn (1998), section 2.4.1, after Armstrong-Helouvry's look-up tables of
-//! friction against joint angle; in a journal, its out-of-roundness.
+//! Source: Cohn (1998), section 2.4.1, after Armstrong-Helouvry's look-up tables of friction
+//! against joint angle; in a journal, its out-of-roundness.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -10,7 +10,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Friction that depends on the shaft's angle.
+/// Friction that depends on the angle of the shaft.
 #[derive(Clone, Copy, Debug)]
 pub struct PositionRipple<T> {
     depth: T,
@@ -57,7 +57,7 @@ impl<T: Real> Effect<T> for PositionRipple<T> {
 impl<T: Real> Contact<T> for PositionRipple<T> {
     #[inline(always)]
     fn apply(&self, _state: &(), journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
-        // cos(theta - theta_0) with the offset's own cosine and sine taken once.
+        // cos(theta - theta_0) from the precomputed cosine and sine of the offset.
         let wave =
             journal.angle_rad.cos() * self.cos_offset + journal.angle_rad.sin() * self.sin_offset;
         let factor = T::ONE + self.depth * wave;

@@ -1,12 +1,14 @@
-//! Bristles: `z' = v - |v| sigma z / f`, friction coefficient `sigma z`, with f the
-//! coefficient that the contact would have in sliding. Of a law in newtons only the dry part
-//! bends, and the viscous one adds to it, as in Dahl's and LuGre's laws.
+//! Presliding by bristles: `z' = v - |v| sigma z / f`, friction coefficient `sigma z`, with f the
+//! coefficient that the contact would have in sliding.
 //!
-//! Source: Dahl (1968); Canudas de Wit et al. (1995); Cohn (1998), section 2.1.3. A
-//! reversal becomes a slope over the distance f / sigma.
+//! For a law in newtons only the dry part deflects, and the viscous part adds to it, as in Dahl's
+//! and LuGre's laws.
 //!
-//! With `c = sigma z` this is a relaxation of c towards `f sgn(v)` over distance, so a step
-//! is solved exactly in the distance slid and no stiffness is too large.
+//! Source: Dahl (1968); Canudas de Wit et al. (1995); Cohn (1998), section 2.1.3. A reversal
+//! becomes a slope over the distance f / sigma.
+//!
+//! With `c = sigma z` this is a relaxation of c towards `f sgn(v)` over distance. A step is
+//! therefore solved exactly in the sliding distance, and any stiffness is stable.
 
 use super::{Bristle, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;

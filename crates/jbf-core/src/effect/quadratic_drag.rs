@@ -1,7 +1,7 @@
-//! `+ c v |v|`: oil that is thrown about.
+//! Quadratic drag `+ c v |v|`: churning of oil.
 //!
-//! Source: turbulent drag after Rayleigh (1876); the flooded, gravity-fed bearings of Cohn
-//! (1998), section 4.1.
+//! Source: turbulent drag after Rayleigh (1876); the flooded, gravity-fed bearings of Cohn (1998),
+//! section 4.1.
 
 use super::{Effect, Info, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;

@@ -1,21 +1,24 @@
-//! The macro behind the catalogue of effects, and what its lists are made of. From the list in
-//! `catalogue.rs` it makes the two structs with a field a stage, and what is looked up by name.
+//! Macro that generates the catalogue of effects, and its types.
+//!
+//! From the list in `catalogue.rs` it generates the two structs with one field per stage, and the
+//! look-up by name.
 
 use super::place::Place;
 use super::EffectSet;
 use crate::error::ParameterError;
 use crate::real::Real;
 
-/// The effects of one stage of the catalogue, each there or not.
+/// Effects of one stage of the catalogue, each optional.
 pub(crate) trait Shelf<T: Real>: EffectSet<T> {
-    /// None of them is there.
+    /// Value without any effect.
     const EMPTY: Self;
 
     /// True if no effect of this stage is set.
     fn is_empty(&self) -> bool;
 
-    /// Put the effect of that name here, or take it out where its parameters stand at an infinite
-    /// null; nothing where this shelf has no effect of that name.
+    /// Sets the effect of that name, or removes it where a parameter has an infinite null.
+    ///
+    /// Returns `None` if this stage has no effect of that name.
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>>;
 }
 
@@ -53,7 +56,7 @@ impl<T: Real, P: Place<T>, S: Shelf<T>> Shelf<T> for (Option<P>, S) {
     }
 }
 
-/// The type of a stage's [`Shelf`]: its effects from left to right.
+/// Type of a stage's [`Shelf`]: its effects from left to right.
 macro_rules! shelf {
     ($T:ident $Place:ident:) => { () };
     ($T:ident $Place:ident: $module:ident::$Type:ident $(, $more:ident::$More:ident)*) => {
@@ -66,26 +69,29 @@ macro_rules! shelf {
 
 macro_rules! signal_chain {
     ($($stage:ident: $Place:ident [$($module:ident::$Type:ident),* $(,)?],)*) => {
-        /// The type of each stage's shelf, under the stage's name.
+        /// Type of the [`Shelf`](crate::effect::registry::Shelf) of each stage, under the name of
+        /// the stage.
         #[allow(non_camel_case_types)]
         mod line {
             $(pub(crate) type $stage<T> = $crate::effect::registry::shelf!(T $Place: $($module::$Type),*);)*
         }
 
-        /// Any subset of the catalogue, chosen by name while a program runs: it keeps room for
-        /// every effect. A [typed set](super::set) keeps room for what is in it.
+        /// Any subset of the catalogue, selected by name at run time.
+        ///
+        /// It reserves memory for every effect. A [typed set](super::set) reserves memory only for
+        /// its members.
         #[derive(Clone, Copy, Debug)]
         pub struct Effects<T: Real> {
             $($stage: line::$stage<T>,)*
         }
 
-        /// The states of that subset.
+        /// States of the subset.
         #[derive(Clone, Copy, Debug)]
         pub struct States<T: Real> {
             $($stage: <line::$stage<T> as EffectSet<T>>::State,)*
         }
 
-        /// The stages of the signal chain in which a subset has an effect.
+        /// Stages of the signal chain in which a subset has an effect.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub struct OccupiedStages {
             $(
@@ -94,13 +100,13 @@ macro_rules! signal_chain {
             )*
         }
 
-        /// Every effect, in the order of the signal chain.
+        /// All effects, in the order of the signal chain.
         pub const CATALOGUE: &[Info] = &[
             $($(<$Place<$module::$Type<f64>> as Place<f64>>::INFO,)*)*
         ];
 
-        /// True where a parameter of the effect of that name moves the instants at which
-        /// friction jumps; see [`Effect::MOVES_JUMPS`].
+        /// True if a parameter of the effect of that name moves the instants at which friction
+        /// jumps; see [`Effect::MOVES_JUMPS`].
         pub fn moves_jumps(name: &str) -> bool {
             match name {
                 $($(stringify!($module) => <$module::$Type<f64> as Effect<f64>>::MOVES_JUMPS,)*)*
@@ -108,7 +114,7 @@ macro_rules! signal_chain {
             }
         }
 
-        /// True where an error in the instant of a jump is read for long; see
+        /// True if an error in the instant of a jump affects the readings for a long time; see
         /// [`Effect::SPREADS_JUMPS`].
         pub fn spreads_jumps(name: &str) -> bool {
             match name {
@@ -117,7 +123,7 @@ macro_rules! signal_chain {
             }
         }
 
-        /// The parameter of the effect of that name along which likelihoods have many peaks; see
+        /// Parameter of the effect of that name along which likelihoods have several peaks; see
         /// [`Effect::PEAKS`].
         pub fn peaks(name: &str) -> Option<&'static str> {
             match name {
@@ -126,8 +132,7 @@ macro_rules! signal_chain {
             }
         }
 
-        /// The Rust types of the effect of that name, as `effect::PLACE` and `effect::NAME::TYPE`
-        /// have them.
+        /// Rust types of the effect of that name, as in `effect::PLACE` and `effect::NAME::TYPE`.
         pub fn type_names(name: &str) -> Option<(&'static str, &'static str)> {
             match name {
                 $($(stringify!($module) => Some((stringify!($Place), stringify!($Type))),)*)*
@@ -136,19 +141,19 @@ macro_rules! signal_chain {
         }
 
         impl<T: Real> Effects<T> {
-            /// No effect at all: the bare law.
+            /// No effects: the bare law.
             pub const NONE: Self = Self { $($stage: Shelf::EMPTY,)* };
 
-            /// The stages that have an effect.
+            /// Stages that have an effect.
             pub fn occupied_stages(&self) -> OccupiedStages {
                 OccupiedStages { $($stage: !self.$stage.is_empty(),)* }
             }
 
-            /// Add (or replace) the effect of that name, or take it out where its
-            /// parameters stand at an infinite null.
+            /// Adds (or replaces) the effect of that name, or removes it where a parameter has an
+            /// infinite null.
             ///
             /// # Errors
-            /// Names the parameter that breaks its rule, or says that there is no such effect.
+            /// Names the parameter that violates its rule, or reports that there is no such effect.
             pub fn set(&mut self, name: &str, parameters: &[T]) -> Result<(), ParameterError> {
                 $(if let Some(done) = self.$stage.set(name, parameters) {
                     return done;

@@ -1,4 +1,4 @@
-//! `+ d t`: the charge of a piezo cell leaks, a bridge warms.
+//! Sensor drift `+ d t`, such as the charge leakage of a piezo cell or the warming of a bridge.
 //!
 //! Source: charge amplifiers of piezo-electric load cells (Gautschi 2002).
 
@@ -7,7 +7,7 @@ use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// A load cell whose zero wanders steadily.
+/// Load cell whose zero drifts at a constant rate.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorDrift<T> {
     slope_n_s: T,

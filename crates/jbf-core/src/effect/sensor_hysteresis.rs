@@ -1,21 +1,22 @@
-//! The reading follows the force only at the ends of a gap of half width w: play, or friction, in
-//! the force path.
+//! Sensor hysteresis: the reading follows the force only at the ends of a gap of half width w.
+//!
+//! The cause is play or friction in the force path.
 //!
 //! ```text
 //! r -> r held between F - w and F + w
 //! ```
 //!
-//! The play operator (Krasnosel'skii & Pokrovskii 1989; Visintin 1994): a load cell's branches,
-//! rising and falling, lie 2 w apart, as its data sheet's hysteresis says, and it goes from one to
-//! the other where the force turns round. It knows no time. `backlash` is play in the drive, across
-//! which no force is felt at all.
+//! This is the play operator (Krasnosel'skii & Pokrovskii 1989; Visintin 1994). The rising and the
+//! falling branch of a load cell are 2 w apart, the hysteresis of its data sheet, and the reading
+//! changes branch where the force reverses. It does not depend on time. `backlash` is play in the
+//! drive, across which no force is transmitted.
 //!
-//! It stands first in the instrument: the force reaches the cell through what sticks or gives, the
-//! cell bends under what reaches it, and the electronics come last.
+//! The effect is the first of the instrument: the force reaches the cell through parts that stick
+//! or have play, the cell deflects under that force, and the electronics come last.
 //!
-//! The first reading of a run is its force. At w = 0 the reading is the force, to the bit, and its
-//! slope is that of the branch on which the force last moved: -1 rising, +1 falling, 0 before it has
-//! moved. So the effect shows in a slope before it is there.
+//! The first reading of a run equals its force. At w = 0 the reading equals the force exactly. Its
+//! derivative with respect to w is that of the branch on which the force last moved: -1 rising, +1
+//! falling, 0 before it has moved. The effect is therefore visible in the derivative at w = 0.
 
 use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::error::ParameterError;
@@ -29,7 +30,7 @@ pub struct SensorHysteresis<T> {
     half_width_n: T,
 }
 
-/// The reading, and on which branch it is where there is no gap.
+/// The reading, and its branch, which matters without a gap.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     held_n: T,
@@ -38,7 +39,7 @@ pub struct State<T> {
 }
 
 impl<T: Real> SensorHysteresis<T> {
-    /// The state under a force, monotone from the last one.
+    /// State under a force that changes monotonically from the last one.
     #[inline(always)]
     fn under(&self, before: State<T>, force_n: T) -> State<T> {
         let (low_n, high_n) = (force_n - self.half_width_n, force_n + self.half_width_n);
@@ -52,13 +53,14 @@ impl<T: Real> SensorHysteresis<T> {
         State { held_n, branch }
     }
 
-    /// What the cell shows in a state, under this force.
+    /// Reading of the cell in a state, under this force.
     #[inline(always)]
     fn reading_n(&self, state: State<T>, force_n: T) -> T {
         if self.half_width_n.value() > 0.0 {
             return state.held_n;
         }
-        // The force itself, of whatever slopes; negative zero leaves its sign, too.
+        // The force itself, with its derivatives; adding negative zero preserves the sign of a
+        // zero.
         force_n + T::joined(-0.0, [(self.half_width_n, -f64::from(state.branch))])
     }
 }
@@ -113,7 +115,7 @@ impl<T: Real> Instrument<T> for SensorHysteresis<T> {
     fn step(&self, state: &mut State<T>, signal: Signal<T>, _time_s: T, _dt_s: T) -> Signal<T> {
         let begin = self.under(*state, signal.begin_n);
         *state = self.under(begin, signal.end_n);
-        // What friction is at the very instant of a jump lasts no time and moves nothing.
+        // The force at the exact instant of a jump has no duration and moves nothing.
         let now = self.under(*state, signal.now_n);
         Signal {
             begin_n: self.reading_n(begin, signal.begin_n),

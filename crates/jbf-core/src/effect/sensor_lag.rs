@@ -1,4 +1,4 @@
-//! `tau r' = F - r`: a first-order low pass between force and record.
+//! Sensor lag `tau r' = F - r`: a first-order low pass between force and record.
 //!
 //! Source: Cohn (1998), section 4.1 (the load cell's signal is low-passed).
 
@@ -29,7 +29,7 @@ impl<T: Real> Effect<T> for SensorLag<T> {
                 .start(Start::Lateness),
         ]);
     const SPREADS_JUMPS: bool = true;
-    /// The reading, N.
+    /// Reading, N.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {
@@ -53,7 +53,7 @@ impl<T: Real> Instrument<T> for SensorLag<T> {
     #[inline(always)]
     fn step(&self, state: &mut T, signal: Signal<T>, _time_s: T, dt_s: T) -> Signal<T> {
         let begin_n = *state;
-        // Below the resolution of a step the lag is its limit: no lag, or a shift by tau.
+        // Below the resolution of a step the lag takes its limit: no lag, or a shift by tau.
         let ratio = dt_s / self.tau_s;
         *state = if self.tau_s.value() <= 0.0 {
             signal.now_n - (signal.end_n - signal.begin_n) * (self.tau_s / dt_s)

@@ -1,15 +1,15 @@
-//! `F + c F^3`: a load cell whose line bends.
+//! Sensor nonlinearity `F + c F^3`: a load cell with a curved characteristic.
 //!
-//! Of a cell that is alike in pull and push the error is odd, and the cubic is its first term: what
-//! data sheets call nonlinearity (the combined error of VDI/VDE 2638 has it as a part; ISO 376
-//! interpolates a transducer's reading by a cubic). A gain that is off is no effect: every force
-//! parameter of the law says it.
+//! For a cell that is symmetric in tension and compression the error is odd, and the cubic is its
+//! first term. Data sheets call it nonlinearity: it is a part of the combined error of VDI/VDE
+//! 2638, and ISO 376 interpolates the reading of a transducer by a cubic. A gain error is not an
+//! effect, because every force parameter of the law absorbs it.
 //!
-//! It acts on the force that the cell carries, before anything that the amplifier adds: its filter
-//! (`sensor_lag`), a late channel, a zero and a drift of the electronics are read straight.
+//! It acts on the force that the cell carries, before the electronics. The filter (`sensor_lag`), a
+//! delayed channel, and a zero or drift of the electronics act after it and are linear.
 //!
-//! A cell never reads less under more. Where c is negative the line is level from its turning point
-//! `1/sqrt(-3 c)` on, far beyond where the form holds.
+//! A cell never reads less under a larger force. Where c is negative the characteristic is constant
+//! beyond its turning point `1/sqrt(-3 c)`, which is far beyond the validity of the form.
 
 use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::error::ParameterError;
@@ -17,10 +17,10 @@ use crate::motion::Motion;
 use crate::page::Start;
 use crate::real::Real;
 
-/// The share by which a reading may be too large: so that it stays finite.
+/// Largest relative error of a reading, so that the reading stays finite.
 const MOST: f64 = 1e6;
 
-/// A load cell with a cubic term.
+/// Load cell with a cubic term.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorNonlinearity<T> {
     cubic_1_n2: T,
@@ -29,7 +29,7 @@ pub struct SensorNonlinearity<T> {
 impl<T: Real> SensorNonlinearity<T> {
     #[inline(always)]
     fn reading_n(&self, force_n: T) -> T {
-        // No force squared: that of a large one is out of single precision's reach.
+        // The force is not squared: the square of a large force overflows single precision.
         let share = self.cubic_1_n2 * force_n * force_n;
         if share.value() < -1.0 / 3.0 {
             let turning_n = (T::ONE / self.cubic_1_n2.times(-3.0)).sqrt();

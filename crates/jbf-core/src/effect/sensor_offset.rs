@@ -1,5 +1,7 @@
-//! `+ b`: the zero of the load cell; on a drive also a constant load, such as the weight on an
-//! inclined axis, which the transmission carries.
+//! Sensor offset `+ b`: the zero of the load cell.
+//!
+//! On a drive it is also a constant load, such as the weight on an inclined axis, which the
+//! transmission carries.
 //!
 //! Source: any strain-gauge bridge; Cohn (1998), section 4.1.
 
@@ -8,7 +10,7 @@ use crate::error::ParameterError;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// A load cell whose zero is off.
+/// Load cell with a zero error.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorOffset<T> {
     offset_n: T,

@@ -1,6 +1,7 @@
-//! A set of effects, as a chain holds it: none, one in its place, two sets beside each other, one
-//! that may be there, or the whole catalogue. A typed set costs the memory and the time of the
-//! effects in it, nothing more.
+//! Sets of effects, as held by a chain.
+//!
+//! A set is empty, one effect in its adapter, a pair of sets, an optional set, or the whole
+//! catalogue. A typed set costs only the memory and the time of its effects.
 //!
 //! ```
 //! use jbf_core::effect::{coulomb_drag::CoulombDrag, sensor_lag::SensorLag};
@@ -20,36 +21,37 @@ use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 use core::fmt::Debug;
 
-/// What stands round a law in a chain. Each method is one stage of the signal chain; what is handed
-/// on from effect to effect goes through the argument that it changes. A set does nothing at the
-/// stages where it has no effect.
+/// Effects around a law in a chain.
+///
+/// Each method is one stage of the signal chain. Quantities that pass from effect to effect are
+/// mutable arguments. A set does nothing at the stages where it has no effect.
 pub trait EffectSet<T: Real>: Copy + Debug {
-    /// What the effects remember.
+    /// State of the effects.
     type State: Copy + Debug;
 
-    /// The state at the start of a run.
+    /// Returns the state at the start of a run.
     fn start(&self, motion: &Motion<T>, rig: &Rig<T>) -> Self::State;
 
-    /// The longest inner step that suits every effect here, s.
+    /// Longest inner step that every effect here allows, s.
     #[inline]
     fn longest_step_s(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// True where what an effect does depends on what was before: without it the steps between two
-    /// samples change nothing at the second.
+    /// True if an effect depends on the past. Otherwise the steps between two samples do not change
+    /// the second.
     #[inline]
     fn remembers(&self) -> bool {
         core::mem::size_of::<Self::State>() > 0
     }
 
-    /// True where the journal may part from the commanded side.
+    /// True if the motion of the journal may differ from the commanded one.
     #[inline(always)]
     fn has_drive(&self) -> bool {
         false
     }
 
-    /// Drive: the journal's motion at the end of the step.
+    /// Drive: computes the motion of the journal at the end of the step.
     #[inline(always)]
     fn drive(
         &self,
@@ -61,33 +63,34 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         let _ = (state, journal, rig, dt_s);
     }
 
-    /// Drive: what holds the journal at the end of a step of `dt_s`, none at the start of a run.
+    /// Drive: takes the resistance of the journal at the end of a step of `dt_s`, zero at the start
+    /// of a run.
     #[inline(always)]
     fn resist(&self, state: &mut Self::State, resistance: &Resistance<T>, dt_s: T) {
         let _ = (state, resistance, dt_s);
     }
 
-    /// Drive: what a soft one hands on to the commanded side, N a bearing.
+    /// Drive: force that a compliant drive transmits to the commanded side, N per bearing.
     #[inline]
     fn transmitted_n(&self, state: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
         let _ = (state, motion, rig);
         None
     }
 
-    /// Lubricant: the factor on the speed that the film feels.
+    /// Lubricant: applies the factor on the speed that the film sees.
     #[inline(always)]
     fn lubricant(&self, state: &Self::State, journal: &JournalMotion<T>, factor: &mut T) {
         let _ = (state, journal, factor);
     }
 
-    /// Lubricant: take the friction power, W, at the end of a step.
+    /// Lubricant: takes the friction power, W, at the end of a step.
     #[inline(always)]
     fn warm(&self, state: &mut Self::State, power_w: T, dt_s: T) {
         let _ = (state, power_w, dt_s);
     }
 
-    /// Load: the law's parameters under a load of `share` times the rig's; none where they stay as
-    /// they are.
+    /// Load: scales the parameters of the law under a load of `share` times the rig's; leaves
+    /// `scales` unset where they do not change.
     #[inline(always)]
     fn scales(
         &self,
@@ -98,19 +101,19 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         let _ = (state, share, scales);
     }
 
-    /// Lubricant and film: the factor on the film's clock.
+    /// Lubricant and film: applies the factor on the film's clock.
     #[inline(always)]
     fn film_rate(&self, state: &Self::State, journal: &JournalMotion<T>, rate: &mut T) {
         let _ = (state, journal, rate);
     }
 
-    /// Film: the largest of its factors on the clock, at least one.
+    /// Film: largest factor on the clock, at least one.
     #[inline]
     fn fastest_film(&self) -> f64 {
         1.0
     }
 
-    /// Contact: advance over `dt_s` and change the sliding friction.
+    /// Contact: advances over `dt_s` and changes the sliding friction.
     #[inline(always)]
     fn contact(
         &self,
@@ -123,13 +126,14 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         let _ = (state, from, to, sliding, dt_s);
     }
 
-    /// Contact: change the sliding friction by what the drive's transmission carries, N.
+    /// Contact: changes the sliding friction according to the force that the transmission carries,
+    /// N.
     #[inline(always)]
     fn transmission(&self, state: &Self::State, transmitted_n: T, sliding: &mut Friction<T>) {
         let _ = (state, transmitted_n, sliding);
     }
 
-    /// Contact: its coefficient, signed, through the bristle where there is one.
+    /// Contact: signed coefficient through the bristle; `None` without a bristle.
     #[inline(always)]
     fn bristle(
         &self,
@@ -143,7 +147,8 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         None
     }
 
-    /// Other friction: add it, N, and what of it the drive's transmission carries, N.
+    /// Other friction: adds it to `all_n`, N, and the part that the transmission carries to
+    /// `transmitted_n`, N.
     #[inline(always)]
     fn other(
         &self,
@@ -155,14 +160,14 @@ pub trait EffectSet<T: Real>: Copy + Debug {
         let _ = (state, journal, all_n, transmitted_n);
     }
 
-    /// Instrument: the first reading of a run, N.
+    /// Instrument: first reading of a run, N.
     #[inline]
     fn first(&self, state: &mut Self::State, force_n: T) -> T {
         let _ = state;
         force_n
     }
 
-    /// Instrument: the signal of a step of `dt_s` that ends at `time_s`.
+    /// Instrument: output signal for a step of `dt_s` that ends at `time_s`.
     #[inline(always)]
     fn reading(&self, state: &mut Self::State, signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T> {
         let _ = (state, time_s, dt_s);

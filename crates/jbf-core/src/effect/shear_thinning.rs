@@ -1,14 +1,14 @@
-//! `Ub -> Ub / (1 + (|U|/U_c)^n)`: long molecules that line up in fast shear.
+//! Shear thinning `Ub -> Ub / (1 + (|U|/U_c)^n)`: long molecules align in fast shear.
 //!
-//! Source: Cross (1965), for multigrade oils such as the thesis's 10W-40. Viscosity and
-//! transition speed go together (mu U_tr = const), so Fb and eps_tr stay.
+//! Source: Cross (1965), for multigrade oils such as the thesis's 10W-40. Viscosity and transition
+//! speed go together (mu U_tr = const), so Fb and eps_tr stay constant.
 
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Viscosity that falls with the rate of shear.
+/// Viscosity that falls with the shear rate.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearThinning<T> {
     inverse_speed_s_m: T,

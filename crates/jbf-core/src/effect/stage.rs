@@ -1,5 +1,7 @@
-//! The stages of the signal chain: what an effect at each of them does. An effect has the trait of
-//! its stage and [`Effect`]; it knows nothing of the other stages.
+//! Stages of the signal chain, one trait for each.
+//!
+//! An effect implements the trait of its stage and [`Effect`]; it does not depend on the other
+//! stages.
 
 use super::{Effect, Rig};
 use crate::friction::Friction;
@@ -7,10 +9,10 @@ use crate::law::Scales;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// What holds the journal back, as the drive feels it: `level sgn(v) + slope v`, N a bearing.
+/// Resistance of the journal to the drive: `level sgn(v) + slope v`, N per bearing.
 ///
-/// A line over the speed, not [`Friction`] at one: a drive solves for the speed that the journal
-/// will have, and must know what friction is at another than now.
+/// It is linear in the speed instead of a [`Friction`] at one speed. A drive solves for the future
+/// speed of the journal and needs the friction at speeds other than the present one.
 #[derive(Clone, Copy, Debug)]
 pub struct Resistance<T> {
     /// Largest force that takes the sign of the motion, N.
@@ -19,10 +21,9 @@ pub struct Resistance<T> {
     pub slope_n_s_m: T,
 }
 
-/// Between the encoder and the journal.
+/// Effect between the encoder and the journal.
 pub trait Drive<T: Real>: Effect<T> {
-    /// Advance over `dt_s`, the motion that drives going to `to`, and give the motion that is
-    /// passed on.
+    /// Advances over `dt_s` to the driving motion `to`, and returns the motion that is passed on.
     fn step(
         &self,
         state: &mut Self::State,
@@ -30,13 +31,14 @@ pub trait Drive<T: Real>: Effect<T> {
         rig: &Rig<T>,
         dt_s: T,
     ) -> JournalMotion<T>;
-    /// Take what holds the journal at the end of a step of `dt_s`, none at the start of a run.
+    /// Takes the resistance of the journal at the end of a step of `dt_s`, zero at the start of a
+    /// run.
     #[inline(always)]
     fn resist(&self, state: &mut Self::State, resistance: &Resistance<T>, dt_s: T) {
         let _ = (state, resistance, dt_s);
     }
-    /// The force that the commanded side feels where it is not the journal's friction, as a force
-    /// on one bearing, N.
+    /// Force on the commanded side, as a force on one bearing, N; `None` where it is the friction
+    /// of the journal.
     #[inline(always)]
     fn transmitted_n(&self, state: &Self::State, motion: &Motion<T>, rig: &Rig<T>) -> Option<T> {
         let _ = (state, motion, rig);
@@ -44,7 +46,7 @@ pub trait Drive<T: Real>: Effect<T> {
     }
 }
 
-/// Changes the speed that the film feels (its viscosity).
+/// Effect on the speed that the film sees (its viscosity).
 pub trait Lubricant<T: Real>: Effect<T> {
     /// Factor on `Ub`.
     fn factor(&self, state: &Self::State, journal: &JournalMotion<T>) -> T;
@@ -54,32 +56,32 @@ pub trait Lubricant<T: Real>: Effect<T> {
         let _ = (state, journal);
         T::ONE
     }
-    /// Advance over `dt_s`, at the end of which the friction power is `power_w`, W.
+    /// Advances over `dt_s`, at the end of which the friction power is `power_w`, W.
     #[inline(always)]
     fn step(&self, state: &mut Self::State, power_w: T, dt_s: T) {
         let _ = (state, power_w, dt_s);
     }
 }
 
-/// Changes the law's own parameters with the load.
+/// Effect of the load on the parameters of the law.
 pub trait Loading<T: Real>: Effect<T> {
     /// Factors under a load of `share` times the rig's; all one where `share` is one.
     fn scales(&self, state: &mut Self::State, share: T) -> Scales<T>;
 }
 
-/// Changes how fast the film follows.
+/// Effect on the response time of the film.
 pub trait Film<T: Real>: Effect<T> {
     /// Factor on the film's clock.
     fn rate(&self, state: &Self::State) -> T;
-    /// The largest that factor will be, at least one.
+    /// Largest value of that factor, at least one.
     fn fastest(&self) -> f64;
 }
 
-/// Changes the friction between the surfaces.
+/// Effect on the friction between the surfaces.
 pub trait Contact<T: Real>: Effect<T> {
-    /// Change the sliding friction, a coefficient.
+    /// Changes the sliding friction, a coefficient.
     fn apply(&self, state: &Self::State, journal: &JournalMotion<T>, sliding: &mut Friction<T>);
-    /// Advance over `dt_s` before `apply`.
+    /// Advances over `dt_s` before `apply`.
     #[inline(always)]
     fn step(
         &self,
@@ -92,19 +94,20 @@ pub trait Contact<T: Real>: Effect<T> {
     }
 }
 
-/// Friction of the drive's transmission under what it carries: gears, a screw.
+/// Friction of the drive's transmission (gears, a screw) under the force that it carries.
 pub trait Transmission<T: Real>: Effect<T> {
-    /// Change the sliding friction under a transmitted force, N, positive where it takes a push in
-    /// positive direction.
+    /// Changes the sliding friction under a transmitted force, N, which is positive where it
+    /// requires a push in positive direction.
     fn apply(&self, state: &Self::State, transmitted_n: T, sliding: &mut Friction<T>);
 }
 
-/// Replaces the sign of the motion by a deflection: the last step of the contact stage.
+/// Effect that replaces the sign of the motion by a deflection: the last step of the contact stage.
 pub trait Bristle<T: Real>: Effect<T> {
-    /// The coefficient at the start of a run: bent already where the run starts in motion.
+    /// Coefficient at the start of a run; fully deflected if the run starts in motion.
     fn first(&self, state: &mut Self::State, journal: &JournalMotion<T>, magnitude: T) -> T;
-    /// Advance over `dt_s`; the sliding coefficient goes from the first magnitude to the
-    /// second. Gives the coefficient, signed.
+    /// Advances over `dt_s` and returns the signed coefficient.
+    ///
+    /// The sliding coefficient goes from the first magnitude to the second.
     fn step(
         &self,
         state: &mut Self::State,
@@ -115,29 +118,29 @@ pub trait Bristle<T: Real>: Effect<T> {
     ) -> T;
 }
 
-/// Friction that is not the bearing's.
+/// Friction other than that of the bearing.
 pub trait OtherFriction<T: Real>: Effect<T> {
-    /// The friction, N.
+    /// Friction force, N.
     fn friction_n(&self, state: &Self::State, journal: &JournalMotion<T>) -> Friction<T>;
 }
 
-/// The force during a step, as an instrument meets it.
+/// Force during a step, as seen by an instrument.
 ///
-/// Friction jumps where a rigid journal starts, stops or turns; what it is on the inside of the
-/// step differs there from what it is at the sample, and an instrument with a memory must follow
-/// the inside.
+/// Friction jumps where a rigid journal starts, stops or reverses. The friction inside the step
+/// then differs from that at the sample, and an instrument with memory must follow the values
+/// inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signal<T> {
-    /// Just after the beginning of the step, N.
+    /// Force just after the beginning of the step, N.
     pub begin_n: T,
-    /// Just before its end, N.
+    /// Force just before the end of the step, N.
     pub end_n: T,
-    /// At its end, N.
+    /// Force at the end of the step, N.
     pub now_n: T,
 }
 
 impl<T: Real> Signal<T> {
-    /// The signal with a constant added.
+    /// Signal with a constant added.
     #[inline]
     pub fn shifted(self, by_n: T) -> Self {
         Self {
@@ -148,7 +151,7 @@ impl<T: Real> Signal<T> {
     }
 }
 
-/// Between the force and its record.
+/// Effect between the force and its record.
 pub trait Instrument<T: Real>: Effect<T> {
     /// Constant force in the readings, N, which a drive's transmission may carry.
     #[inline(always)]
@@ -156,8 +159,8 @@ pub trait Instrument<T: Real>: Effect<T> {
         T::ZERO
     }
 
-    /// The first reading of a run that begins with `force_n`.
+    /// First reading of a run that begins with `force_n`.
     fn first(&self, state: &mut Self::State, force_n: T) -> T;
-    /// What the instrument makes of the signal of a step of `dt_s` that ends at `time_s`.
+    /// Output signal of the instrument for a step of `dt_s` that ends at `time_s`.
     fn step(&self, state: &mut Self::State, signal: Signal<T>, time_s: T, dt_s: T) -> Signal<T>;
 }

@@ -1,11 +1,11 @@
-//! A Stribeck peak that is higher one way than the other: `+ c exp(-(|v|/v_s)^n)`.
+//! Direction-dependent Stribeck peak: `+ c exp(-(|v|/v_s)^n)`.
 //!
-//! Lips, wipers and skewed rollers draw a film in one direction and scrape it off in the other: at
-//! speed the two ways are alike, at low speed they are not. `c` is half of what the peak is higher by
-//! in positive motion.
+//! Lips, wipers and skewed rollers draw in a film in one direction and scrape it off in the other.
+//! At high speed the two directions have the same friction, at low speed they differ. `c` is half
+//! the excess of the peak in positive motion.
 //!
-//! Source: Stribeck's curve in the form of Bo & Pavelescu (1982), its height one for each way; friction
-//! that depends on the direction is among the departures that Armstrong-Helouvry et al. (1994) list.
+//! Source: Stribeck's curve in the form of Bo & Pavelescu (1982), with one height per direction;
+//! Armstrong-Helouvry et al. (1994), who list direction-dependent friction.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;

@@ -1,4 +1,4 @@
-//! `+ a exp(-(|v|/v_s)^n)`: boundary lubrication that the asperity law does not hold.
+//! Stribeck excess `+ a exp(-(|v|/v_s)^n)`: boundary lubrication that the asperity law lacks.
 //!
 //! Source: Stribeck's curve in the exponential form of Tustin (n = 1), Bo & Pavelescu (0.5 to 1)
 //! and Armstrong-Helouvry (2); Cohn (1998), sections 2.1.2 and 2.2.
@@ -10,7 +10,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Friction above the law's at low speed.
+/// Friction in excess of the law at low speed.
 #[derive(Clone, Copy, Debug)]
 pub struct StribeckExcess<T> {
     height: T,

@@ -1,18 +1,20 @@
-//! Dry friction that varies smoothly along the stroke: times `1 + s(x)`.
+//! Dry friction that varies smoothly along the stroke: dry friction times `1 + s(x)`.
 //!
-//! A screw that is tighter in its middle, a guide that is not straight, a rod that is worn where it
-//! mostly works: what presses changes slowly from place to place, and dry friction with it. What comes
-//! again with a pitch is `pitch_ripple`'s.
+//! Examples are a screw that is tighter in its middle, a guide that is not straight, and a rod that
+//! is worn where it mostly works. The contact pressure changes slowly with the position, and dry
+//! friction with it. Variation that repeats with a pitch is `pitch_ripple`.
 //!
-//! With `u` from -1 to 1 over the stroke, `s` is the sum of the first six waves whose slope vanishes
-//! at both ends, `sin(k pi u/2)` for odd and `cos(k pi u/2)` for even `k`: each has the mean zero over
-//! the stroke, and none does another's work or the dry level's. Beyond the ends friction stays as it is
-//! there. A fit puts the ends a little beyond where its runs go, for friction need not level off where
-//! a recording ends; the shortest wave then comes two and a half times in what they cover. What comes
-//! more often has a pitch.
+//! With `u` from -1 to 1 over the stroke, `s` is the sum of the first six waves whose slope
+//! vanishes at both ends: `sin(k pi u/2)` for odd and `cos(k pi u/2)` for even `k`. Each has zero
+//! mean over the stroke, and none can replace another or the dry level. Beyond the ends friction is
+//! constant.
 //!
-//! Source: Armstrong-Helouvry (1991), chapter 3, whose arm has friction of its own at each place of its
-//! joints; Popovic & Goldenberg (1998), who model it by its Fourier series.
+//! A fit places the ends slightly beyond the travel of its runs, because friction need not level
+//! off where a recording ends. The shortest wave then occurs two and a half times within the
+//! recorded travel. Shorter variation is described by a pitch.
+//!
+//! Source: Armstrong-Helouvry (1991), chapter 3, whose arm has a position-dependent friction in
+//! each joint; Popovic & Goldenberg (1998), who model it by its Fourier series.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -22,7 +24,7 @@ use crate::page::Start;
 use crate::real::Real;
 use core::f64::consts::FRAC_PI_2;
 
-/// Dry friction over the place.
+/// Dry friction as a function of the position.
 #[derive(Clone, Copy, Debug)]
 pub struct StrokeDependence<T> {
     sizes: [T; 6],
@@ -30,7 +32,7 @@ pub struct StrokeDependence<T> {
     inverse_half_1_m: T,
 }
 
-/// The page of an even or an odd wave's share.
+/// Description of the amplitude of an even or an odd wave.
 const fn wave(name: &'static str, meaning: &'static str) -> Parameter {
     Parameter::new(name, "-", meaning, [-2.0, 2.0], &[0.1]).null(0.0)
 }
@@ -94,7 +96,7 @@ impl<T: Real> Contact<T> for StrokeDependence<T> {
     fn apply(&self, radius_m: &T, journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         let u = (journal.angle_rad * *radius_m - self.middle_m) * self.inverse_half_1_m;
         let u = u.max(-T::ONE).min(T::ONE);
-        // cos 2q to cos 6q of one sine.
+        // cos 2q to cos 6q from one sine.
         let sine = (u * T::of(FRAC_PI_2)).sin();
         let square = sine * sine;
         let whole = T::ONE - T::of(2.0) * square;

@@ -1,9 +1,10 @@
-//! `Ub -> Ub exp(-beta T)`, `T' = q |F v| - T/tau`: friction warms the oil, warm oil is thin.
+//! Thermal thinning `Ub -> Ub exp(-beta T)`, `T' = q |F v| - T/tau`: friction warms the oil, which
+//! lowers its viscosity.
 //!
 //! Source: Reynolds's exponential viscosity law; Cohn (1998), section 4.2, assumes a constant
-//! temperature. Viscosity and transition speed go together (mu U_tr = const), so Fb and
-//! eps_tr stay. Only the product beta q can be seen in a friction record, so the state is
-//! `beta T` and the product is the parameter.
+//! temperature. Viscosity and transition speed go together (mu U_tr = const), so Fb and eps_tr stay
+//! constant. A friction record determines only the product beta q, so the state is `beta T` and the
+//! product is the parameter.
 
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -18,10 +19,10 @@ pub struct ThermalThinning<T> {
     tau_s: T,
 }
 
-/// How warm the film is, and what warms it.
+/// Temperature of the film and the friction power.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
-    /// `beta T`: the log of the viscosity that is lost.
+    /// Loss of log viscosity, `beta T`.
     thinned: T,
     /// Friction power at the end of the last step, W.
     power_w: T,

@@ -1,11 +1,12 @@
-//! `r(t) = F(t - tau)`: the record of the force is late, its shape untouched.
+//! Time delay `r(t) = F(t - tau)`: the record of the force is delayed without a change of shape.
 //!
-//! Source: Hess & Soom (1990) for friction that lags the speed by a fixed time; in the
-//! instrument it is the skew between two channels, a linear-phase filter, or a bus.
+//! Source: Hess & Soom (1990) for friction that lags the speed by a fixed time; in the instrument
+//! it is the skew between two channels, a linear-phase filter, or a bus.
 //!
-//! A low pass rounds what it delays; this does not. The force is kept at the ends of the steps,
-//! with straight lines between, so that a delay of any length, less than a sample too, has a
-//! slope: what jumps in the force is in the reading a ramp of one step.
+//! A low pass rounds the signal that it delays; this effect does not. The force is stored at the
+//! ends of the steps and interpolated linearly. A delay of any length, including less than a
+//! sample, therefore has a derivative. A jump of the force becomes a ramp of one step in the
+//! reading.
 
 use super::{Effect, Info, Instrument, Parameter, Rig, Signal, Stage};
 use crate::delay_line::DelayLine;
@@ -14,13 +15,13 @@ use crate::motion::Motion;
 use crate::page::Start;
 use crate::real::Real;
 
-/// Pure delay of the friction record against the motion record.
+/// Pure time delay of the friction record relative to the motion record.
 #[derive(Clone, Copy, Debug)]
 pub struct TimeDelay<T> {
     tau_s: T,
 }
 
-/// The force of the last moments, and the reading.
+/// Recent history of the force, and the reading.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     line: DelayLine<T>,
@@ -64,7 +65,7 @@ impl<T: Real> Effect<T> for TimeDelay<T> {
 }
 
 impl<T: Real> Instrument<T> for TimeDelay<T> {
-    /// Before the run the force is taken to have been what it is at its start.
+    /// The force before the run is taken to equal the force at its start.
     fn first(&self, state: &mut State<T>, force_n: T) -> T {
         state.line.push(force_n, T::ZERO, self.tau_s);
         state.reading_n = force_n;
@@ -77,7 +78,7 @@ impl<T: Real> Instrument<T> for TimeDelay<T> {
         let begin_n = state.reading_n;
         state.reading_n = state.line.back(self.tau_s);
         if self.tau_s.value() <= 0.0 {
-            // No delay at all leaves the jumps as they are; its slope is that of the ramp.
+            // Without delay the jumps remain; the derivative is that of the ramp.
             return signal.shifted(state.reading_n - signal.now_n);
         }
         Signal {

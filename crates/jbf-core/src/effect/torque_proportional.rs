@@ -1,18 +1,23 @@
-//! Friction that is a share of what the drive transmits: `+ mu |F_t| sgn(v)`.
+//! Friction proportional to the transmitted force: `+ mu |F_t| sgn(v)`.
 //!
-//! `F_t` is what other effects of the chain let the transmission carry: a weight (`gravity`), a mass
-//! (`inertia_leak`), a constant load (`sensor_offset`). A load on record has `dry_load_dependence`, and a push `k L` has no friction here
-//! that it has not there; this is for the load that nobody records, and that the model finds as well.
+//! `F_t` is the force of other effects of the chain that the transmission carries: a weight
+//! (`gravity`), a mass (`inertia_leak`), a constant load (`sensor_offset`). A recorded load is the
+//! subject of `dry_load_dependence`; a push `k L` adds no friction in this effect, because that
+//! effect contains it. This effect is for a load that is not recorded and that the model estimates
+//! as well.
 //!
-//! Gears and screws lose one share `mu_d` of `F_t` where they drive (`F_t v > 0`) and another `mu_b`
-//! where they are driven back. With half their sum `mu` and half their difference `d` friction is
-//! `mu |F_t| sgn(v) + d F_t`, in motion and at rest: the difference is the load itself once more,
-//! and no record of the drive's force tells `1 + d` from a larger weight or mass (of a load
-//! on record it is the `k` of `zero_load_dependence`). So it has no parameter. Over `1 + d`, `mu` is what
-//! is known, and `(1 - mu)/(1 + mu)` the product of the two efficiencies; from one on the drive locks.
+//! Gears and screws lose a share `mu_d` of `F_t` where they drive (`F_t v > 0`) and another share
+//! `mu_b` where they are driven back. With half their sum `mu` and half their difference `d`,
+//! friction is `mu |F_t| sgn(v) + d F_t`, in motion and at rest. The difference term is
+//! proportional to the load itself. No record of the drive force distinguishes `1 + d` from a
+//! larger weight or mass (for a recorded load it is the `k` of `zero_load_dependence`). It
+//! therefore has no parameter.
 //!
-//! Source: Hamon, Gautier & Garrec (2010) for gears and screws; Wolf & Iskandar
-//! (2018) for strain-wave gears.
+//! The data determine `mu` divided by `1 + d`. The product of the two efficiencies is `(1 - mu)/(1
+//! + mu)`; from `mu` = 1 on the drive is self-locking.
+//!
+//! Source: Hamon, Gautier & Garrec (2010) for gears and screws; Wolf & Iskandar (2018) for
+//! strain-wave gears.
 
 use super::{Effect, Info, Need, Parameter, Rig, Stage, Transmission};
 use crate::error::ParameterError;
@@ -20,7 +25,7 @@ use crate::friction::Friction;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// Friction over transmitted force.
+/// Friction per transmitted force.
 #[derive(Clone, Copy, Debug)]
 pub struct TorqueProportional<T> {
     share: T,

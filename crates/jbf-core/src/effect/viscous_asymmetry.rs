@@ -1,9 +1,11 @@
-//! Viscous friction that is larger one way than the other: `+ b |v|`.
+//! Direction-dependent viscous friction: `+ b |v|`.
 //!
-//! Source: the ball-screw axis of Janot, Gautier & Brunot (2019), whose viscous friction alone depends
-//! on the direction; Armstrong-Helouvry et al. (1994) for friction that does.
+//! Source: the ball-screw axis of Janot, Gautier & Brunot (2019), in which only the viscous
+//! friction depends on the direction; Armstrong-Helouvry et al. (1994) for direction-dependent
+//! friction.
 //!
-//! A dry level that depends on the direction is, in motion, a zero that is off: `sensor_offset`.
+//! In motion, a dry level that depends on the direction is equivalent to a zero error:
+//! `sensor_offset`.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;

@@ -1,5 +1,7 @@
-//! The thesis's learning compensator: the film model runs in the loop, and a ratchet on the error
-//! learns its K0 in mixed lubrication, its gamma in full film.
+//! Learning compensator of the thesis.
+//!
+//! The film model runs in the loop. A ratchet on the error learns its K0 in mixed lubrication and
+//! its gamma in full film.
 //!
 //! ```text
 //! velocity   p -= C e sgn(v)                                     (6.4), (6.5)
@@ -7,8 +9,8 @@
 //!            not at all for |e| > gate                           Figure 6.1, Appendix E
 //! ```
 //!
-//! with p = K0 where eps > eps_tr, else gamma. In velocity control the friction has the sign of
-//! the speed; in position control Appendix E gives it the sign that drives towards the goal.
+//! Here p = K0 where eps > eps_tr, otherwise gamma. In velocity control the friction has the sign
+//! of the speed. In position control Appendix E gives it the sign that drives towards the goal.
 //!
 //! Source: Cohn (1998), sections 6.4 and 6.5, Figure 6.1, Appendices D and E.
 
@@ -25,7 +27,7 @@ use crate::law::Law;
 use crate::real::Real;
 use crate::stepper::Euler;
 
-/// The two learned parameters. They are what is worth keeping over a power cycle.
+/// The two learned parameters, which are worth saving over a power cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Learned<T> {
@@ -36,14 +38,14 @@ pub struct Learned<T> {
 }
 
 impl Learned<f64> {
-    /// What the thesis's programs start from.
+    /// Initial values of the thesis's programs.
     pub const THESIS: Self = Self {
         k0: 650_000.0,
         gamma: 33.0,
     };
 }
 
-/// The thesis's compensator.
+/// The learning compensator of the thesis.
 #[derive(Clone, Copy, Debug)]
 pub struct Learning<T> {
     law: Journal<T>,
@@ -58,19 +60,19 @@ pub struct Learning<T> {
     dt_s: T,
 }
 
-/// Film and learned parameters now.
+/// State of the film, and the learned parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
     film: Film<T>,
-    /// What has been learned.
+    /// Learned parameters.
     pub learned: Learned<T>,
 }
 
 impl<T: Real> Learning<T> {
-    /// A film, whose K0 is the one that is learned from, and settings.
+    /// Creates a compensator from a film, whose K0 is the initial value, and settings.
     ///
     /// # Errors
-    /// Names the setting that breaks its rule; the bounds must hold the start between them.
+    /// Names the setting that violates its rule. The bounds must enclose the initial values.
     pub fn new(law: Journal<T>, s: &Settings) -> Result<Self, Error> {
         s.check(law.k0.value())?;
         let lift = |l: Learned<f64>| Learned {
@@ -94,8 +96,9 @@ impl<T: Real> Learning<T> {
         })
     }
 
-    /// Begin from what an earlier run learned, held within the bounds; numbers that are none
-    /// change nothing.
+    /// Starts from the parameters that an earlier run learned, limited to the bounds.
+    ///
+    /// Values that are not finite are ignored.
     #[must_use]
     pub fn resumed(mut self, learned: Learned<T>) -> Self {
         if learned.k0.is_finite() && learned.gamma.is_finite() {

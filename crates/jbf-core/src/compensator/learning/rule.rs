@@ -1,32 +1,33 @@
-//! What an error teaches: the thesis's ratchet, Figure 6.1.
+//! Learning rule for an error: the ratchet of the thesis, Figure 6.1.
 
 use super::Learned;
 use crate::compensator::Sense;
 use crate::real::Real;
 
-/// What the error means, and so how it teaches.
+/// Meaning of the error, which determines the learning rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Rule<T> {
-    /// Error of speed.
+    /// The error is a speed.
     Velocity,
-    /// Error of angle: no learning beyond `gate_rad`, the error clipped to `clip_rad`.
+    /// The error is an angle. It is clipped to `clip_rad`, and nothing is learned beyond
+    /// `gate_rad`.
     Position {
-        /// 0.8 rad in the thesis.
+        /// Gate, rad; 0.8 rad in the thesis.
         gate_rad: T,
-        /// 0.3 rad in the thesis.
+        /// Clip, rad; 0.3 rad in the thesis.
         clip_rad: T,
     },
 }
 
 impl Rule<f64> {
-    /// The thesis's rule of position control.
+    /// Position-control rule of the thesis.
     pub const THESIS_POSITION: Self = Self::Position {
         gate_rad: 0.8,
         clip_rad: 0.3,
     };
 
-    /// The thesis's learning gains a step of 2 ms, for what its programs start from.
+    /// Learning gains of the thesis per step of 2 ms, for the initial values of its programs.
     pub(super) fn thesis_gain(&self) -> Learned<f64> {
         match self {
             Self::Velocity => Learned {
@@ -52,7 +53,7 @@ impl Rule<f64> {
 }
 
 impl<T: Real> Rule<T> {
-    /// Which way, and how far, the error pushes a parameter: the thesis's `-e sgn(v)`.
+    /// Direction and size of the change of a parameter by the error: `-e sgn(v)` in the thesis.
     #[inline]
     pub(super) fn lesson(&self, sense: &Sense<T>) -> T {
         let (v, e) = (sense.velocity_rad_s, sense.error);
@@ -71,7 +72,7 @@ impl<T: Real> Rule<T> {
         }
     }
 
-    /// Sign of the friction in the sum.
+    /// Sign of the friction in the output.
     #[inline]
     pub(super) fn direction(&self, sense: &Sense<T>) -> T {
         match *self {
@@ -96,7 +97,8 @@ mod tests {
 
     #[test]
     fn in_velocity_control_the_shaft_that_is_slow_has_more_friction() {
-        // Too slow forwards, too slow backwards; too fast is the other way round.
+        // Too slow forwards, too slow backwards; an error of the opposite sign has the opposite
+        // effect.
         assert_eq!(lesson(Rule::Velocity, 1.0, -0.5), 0.5);
         assert_eq!(lesson(Rule::Velocity, -1.0, 0.5), 0.5);
         assert_eq!(lesson(Rule::Velocity, 1.0, 0.5), -0.5);
@@ -109,7 +111,7 @@ mod tests {
         assert_eq!(lesson(rule, 1.0, -0.2), 0.2);
         assert_eq!(lesson(rule, 0.0, -0.2), 0.2);
         assert_eq!(lesson(rule, -1.0, -0.2), -0.2);
-        // Clipped, and beyond the gate not at all.
+        // The error is clipped, and ignored beyond the gate.
         assert_eq!(lesson(rule, 1.0, -0.5), 0.3);
         assert_eq!(lesson(rule, 1.0, -0.8), 0.0);
     }

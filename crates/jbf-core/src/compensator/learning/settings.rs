@@ -8,17 +8,17 @@ use crate::error::{check, not_negative, positive, Error};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
-    /// What the error means, and so how it teaches.
+    /// Meaning of the error, which determines the learning rule.
     pub rule: Rule<f64>,
     /// The gamma that the film was built with.
     pub gamma: f64,
-    /// What is learned from an error of one, a step.
+    /// Change of the parameters per step for an error of one.
     pub gain: Learned<f64>,
-    /// Least that may be learned.
+    /// Lower bounds of the learned parameters.
     pub least: Learned<f64>,
-    /// Most that may be learned.
+    /// Upper bounds of the learned parameters.
     pub most: Learned<f64>,
-    /// What a friction coefficient of 1 is in volts: 25.5 V by the thesis's listings.
+    /// Voltage that corresponds to a friction coefficient of 1, V; 25.5 V in the thesis's listings.
     pub volts: f64,
     /// Journal radius, m.
     pub radius_m: f64,
@@ -27,10 +27,11 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// To learn from a K0 and a gamma, those of the film, by a rule. Gains are the thesis's in
-    /// proportion to them; either may fall to a ten-thousandth and rise a hundredfold. What a
-    /// friction coefficient of 1 is in volts, the journal's radius (m) and the step of the loop
-    /// (s) are the rig's.
+    /// Settings for learning from an initial K0 and gamma, those of the film, by a rule.
+    ///
+    /// The gains are the thesis's, scaled in proportion to the initial values. Each parameter may
+    /// fall to a ten-thousandth and rise a hundredfold. `volts` (V for a friction coefficient of
+    /// 1), the journal radius (m) and the time step of the loop (s) are properties of the rig.
     #[must_use]
     pub fn new(rule: Rule<f64>, begin: Learned<f64>, volts: f64, radius_m: f64, dt_s: f64) -> Self {
         let (listed, from) = (rule.thesis_gain(), Learned::THESIS);

@@ -1,7 +1,7 @@
-//! A friction model corrected by an observer: what chapter 7 of the thesis asks for.
+//! Friction model corrected by an observer, as proposed in chapter 7 of the thesis.
 //!
-//! The model (the film, with whatever effects a fit gave it) says what friction is to be expected;
-//! an observer of the whole plant says what is left:
+//! The model (the film, with the effects of a fit) predicts the friction. An observer of the whole
+//! plant estimates the remaining disturbance:
 //!
 //! ```text
 //! F_hat = (level + c) dir + smooth + d
@@ -10,27 +10,28 @@
 //! c' = mu d dir  (and d falls by as much: what keeps its sign with the motion is friction)
 //! ```
 //!
-//! `smooth` is taken as it was at the step's begin, but for a viscous friction that would stop the
-//! shaft within one step and turn it round. With a slope s of it (V s/rad) the step is
+//! `smooth` is evaluated at the start of the step, with one exception: a viscous friction that
+//! would stop the shaft within one step and reverse it. With its slope s (V s/rad) the step is
 //!
 //! ```text
 //! v+ = keep v + gain (u - s v - ...)            keep = exp(-a dt): rings beyond s = (1 + keep)/gain
 //! v+ = keep' v + gain' (u - ...)                keep' = exp(-(a + b s) dt): stable for any s
 //! ```
 //!
-//! and the second is taken where `gain s > keep` and the first would turn the shaft round, or the
-//! observer is blind, which has nothing else that holds it; both rest at the same speed. Else the
-//! voltage that the loop sends against smooth friction cancels it in the first, as it was sent.
+//! The second form is used where `gain s > keep` and the first would reverse the shaft. It is also
+//! used while the observer is blind and nothing else limits it. Both forms have the same steady
+//! speed. Otherwise, in the first form, the voltage that the loop applies against smooth friction
+//! cancels that friction exactly.
 //!
-//! The observer sticks as the plant does, so that rest teaches nothing that is not so. The
-//! compensator sends out F_hat with `dir` the direction that the motion is wanted in where the
-//! shaft is slow, and what the reference's motion asks of the plant.
+//! The observer sticks as the plant does, so it learns nothing false at rest. The compensator
+//! outputs F_hat, where `dir` is the direction of the wanted motion if the shaft is slow. It adds
+//! the voltage that the reference motion requires of the plant.
 //!
 //! Source: extended state observers (Han 1995; Gao 2003); disturbance observers (Ohnishi 1987);
 //! Friedland & Park (1992) for learning a level that takes the sign of the motion; Cohn (1998),
 //! chapter 7.
 
-// `!(x <= y)` is true of a NaN too, and means to be.
+// `!(x <= y)` is intentionally true for NaN too.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod poles;
@@ -45,33 +46,34 @@ use crate::friction::Friction;
 use crate::real::Real;
 use poles::poles;
 
-/// Time constants of the observer that a wrong friction may need to be found out. A shaft that
-/// turns for longer without a count, at the speed that the largest correction makes, makes the
-/// encoder doubtful.
+/// Number of time constants of the observer within which a wrong friction is detected.
+///
+/// If the shaft, at the speed that the largest correction causes, turns for longer without a count,
+/// the encoder is doubted.
 const FINDING_OUT: f64 = 3.0;
 
-/// No shaft turns faster, rad/s: an observer that does has lost its way and begins anew.
+/// Speed above which the observer has diverged and restarts, rad/s; no shaft turns faster.
 const LOST_RAD_S: f64 = 1e6;
 
-/// The learned corrections: what is worth keeping over a power cycle.
+/// The learned corrections, which are worth saving over a power cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Learned<T> {
-    /// Correction of the level, V.
+    /// Correction of the friction level, V.
     pub level_v: T,
-    /// What has no sign of the motion, V.
+    /// Disturbance without the sign of the motion, V.
     pub rest_v: T,
 }
 
-/// The compensator.
+/// The observer-corrected compensator.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed<T, M> {
     /// The friction model.
     pub model: M,
     keep: T,
     gain: T,
-    /// The plant's damping a/b, V s/rad, and its input gain times the step b dt, rad/s/V: for a step
-    /// with steep friction.
+    /// Damping a/b of the plant, V s/rad, and input gain times the step b dt, rad/s/V. Both are
+    /// used in a step with steep friction.
     damping_v_s_rad: T,
     input_rad_s_v: T,
     correct: [T; 3],
@@ -91,26 +93,26 @@ pub struct Observed<T, M> {
     begin: Learned<T>,
 }
 
-/// Model, observer and what is learned, now.
+/// State of the model and the observer, and the learned corrections.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T, S> {
     model: S,
     friction: Friction<T>,
-    /// How its smooth part grows with speed where that is too steep for a step, V s/rad; else zero.
+    /// Slope of the smooth friction where it is too steep for one step, V s/rad; otherwise zero.
     steep_v_s_rad: T,
     velocity_rad_s: T,
     slip_rad: T,
-    /// How far the shaft has turned since the last count, as far as the observer knows, rad.
+    /// Rotation of the shaft since the last count, as estimated by the observer, rad.
     turned_rad: T,
-    /// What has been learned.
+    /// Learned corrections.
     pub learned: Learned<T>,
 }
 
 impl<T: Real, M: Carried<T>> Observed<T, M> {
-    /// A model and settings.
+    /// Creates a compensator from a model and settings.
     ///
     /// # Errors
-    /// Names the setting that breaks its rule.
+    /// Names the setting that violates its rule.
     pub fn new(model: M, s: &Settings) -> Result<Self, Error> {
         s.check()?;
         let fall = -libm::expm1(-s.damping_1_s * s.dt_s);
@@ -157,8 +159,9 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         })
     }
 
-    /// Begin from what an earlier run learned, held within the limits; numbers that are none
-    /// change nothing.
+    /// Starts from the corrections that an earlier run learned, limited to their bounds.
+    ///
+    /// Values that are not finite are ignored.
     #[must_use]
     pub fn resumed(mut self, learned: Learned<T>) -> Self {
         if learned.level_v.is_finite() && learned.rest_v.is_finite() {
@@ -176,8 +179,8 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         }
     }
 
-    /// How the model's smooth friction grows with speed, V s/rad, where one step of it would more
-    /// than stop the shaft; zero where a step bears it.
+    /// Slope of the model's smooth friction, V s/rad, where one step of it would more than stop the
+    /// shaft; zero where the step is stable.
     #[inline]
     fn steep(&self, model: &M::State, velocity_rad_s: T) -> T {
         let way = if velocity_rad_s < T::ZERO {
@@ -195,13 +198,13 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         }
     }
 
-    /// Whether a step with the smooth friction of its begin ends on the other side of rest.
+    /// True if a step with the smooth friction at its start ends on the other side of rest.
     #[inline]
     fn turns_round(&self, velocity_rad_s: T, net_v: T) -> bool {
         (self.keep * velocity_rad_s + self.gain * net_v) * velocity_rad_s < T::ZERO
     }
 
-    /// From rest, with what was learned.
+    /// Restarts from rest and keeps the learned corrections.
     #[cold]
     fn begin_anew(&self, state: &mut State<T, M::State>) {
         let learned = state.learned;
@@ -211,7 +214,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
         }
     }
 
-    /// The level that the model and the observer agree on, V.
+    /// Friction level from the model and the observer together, V.
     #[inline]
     fn level_v(&self, state: &State<T, M::State>) -> T {
         (state.friction.jump + state.learned.level_v).max(T::ZERO)
@@ -255,7 +258,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         };
         let push = keep * v + gain * net_v;
         let hold = gain * self.level_v(state);
-        // The proximal step of the plant: friction takes what it can hold, and no more.
+        // Proximal step of the plant: friction holds up to its level and no more.
         let mut predicted = if push > hold {
             push - hold
         } else if push < -hold {
@@ -263,7 +266,7 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         } else {
             T::ZERO
         };
-        // True of a NaN too.
+        // Also true for NaN.
         if !(predicted.abs() <= T::of(LOST_RAD_S)) {
             predicted = T::ZERO;
             self.begin_anew(state);
@@ -306,13 +309,13 @@ impl<T: Real, M: Carried<T>> Compensator<T> for Observed<T, M> {
         self.model
             .advance(&mut state.model, v, sense.angle_rad, self.dt_s);
         state.friction = self.model.friction(&state.model);
-        // Asked of the model only where it may be so, or was.
+        // Evaluate the slope only where it may be steep, or was steep before.
         if state.steep_v_s_rad > T::ZERO
             || (self.gain * state.friction.smooth).abs() > self.keep * v.abs()
         {
             state.steep_v_s_rad = self.steep(&state.model, v);
         }
-        // A slow shaft goes where it is wanted, not where noise says that it goes.
+        // For a slow shaft, use the direction of the wanted motion, not the noisy estimate.
         let wish = sense.wanted_rad_s - self.approach_1_s * sense.error;
         let asked = (wish * self.inverse_slow).max(-T::ONE).min(T::ONE);
         let level_v = self.level_v(state);

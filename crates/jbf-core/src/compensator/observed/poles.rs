@@ -1,15 +1,17 @@
-//! The gains of the sampled observer of the plant.
+//! Gains of the sampled observer of the plant.
 
-/// Gains that place the poles of the sampled observer, two at `p` and the third where the plant's
-/// own pole is, or at `p` too where that is faster: Ackermann's formula for angle, speed and
-/// disturbance, seen through the angle after each step. A pole slower than the plant's own would
-/// make the first gain negative, and a stuck observer would run away.
+/// Gains that place the poles of the sampled observer.
+///
+/// Two poles are at `p`. The third is at the plant's own pole, or at `p` too where that is faster.
+/// The gains follow from Ackermann's formula for angle, speed and disturbance, observed through the
+/// angle after each step. A pole slower than the plant's own would make the first gain negative,
+/// and a stuck observer would run away.
 pub(super) fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
     let h = 0.5 * dt_s;
-    // The prediction: x + h (v + v'), v' = keep v - gain d, d.
+    // Prediction: x + h (v + v'), v' = keep v - gain d, d.
     let (a12, a13) = (h * (1.0 + keep), -h * gain);
-    // Rows C A, C A^2, C A^3 of what is seen, A = [1 a12 a13; 0 keep -gain; 0 0 1]; their solution
-    // against (0, 0, 1).
+    // Rows C A, C A^2, C A^3 of the observability matrix, A = [1 a12 a13; 0 keep -gain; 0 0 1],
+    // solved for (0, 0, 1).
     let next = |r: [f64; 3]| {
         [
             r[0],
@@ -20,13 +22,13 @@ pub(super) fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
     let r1 = [1.0, a12, a13];
     let r2 = next(r1);
     let r3 = next(r2);
-    // The first entry of each row is 1: eliminate it, then two equations are left.
+    // The first entry of each row is 1: its elimination leaves two equations.
     let (b1, c1) = (r2[1] - r1[1], r2[2] - r1[2]);
     let (b2, c2) = (r3[1] - r2[1], r3[2] - r2[2]);
     let determinant = b1 * c2 - b2 * c1;
     let (q1, q2) = (-c1 / determinant, b1 / determinant);
     let q0 = -(r1[1] * q1 + r1[2] * q2);
-    // phi(A) q, phi(A) = (A - p)^2 (A - own), a factor at a time.
+    // phi(A) q with phi(A) = (A - p)^2 (A - own), one factor at a time.
     let less = |p: f64, q: [f64; 3]| {
         [
             (1.0 - p) * q[0] + a12 * q[1] + a13 * q[2],
@@ -41,7 +43,7 @@ pub(super) fn poles(keep: f64, gain: f64, dt_s: f64, p: f64) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// An error of angle, speed and disturbance after one step of the corrected observer.
+    /// Error of angle, speed and disturbance after one step of the corrected observer.
     fn next(keep: f64, gain: f64, dt_s: f64, correct: [f64; 3], e: [f64; 3]) -> [f64; 3] {
         let h = 0.5 * dt_s;
         let predicted = [
@@ -52,7 +54,7 @@ mod tests {
         core::array::from_fn(|i| predicted[i] - correct[i] * predicted[0])
     }
 
-    /// The sum of `c_i A^i e` for the polynomial with these roots: nothing, by Cayley-Hamilton.
+    /// Sum of `c_i A^i e` for the polynomial with these roots; zero, by Cayley-Hamilton.
     fn left(roots: [f64; 3], step: impl Fn([f64; 3]) -> [f64; 3], e: [f64; 3]) -> f64 {
         let [a, b, c] = roots;
         let (one, two) = (step(e), step(step(e)));

@@ -1,11 +1,11 @@
-//! Settings of the observed compensator.
+//! Settings of the observer-corrected compensator.
 
 use crate::builder::with_fields;
 use crate::control_law::BaseLaw;
 use crate::error::{check, finite, not_negative, positive, Error};
 use crate::plant::Drive;
 
-/// Settings of [`super::Observed`], in SI units. `jbf control tune` computes them from a model.
+/// Settings of [`super::Observed`], in SI units; `jbf control tune` computes them from a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Settings {
@@ -13,35 +13,39 @@ pub struct Settings {
     pub damping_1_s: f64,
     /// The plant's input gain `b`, rad/s^2/V.
     pub input_rad_s2_v: f64,
-    /// Poles of the observer, rad/s.
+    /// Bandwidth that sets the poles of the observer, rad/s.
     pub bandwidth_rad_s: f64,
-    /// Rate at which a lasting correction is taken for friction, 1/s.
+    /// Rate at which a lasting correction is attributed to friction, 1/s.
     pub learning_1_s: f64,
-    /// Most that the level may be corrected by, V, either way.
+    /// Largest correction of the friction level, V, in either direction.
     pub level_limit_v: f64,
-    /// Most that the rest may be, V, either way.
+    /// Largest remaining disturbance, V, in either direction.
     pub rest_limit_v: f64,
-    /// Speed below which the shaft counts as slow, rad/s: some times the noise of the estimate.
+    /// Speed below which the shaft counts as slow, rad/s; a few times the noise of the estimate.
     pub slow_rad_s: f64,
-    /// What an error of angle asks for in speed, 1/s; zero in velocity control.
+    /// Wanted speed per error of angle, 1/s; zero in velocity control.
     pub approach_1_s: f64,
-    /// Share of the level that is sent out where the shaft is slow; below one it cannot hunt.
+    /// Fraction of the level that is output while the shaft is slow; below one the loop cannot
+    /// hunt.
     pub breakaway: f64,
-    /// Feedback beside the control law's: the compensated plant is known, and bears more.
-    /// Of the angle's error, V/rad.
+    /// Additional feedback of the angle error, V/rad, on top of the control law.
+    ///
+    /// The compensated plant is known and therefore tolerates a higher gain.
     pub stiffer_v_rad: f64,
-    /// Of the speed's error, V s/rad.
+    /// Additional feedback of the speed error, V s/rad, on top of the control law.
     pub stiffer_v_s_rad: f64,
-    /// What the control law itself feeds forward of the wanted speed, V s/rad.
+    /// Feedforward gain of the control law itself on the wanted speed, V s/rad.
     pub law_forward_v_s_rad: f64,
     /// Time step of the loop, s.
     pub dt_s: f64,
 }
 
 impl Settings {
-    /// For a drive, an observer of a bandwidth (rad/s), a speed (rad/s) below which the shaft
-    /// counts as slow, and a step of the loop (s). It corrects nothing until it is given limits,
-    /// and stands beside no control law until it is told which.
+    /// Settings for a drive, from the bandwidth of the observer (rad/s), the speed below which the
+    /// shaft counts as slow (rad/s), and the time step of the loop (s).
+    ///
+    /// All limits are zero, so nothing is corrected until limits are set. No control law is assumed
+    /// until [`Settings::beside`] sets one.
     #[must_use]
     pub const fn new(drive: &Drive, bandwidth_rad_s: f64, slow_rad_s: f64, dt_s: f64) -> Self {
         Self {
@@ -72,9 +76,10 @@ impl Settings {
         with_law_forward_v_s_rad => law_forward_v_s_rad: f64,
     }
 
-    /// Beside this control law. A position loop is stiffened to a natural frequency `loop_rad_s`
-    /// and approaches its goal with a third of it; to a velocity loop the frequency is of no
-    /// account.
+    /// Adapts the settings to this control law.
+    ///
+    /// A position loop is stiffened to a natural frequency `loop_rad_s` and approaches its goal at
+    /// a third of it. A velocity loop ignores the frequency.
     #[must_use]
     pub fn beside(mut self, law: &BaseLaw<f64>, loop_rad_s: f64) -> Self {
         self.law_forward_v_s_rad = law.forward_v_s_rad();
@@ -125,7 +130,7 @@ mod tests {
     fn a_position_loop_is_stiffened_to_its_frequency() {
         let law = BaseLaw::position(&Drive::THESIS);
         let s = PLAIN.beside(&law, 30.0);
-        // Both feedbacks together have the poles of 30 rad/s.
+        // Both feedbacks together have poles of natural frequency 30 rad/s.
         let [k1, k2] = law.gains();
         let (c0, c1) = (
             457.0 * (k1 + s.stiffer_v_rad),

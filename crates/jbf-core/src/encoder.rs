@@ -1,14 +1,14 @@
-//! An incremental encoder: from a counter that rolls over to an angle that does not.
+//! Incremental encoder: converts a counter that rolls over to an angle that does not.
 
 use crate::error::{check, positive, within, Error};
 use crate::real::Real;
 
-/// Counts in a radian of the thesis's encoder.
+/// Counts per radian of the thesis's encoder.
 pub const THESIS_COUNTS_PER_RAD: f64 = 2387.3;
-/// Bits of the thesis's counter.
+/// Number of bits of the thesis's counter.
 pub const THESIS_BITS: u32 = 16;
 
-/// Counts to radians, roll-over and jumps.
+/// Conversion of counts to radians, with roll-over and detection of jumps.
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder<T> {
     rad_per_count: T,
@@ -17,7 +17,7 @@ pub struct Encoder<T> {
     most_counts: i32,
 }
 
-/// What the encoder remembers.
+/// State of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
@@ -27,25 +27,26 @@ pub struct State {
     still: u32,
 }
 
-/// One sample.
+/// Result of one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Sample<T> {
-    /// Angle since the sample before, rad; zero in a jump.
+    /// Rotation since the previous sample, rad; zero in a jump.
     pub moved_rad: T,
-    /// True where the counter went further than the shaft can: the step is not believed.
+    /// True if the counter changed by more than the shaft can move; the step is then ignored.
     pub jumped: bool,
-    /// Samples since the counter last changed.
+    /// Number of samples since the counter last changed.
     pub still: u32,
 }
 
 impl<T: Real> Encoder<T> {
-    /// `counts_per_rad` lines, a counter of `bits` bits, and the fastest speed (rad/s) that the
-    /// shaft can have, which tells a jump from a motion.
+    /// Creates an encoder with `counts_per_rad` counts per radian and a counter of `bits` bits.
+    ///
+    /// `top_speed_rad_s` is the highest speed of the shaft (rad/s); a larger change is a jump.
     ///
     /// # Errors
-    /// Sizes must be positive; the counter must have 8 to 32 bits and more than twice the counts
-    /// that the fastest speed makes in one step, or a roll-over could not be told.
+    /// Sizes must be positive. The counter must have 8 to 32 bits and more than twice the counts of
+    /// one step at the highest speed; otherwise a roll-over is ambiguous.
     pub fn new(
         counts_per_rad: f64,
         bits: u32,
@@ -71,11 +72,11 @@ impl<T: Real> Encoder<T> {
         })
     }
 
-    /// Take the counter's value. The first sample is where angles count from.
+    /// Processes a counter value; angles count from the first sample.
     #[inline]
     pub fn step(&self, state: &mut State, counter: u32) -> Sample<T> {
         let raw = counter.wrapping_sub(state.last) << self.shift;
-        // An arithmetic shift brings the sign back: the short way round the counter.
+        // An arithmetic shift restores the sign: the shorter direction round the counter.
         let moved = (raw as i32) >> self.shift;
         state.last = counter;
         if !state.started {
@@ -101,7 +102,7 @@ impl<T: Real> Encoder<T> {
         }
     }
 
-    /// Angle since the first sample, rad, without the loss of a sum of increments.
+    /// Angle since the first sample, rad, without the rounding error of a sum of increments.
     #[inline]
     #[must_use]
     pub fn angle_rad(&self, state: &State) -> T {
@@ -110,7 +111,7 @@ impl<T: Real> Encoder<T> {
         (T::from_i32(high) * T::of(1_048_576.0) + T::from_i32(low)) * self.rad_per_count
     }
 
-    /// The angle of one count, rad.
+    /// Angle per count, rad.
     pub fn rad_per_count(&self) -> T {
         self.rad_per_count
     }

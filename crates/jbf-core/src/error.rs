@@ -1,9 +1,11 @@
-//! One error for every constructor: which parameter, which value, which rule.
+//! One error type for all constructors: the parameter, its value and the rule.
 
 use core::fmt;
 
-/// Why something could not be built. Displayed as one line in lower case that names the
-/// parameter, the value and the rule: `radius_m = -1 must be positive and finite`.
+/// Reason why a constructor failed.
+///
+/// It is displayed as one line in lower case with the parameter, the value and the rule: `radius_m
+/// = -1 must be positive and finite`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -12,68 +14,68 @@ pub enum Error {
     UnknownLaw,
     /// The catalogue has no effect of that name.
     UnknownEffect,
-    /// Something that is needed was not given.
+    /// A required value is missing.
     Missing {
         /// Name of the parameter, with its unit (`load_n`).
         name: &'static str,
     },
     /// Fewer values than parameters.
     TooFew {
-        /// What the values are of.
+        /// Name of the list of values.
         name: &'static str,
-        /// How many were given.
+        /// Number of values given.
         given: usize,
-        /// How many there must be.
+        /// Number of values required.
         needed: usize,
     },
-    /// A size that must be positive and finite.
+    /// The value must be positive and finite.
     NotPositive {
         /// Name of the parameter, with its unit (`radius_m`).
         name: &'static str,
-        /// The value that was given.
+        /// Given value.
         value: f64,
     },
-    /// A number that must be zero or positive, and finite.
+    /// The value must be zero or positive, and finite.
     Negative {
         /// Name of the parameter, with its unit.
         name: &'static str,
-        /// The value that was given.
+        /// Given value.
         value: f64,
     },
-    /// A number that must be finite.
+    /// The value must be finite.
     NotFinite {
         /// Name of the parameter, with its unit.
         name: &'static str,
-        /// The value that was given.
+        /// Given value.
         value: f64,
     },
-    /// A value outside the bounds of its parameter, or none at all (NaN).
+    /// The value is outside the bounds of its parameter, or NaN.
     OutOfBounds {
         /// Name of the parameter, with its unit.
         name: &'static str,
-        /// The value that was given.
+        /// Given value.
         value: f64,
         /// Least value allowed.
         lower: f64,
         /// Largest value allowed.
         upper: f64,
     },
-    /// Any other rule of a single parameter.
+    /// The value violates another rule of a single parameter.
     Rule {
         /// Name of the parameter, with its unit.
         name: &'static str,
-        /// The value that was given.
+        /// Given value.
         value: f64,
-        /// The rule that it breaks (`must be smaller than radius_m`).
+        /// Rule that the value violates (`must be smaller than radius_m`).
         rule: &'static str,
     },
 }
 
-/// The error under the name that it had as a struct.
+/// The error under its former name as a struct.
 pub type ParameterError = Error;
 
 impl Error {
-    /// The parameter that breaks its rule; `law` or `effect` for an unknown one.
+    /// Parameter that violates its rule; `law` or `effect` for an unknown name.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match *self {
@@ -89,7 +91,7 @@ impl Error {
         }
     }
 
-    /// The value that was given, where there was one.
+    /// Given value, if any.
     #[must_use]
     pub const fn value(&self) -> Option<f64> {
         match *self {
@@ -103,7 +105,7 @@ impl Error {
         }
     }
 
-    /// The rule that is broken, without the numbers in it.
+    /// Violated rule, without its numbers.
     #[must_use]
     pub const fn rule(&self) -> &'static str {
         match *self {
@@ -142,7 +144,7 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// Check a rule that has no kind of its own.
+/// Checks a rule that has no error variant of its own.
 pub(crate) fn check(
     ok: bool,
     name: &'static str,
@@ -156,7 +158,7 @@ pub(crate) fn check(
     }
 }
 
-/// Most physical sizes: finite and above zero.
+/// Checks that a value is positive and finite, as most physical sizes are.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
     if value > 0.0 && value.is_finite() {
         Ok(())
@@ -165,7 +167,7 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Error> {
     }
 }
 
-/// What may be absent: finite, zero or above.
+/// Checks that a value is finite and zero or positive.
 pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<(), Error> {
     if value >= 0.0 && value.is_finite() {
         Ok(())
@@ -174,7 +176,7 @@ pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<(), Error> 
     }
 }
 
-/// A number of either sign.
+/// Checks that a value of either sign is finite.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<(), Error> {
     if value.is_finite() {
         Ok(())
@@ -183,7 +185,7 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<(), Error> {
     }
 }
 
-/// A value within bounds that both belong to them.
+/// Checks that a value is within inclusive bounds.
 pub(crate) fn within(
     name: &'static str,
     value: f64,
@@ -201,17 +203,17 @@ pub(crate) fn within(
     }
 }
 
-/// What a constructor cannot do without.
+/// Returns a required value, or reports it as missing.
 pub(crate) fn needed<V>(name: &'static str, value: Option<V>) -> Result<V, Error> {
     value.ok_or(Error::Missing { name })
 }
 
-/// The value of one parameter in a list of them.
+/// Returns the value of one parameter in a list.
 pub(crate) fn given<T: Copy>(values: &[T], i: usize, name: &'static str) -> Result<T, Error> {
     needed(name, values.get(i).copied())
 }
 
-/// A list with a value for each of so many parameters.
+/// Checks that a list has a value for each of the required parameters.
 pub(crate) fn enough(name: &'static str, given: usize, needed: usize) -> Result<(), Error> {
     if given >= needed {
         Ok(())

@@ -1,14 +1,14 @@
 //! Film integrals of the short bearing, equations (3.11) to (3.13).
 //!
-//! The scan prints J11 with the cube of `1 - eps^2`; the quadrature, Appendix C and the
-//! square in (3.20) all say 3/2.
+//! The scan prints J11 with the cube of `1 - eps^2`. The quadrature, Appendix C and the square in
+//! (3.20) all give the exponent 3/2.
 
 use crate::real::Real;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
 
-/// `4 / pi`.
+/// Constant `4 / pi`.
 pub(crate) const FOUR_OVER_PI: f64 = 2.0 * FRAC_2_PI;
-/// `pi - 8 / pi`, from the determinant of the film integrals.
+/// Constant `pi - 8 / pi`, from the determinant of the film integrals.
 pub(crate) const PI_LESS_8_OVER_PI: f64 = PI - 4.0 * FRAC_2_PI;
 
 /// The three film integrals at one eccentricity ratio.
@@ -23,7 +23,7 @@ pub struct FilmIntegrals<T> {
 }
 
 impl<T: Real> FilmIntegrals<T> {
-    /// Evaluate at `0 <= eps < 1`.
+    /// Evaluates the integrals at `0 <= eps < 1`.
     pub fn at(eps: T) -> Self {
         // (1 - eps)(1 + eps) keeps the digits that 1 - eps^2 loses close to contact.
         let d = (T::ONE - eps) * (T::ONE + eps);

@@ -1,50 +1,53 @@
-//! The path of a film along a record, kept: a film is told the motion and its own two parameters and
-//! nothing of what stands behind it, so that chains that differ only there need not step it again.
+//! Stored path of a film along a record.
 //!
-//! [`FilmSteps`] is a law that tells which steps a record asks of a film, [`OnPath`] one whose film
-//! goes from place to place of a list. On the path of its own parameters it gives the same bits.
+//! The film depends on the motion and on its own two parameters, and not on later stages. Chains
+//! that differ only in later stages therefore need not integrate the film again.
+//!
+//! [`FilmSteps`] is a law that reports the steps that a record requires of a film. [`OnPath`] is a
+//! law whose film takes its states from a list. On the path of its own parameters it gives the same
+//! bits.
 
 use crate::friction::Friction;
 use crate::law::Law;
 use crate::motion::JournalMotion;
 use crate::real::Real;
 
-/// What friction is told of the film at the end of one step ([`Law::film`]), and its derivatives by
-/// the law's two film parameters ([`Law::FILM_PARAMETERS`]).
+/// State of the film at the end of one step that enters friction ([`Law::film`]), and its
+/// derivatives with respect to the two film parameters of the law ([`Law::FILM_PARAMETERS`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The film.
+    /// State of the film.
     pub film: f64,
-    /// Its derivatives, in the order of [`Law::FILM_PARAMETERS`].
+    /// Derivatives, in the order of [`Law::FILM_PARAMETERS`].
     pub slopes: [f64; 2],
 }
 
-/// One step that a record asks of a film.
+/// One step that a record requires of a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmStep {
-    /// |U| at its start, middle and end, m/s.
+    /// Speed |U| at the start, middle and end of the step, m/s.
     pub speed_m_s: [f64; 3],
-    /// Its length, s.
+    /// Length of the step, s.
     pub dt_s: f64,
     /// Load on the bearing, N.
     pub load_n: f64,
 }
 
-/// A law without a film: it hands the steps that one would make to `sink`.
+/// A law without a film that passes the steps of a film to `sink`.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmSteps<F> {
     sink: F,
 }
 
 impl<F> FilmSteps<F> {
-    /// Where the steps go.
+    /// Creates a law that passes its steps to `sink`.
     pub fn new(sink: F) -> Self {
         Self { sink }
     }
 }
 
 impl<F: Fn(FilmStep)> Law<f64> for FilmSteps<F> {
-    /// The load, N.
+    /// Load, N.
     type State = f64;
 
     fn start(&self, load_n: f64) -> f64 {
@@ -69,19 +72,20 @@ impl<F: Fn(FilmStep)> Law<f64> for FilmSteps<F> {
     }
 }
 
-/// A law whose film follows a path. Effects before the film, which would change its path, have no
-/// place round it.
+/// A law whose film follows a stored path.
+///
+/// Effects before the film would change the path and must not be combined with it.
 #[derive(Clone, Copy, Debug)]
 pub struct OnPath<'a, T, L> {
     law: L,
     parameters: [T; 2],
     path: &'a [Place],
-    /// Of each step that is made its number on the path; all are made where there are none.
+    /// Index on the path of each step that is made; `None` if all steps are made.
     ends: Option<&'a [u32]>,
 }
 
 impl<'a, T, L> OnPath<'a, T, L> {
-    /// The law, its two film parameters with the derivatives they carry, and their path.
+    /// Creates a law with its two film parameters, which carry derivatives, and their path.
     pub fn new(law: L, parameters: [T; 2], path: &'a [Place]) -> Self {
         Self {
             law,
@@ -91,8 +95,8 @@ impl<'a, T, L> OnPath<'a, T, L> {
         }
     }
 
-    /// The same for [`crate::run::Steps::Last`]: the number, on the path, of the last step before
-    /// each sample but the first.
+    /// Sets, for [`crate::run::Steps::Last`], the index on the path of the last step before each
+    /// sample except the first.
     pub fn at(self, ends: &'a [u32]) -> Self {
         Self {
             ends: Some(ends),
@@ -110,7 +114,7 @@ impl<'a, T, L> OnPath<'a, T, L> {
 }
 
 impl<T: Real, L: Law<T>> Law<T> for OnPath<'_, T, L> {
-    /// The law's own, and how many steps the film has made.
+    /// State of the law, and the number of steps of the film so far.
     type State = (L::State, usize);
 
     const HAS_BRISTLE: bool = L::HAS_BRISTLE;
@@ -141,7 +145,7 @@ impl<T: Real, L: Law<T>> Law<T> for OnPath<'_, T, L> {
     #[inline(always)]
     fn advance(&self, state: &mut Self::State, speed_m_s: [T; 3], rate: T, dt_s: T) {
         let Some(place) = self.place(state.1) else {
-            // Beyond the end of the path the film steps by itself.
+            // Beyond the end of the path the film is integrated.
             return self.law.advance(&mut state.0, speed_m_s, rate, dt_s);
         };
         let [first, second] = self.parameters;

@@ -1,17 +1,19 @@
-//! Friction at one instant, in the two parts that every law, chain and loop tells apart.
+//! Friction at one instant, in the two parts that all laws, chains and loops distinguish.
 
 use crate::real::Real;
 
-/// `jump sgn(v) + smooth`: what takes the sign of the motion and jumps with it, and the rest.
+/// Friction `jump sgn(v) + smooth`: the part that jumps with the sign of the motion, and the rest.
 ///
-/// The unit is that of whoever gives it: a law a coefficient (of one newton, and so a force, where
-/// it is a law in newtons), a chain newtons on one bearing, a plant or a compensator volts.
+/// The unit depends on the source. A law returns a coefficient (or, for a law in newtons, a force,
+/// as the coefficient of one newton). A chain returns newtons on one bearing, a plant or a
+/// compensator volts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction<T> {
-    /// The part that takes the sign of the motion, unsigned; at rest it holds up to this. A law
-    /// with a bristle gives the level towards which the bristle bends.
+    /// Unsigned part that takes the sign of the motion; at rest it holds up to this value.
+    ///
+    /// A law with a bristle returns the level towards which the bristle deflects.
     pub jump: T,
-    /// The rest, signed: viscous friction, a spring.
+    /// Remaining signed part: viscous friction, a spring.
     pub smooth: T,
 }
 
@@ -22,13 +24,13 @@ impl<T: Real> Friction<T> {
         smooth: T::ZERO,
     };
 
-    /// All of it, for a member `direction` of the set-valued sign.
+    /// Total friction for a member `direction` of the set-valued sign.
     #[inline]
     pub fn along(&self, direction: T) -> T {
         self.jump * direction + self.smooth
     }
 
-    /// Both parts times a factor, which may be one of unit.
+    /// Both parts times a factor, which may change the unit.
     #[inline]
     pub fn times(&self, factor: T) -> Self {
         Self {

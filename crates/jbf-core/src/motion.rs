@@ -1,8 +1,8 @@
-//! What is imposed on the bearing at one instant.
+//! Motion imposed on the bearing at one instant.
 
 use crate::real::Real;
 
-/// The imposed motion at one instant: [`Motion::at_rest`] under a load, with what moves.
+/// The imposed motion at one instant; start with [`Motion::at_rest`] and set the moving quantities.
 ///
 /// ```
 /// use jbf_core::Motion;
@@ -13,23 +13,24 @@ use crate::real::Real;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Motion<T> {
-    /// Time since the run began, s.
+    /// Time since the start of the run, s.
     pub time_s: T,
     /// Surface speed of the shaft, signed, m/s.
     pub velocity_m_s: T,
-    /// Its rate of change, m/s^2.
+    /// Rate of change of the surface speed, m/s^2.
     pub acceleration_m_s2: T,
     /// Shaft angle, unwrapped, rad.
     pub angle_rad: T,
     /// Normal load on one bearing, N.
     pub load_n: T,
-    /// Recorded temperature, C; without one nothing differs from what it is at the reference
-    /// temperature of the effects that ask for it.
+    /// Recorded temperature, C.
+    ///
+    /// Without it all effects behave as at their reference temperature.
     pub temperature_c: Option<T>,
 }
 
 impl<T: Real> Motion<T> {
-    /// At rest under a load, N, at time and angle zero.
+    /// Creates a motion at rest under a load, N, at time and angle zero.
     #[must_use]
     pub fn at_rest(load_n: T) -> Self {
         Self {
@@ -42,7 +43,7 @@ impl<T: Real> Motion<T> {
         }
     }
 
-    /// The same at another time, s.
+    /// Sets the time, s.
     #[inline(always)]
     #[must_use]
     pub fn with_time_s(mut self, time_s: T) -> Self {
@@ -50,7 +51,7 @@ impl<T: Real> Motion<T> {
         self
     }
 
-    /// The same at another surface speed, m/s.
+    /// Sets the surface speed, m/s.
     #[inline(always)]
     #[must_use]
     pub fn with_velocity_m_s(mut self, velocity_m_s: T) -> Self {
@@ -58,7 +59,7 @@ impl<T: Real> Motion<T> {
         self
     }
 
-    /// The same with another rate of change of the speed, m/s^2.
+    /// Sets the rate of change of the speed, m/s^2.
     #[inline(always)]
     #[must_use]
     pub fn with_acceleration_m_s2(mut self, acceleration_m_s2: T) -> Self {
@@ -66,7 +67,7 @@ impl<T: Real> Motion<T> {
         self
     }
 
-    /// The same at another shaft angle, rad.
+    /// Sets the shaft angle, rad.
     #[inline(always)]
     #[must_use]
     pub fn with_angle_rad(mut self, angle_rad: T) -> Self {
@@ -74,7 +75,7 @@ impl<T: Real> Motion<T> {
         self
     }
 
-    /// The same under another load on one bearing, N.
+    /// Sets the load on one bearing, N.
     #[inline(always)]
     #[must_use]
     pub fn with_load_n(mut self, load_n: T) -> Self {
@@ -82,7 +83,7 @@ impl<T: Real> Motion<T> {
         self
     }
 
-    /// The same at a recorded temperature, C.
+    /// Sets the recorded temperature, C.
     #[inline(always)]
     #[must_use]
     pub fn with_temperature_c(mut self, temperature_c: T) -> Self {
@@ -90,7 +91,7 @@ impl<T: Real> Motion<T> {
         self
     }
 
-    /// True where every quantity is finite.
+    /// True if every quantity is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.time_s.is_finite()
@@ -101,7 +102,7 @@ impl<T: Real> Motion<T> {
             && self.temperature_c.is_none_or(T::is_finite)
     }
 
-    /// The same motion in another kind of number, without derivatives.
+    /// Converts to another number type, without derivatives.
     #[inline(always)]
     pub fn lift<U: Real>(&self) -> Motion<U> {
         let lift = |value: T| U::of(value.value());
@@ -115,9 +116,11 @@ impl<T: Real> Motion<T> {
         }
     }
 
-    /// The motion a `fraction` of the way to `other`: every quantity on a straight line but the
-    /// angle, which a speed on a straight line carries along a parabola. (Over a sample of 20 ms
-    /// the chord errs by an encoder's step: a stiff drive makes a force of it.)
+    /// Interpolates the motion at a `fraction` of the step to `other`.
+    ///
+    /// Every quantity is linear except the angle, which for a linear speed is a parabola. (Over a
+    /// sample of 20 ms the error of the chord is one step of an encoder, which a stiff drive turns
+    /// into a force.)
     #[inline(always)]
     pub fn towards(&self, other: &Self, fraction: T, radius_m: T) -> Self {
         let line = |a: T, b: T| a + (b - a) * fraction;
@@ -137,8 +140,9 @@ impl<T: Real> Motion<T> {
     }
 }
 
-/// The share of a step at which a speed on a straight line from `from` to `to` crosses zero; none
-/// where it does not change its sign inside the step.
+/// Fraction of a step at which a speed that is linear from `from` to `to` crosses zero.
+///
+/// Returns `None` if it does not change sign inside the step.
 #[inline(always)]
 pub(crate) fn crossing<T: Real>(from: T, to: T) -> Option<T> {
     if from.value() * to.value() < 0.0 {
@@ -148,36 +152,40 @@ pub(crate) fn crossing<T: Real>(from: T, to: T) -> Option<T> {
     }
 }
 
-/// How far a parabola lies below its chord at a share of the way, over its change of slope.
+/// Distance of a parabola below its chord at a fraction of the step, relative to its change of
+/// slope.
 #[inline(always)]
 pub(crate) fn sag<T: Real>(share: T) -> T {
     T::of(0.5) * share * (T::ONE - share)
 }
 
-/// The journal's own motion, behind the drive.
+/// Motion of the journal, behind the drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct JournalMotion<T> {
     /// Surface speed of the journal, m/s.
     pub velocity_m_s: T,
-    /// Its rate of change, m/s^2.
+    /// Rate of change of the surface speed, m/s^2.
     pub acceleration_m_s2: T,
     /// Journal angle, rad.
     pub angle_rad: T,
-    /// The member of the set-valued sgn(v) that holds now: -1 or +1 in sliding, and between
-    /// the two where a stuck journal carries less than the sliding friction.
+    /// Present value of the set-valued sgn(v): -1 or +1 in sliding.
+    ///
+    /// It is between the two where a stuck journal carries less than the sliding friction.
     pub direction: T,
-    /// Time since the run began, s.
+    /// Time since the start of the run, s.
     pub time_s: T,
     /// Recorded load, N.
     pub load_n: T,
-    /// Recorded temperature, C, where there is one.
+    /// Recorded temperature, C, if any.
     pub temperature_c: Option<T>,
 }
 
 impl<T: Real> JournalMotion<T> {
-    /// The direction in which friction is asked for: that of the speed. At rest the motion may go
-    /// either way, and the direction that holds the journal decides.
+    /// Direction that enters friction: the sign of the speed.
+    ///
+    /// At rest the motion may start in either direction, and the direction of the holding force is
+    /// used.
     #[inline(always)]
     pub fn way(&self) -> T {
         if self.velocity_m_s == T::ZERO {
@@ -187,8 +195,7 @@ impl<T: Real> JournalMotion<T> {
         }
     }
 
-    /// Distance slid on the way to `to`, m, the speed on a straight line; back and forth both
-    /// count.
+    /// Sliding distance from here to `to`, m, for a linear speed; both directions count.
     #[inline(always)]
     pub fn distance_m(&self, to: &Self, dt_s: T) -> T {
         let (v0, v1) = (self.velocity_m_s, to.velocity_m_s);

@@ -1,75 +1,81 @@
-//! The page of one parameter, of a law or an effect: the one source of its name, its bounds, where a
-//! fit may start and what a mirror does to it.
+//! Description of one parameter of a law or an effect.
+//!
+//! It is the single source of its name, its bounds, the start values of a fit, and its behaviour
+//! under reflection.
 
 use crate::error::{given, within, ParameterError};
 use crate::real::Real;
 
-/// What becomes of a parameter where the machine is looked at in a mirror.
+/// Behaviour of a parameter when the machine is reflected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mirror {
-    /// It is the same.
+    /// The parameter does not change.
     Same,
-    /// It changes its sign: an angle, a force with a direction, a difference between two ways.
+    /// The parameter changes sign: an angle, a force with a direction, a difference of two
+    /// directions.
     Negate,
 }
 
-/// Where a fit of a law in newtons may start: such a law has no one scale that suits a watch and a
-/// press, so most of its parameters say of what in the data they are about the size. A law that
-/// scales with the load knows no newtons; beside it the catalogue's values hold.
+/// Start value in a fit of a law in newtons.
+///
+/// No single scale suits both a watch and a press, so most parameters of such a law name the
+/// quantity of the data that gives their order of magnitude. A law that scales with the load has no
+/// forces of its own; with it the catalogue's values apply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// At the catalogue's values.
+    /// The catalogue's values.
     Catalogue,
     /// Friction in motion.
     Kinetic,
-    /// Friction as motion begins.
+    /// Friction at the start of motion.
     Breakaway,
-    /// What friction as motion begins has more than in motion.
+    /// Excess of friction at the start of motion over friction in motion.
     BreakawayExcess,
-    /// The slope of friction over speed.
+    /// Slope of friction over speed.
     Viscous,
-    /// A slow speed, over which friction falls.
+    /// A low speed, over which friction falls.
     StribeckSpeed,
-    /// A usual speed.
+    /// A typical speed.
     UsualSpeed,
-    /// One over a usual speed.
+    /// Inverse of a typical speed.
     Slowness,
-    /// Friction over the distance in which a contact bends.
+    /// Friction per distance over which a contact deflects.
     Stiffness,
-    /// Friction over a usual speed, a small share of it.
+    /// A small share of friction per typical speed.
     Damping,
     /// A small share of friction in motion.
     Drag,
-    /// Pitches at which the force comes again along the way.
+    /// Pitches at which the force repeats along the travel.
     Pitch,
-    /// Pitches at which the force in the direction of motion does.
+    /// Pitches at which the force in the direction of motion repeats.
     RipplePitch,
-    /// A share of a usual run's time.
+    /// A share of the duration of a typical run.
     RunTime,
-    /// The temperature at which a rig's viscosity holds, or else the mean of those on record, C.
+    /// Temperature at which the viscosity of the rig is valid, otherwise the mean recorded
+    /// temperature, C.
     ReferenceTemperature,
-    /// A small share of the largest force on record.
+    /// A small share of the largest recorded force.
     CellPlay,
-    /// What bends a cell's line by a small share at the largest force on record.
+    /// Nonlinearity of a load cell by a small share at the largest recorded force.
     CellCubic,
-    /// The middle of the way that the runs cover.
+    /// Middle of the travel of the runs.
     StrokeMiddle,
-    /// Half of that way.
+    /// Half of the travel of the runs.
     StrokeHalf,
-    /// At the catalogue's values, and down to what a sample resolves.
+    /// The catalogue's values, and values down to the resolution of a sample.
     Lateness,
-    /// On a linear axis: a play of a small share of a stroke.
+    /// On a linear axis: a backlash of a small share of a stroke.
     DrivePlay,
-    /// On a linear axis: a drive that gives by a small share of a stroke.
+    /// On a linear axis: a drive that deflects by a small share of a stroke.
     DriveStiffness,
-    /// On a linear axis: a drive that rings fast against a stroke.
+    /// On a linear axis: a drive that rings fast relative to a stroke.
     DriveInertia,
-    /// On a linear axis: a drive that damps at a usual speed.
+    /// On a linear axis: a drive that damps at a typical speed.
     DriveDamping,
 }
 
 impl Start {
-    /// The name used in files and in Python.
+    /// Name used in files and in Python.
     pub const fn name(self) -> &'static str {
         match self {
             Start::Catalogue => "catalogue",
@@ -100,18 +106,20 @@ impl Start {
     }
 }
 
-/// What bounds a parameter from above in a fit, beside the catalogue.
+/// Upper bound of a parameter in a fit, in addition to the catalogue's bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
-    /// Nothing.
+    /// No additional bound.
     Catalogue,
-    /// The fastest speed on record: it is the speed at which a film carries the load alone, and
-    /// what lies far beyond the record never shows.
+    /// The highest recorded speed.
+    ///
+    /// The parameter is the speed at which a film carries the load alone. Values far beyond the
+    /// record have no visible effect.
     TransitionSpeed,
 }
 
 impl Bound {
-    /// The name used in files and in Python.
+    /// Name used in files and in Python.
     pub const fn name(self) -> &'static str {
         match self {
             Bound::Catalogue => "catalogue",
@@ -132,38 +140,40 @@ impl Bound {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Parameter {
-    /// Symbol and unit as one name (`sigma_1_m`), as files and options spell it.
+    /// Symbol and unit as one name (`sigma_1_m`), as used in files and options.
     pub name: &'static str,
-    /// Unit as people write it (`1/m`).
+    /// Unit in conventional notation (`1/m`).
     pub unit: &'static str,
-    /// What it is.
+    /// Meaning of the parameter.
     pub meaning: &'static str,
     /// Smallest value allowed.
     pub lower: f64,
     /// Largest value allowed.
     pub upper: f64,
-    /// The value at which the effect vanishes, where this parameter has one.
+    /// Value at which the effect vanishes, if this parameter has one.
     pub null: Option<f64>,
-    /// Where a fit may start, likeliest first.
+    /// Start values of a fit, likeliest first.
     pub starts: &'static [f64],
-    /// True where a fit should walk in the logarithm.
+    /// True if a fit should use the logarithm of the parameter.
     pub log: bool,
-    /// The period of an angle, for parameters that wrap.
+    /// Period of an angle, for parameters that wrap.
     pub period: Option<f64>,
-    /// What a mirror does to it.
+    /// Behaviour under reflection.
     pub mirror: Mirror,
-    /// Where a fit of a law in newtons starts.
+    /// Start value in a fit of a law in newtons.
     pub start: Start,
-    /// What bounds it from above in a fit.
+    /// Upper bound in a fit.
     pub bound: Bound,
-    /// True of a number that is stated, not found: a fit holds it where it starts, or where it is
-    /// told to. It says in what terms the others are meant (a reference), or stands in a form with
-    /// one parameter more than records tell.
+    /// True for a parameter that is specified instead of estimated.
+    ///
+    /// A fit holds it at its start value, or at a value given by the user. It defines the terms of
+    /// other parameters (a reference), or belongs to a form with one parameter more than records
+    /// determine.
     pub stated: bool,
 }
 
 impl Parameter {
-    /// A parameter between two bounds without a null, walked in its own unit.
+    /// Creates a parameter between two bounds, without a null value and not logarithmic.
     pub const fn new(
         name: &'static str,
         unit: &'static str,
@@ -188,51 +198,52 @@ impl Parameter {
         }
     }
 
-    /// A scale: a fit walks in its logarithm.
+    /// Marks a scale: a fit uses its logarithm.
     pub const fn log(mut self) -> Self {
         self.log = true;
         self
     }
 
-    /// The value at which the effect vanishes.
+    /// Sets the value at which the effect vanishes.
     pub const fn null(mut self, value: f64) -> Self {
         self.null = Some(value);
         self
     }
 
-    /// An angle that wraps.
+    /// Marks an angle that wraps.
     pub const fn period(mut self, period: f64) -> Self {
         self.period = Some(period);
         self
     }
 
-    /// It knows left from right: a mirror changes its sign.
+    /// Marks a parameter that changes sign under reflection.
     pub const fn signed(mut self) -> Self {
         self.mirror = Mirror::Negate;
         self
     }
 
-    /// What in the data it is about the size of.
+    /// Sets the quantity of the data that gives its order of magnitude.
     pub const fn start(mut self, start: Start) -> Self {
         self.start = start;
         self
     }
 
-    /// A number that is stated, not found.
+    /// Marks a parameter that is specified instead of estimated.
     pub const fn stated(mut self) -> Self {
         self.stated = true;
         self
     }
 
-    /// What in the data bounds it.
+    /// Sets the quantity of the data that bounds it.
     pub const fn bound(mut self, bound: Bound) -> Self {
         self.bound = bound;
         self
     }
 }
 
-/// True where there is one value for each parameter and each lies in its bounds or at its null:
-/// what can be checked of constants while a program is compiled.
+/// True if there is one value per parameter and each is within its bounds or at its null.
+///
+/// It can check constants at compile time.
 pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
     if pages.len() != values.len() {
         return false;
@@ -253,7 +264,7 @@ pub(crate) const fn values_fit(pages: &[Parameter], values: &[f64]) -> bool {
     true
 }
 
-/// Two names, while a program is compiled.
+/// Compares two names; usable at compile time.
 pub(crate) const fn same(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     if a.len() != b.len() {
@@ -269,7 +280,9 @@ pub(crate) const fn same(a: &str, b: &str) -> bool {
     true
 }
 
-/// Check values against the bounds of their pages. A null value is always allowed.
+/// Checks values against the bounds of their descriptions.
+///
+/// A null value is always allowed.
 ///
 /// # Errors
 /// Names the first value that is missing or out of bounds.

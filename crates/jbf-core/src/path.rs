@@ -1,22 +1,24 @@
-//! The way of a step during which the speed goes on a straight line: pieces of path that each keep
-//! their direction. Friction turns round with the speed, so whatever follows the way asks here where.
+//! Path of a step during which the speed is linear, as pieces of constant direction.
+//!
+//! Friction reverses with the speed, so every path-dependent quantity needs the reversal.
 
 use crate::motion::{crossing, JournalMotion};
 use crate::real::Real;
 
-/// One piece of path in one direction.
+/// One piece of the path in one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leg<T> {
-    /// -1, 0 or +1.
+    /// Direction: -1, 0 or +1.
     pub direction: T,
     /// Length, m.
     pub distance_m: T,
-    /// Level of friction at its two ends, in whatever unit the caller has it.
+    /// Friction level at both ends, in the unit of the caller.
     pub level: [T; 2],
 }
 
-/// The legs of a step: one, or where the speed crosses zero two, with `turning` the level at the
-/// moment of rest between them, a share of the step after its beginning.
+/// Legs of a step: one, or two if the speed crosses zero.
+///
+/// `turning` returns the level at the moment of rest, from the fraction of the step before it.
 #[inline(always)]
 pub(crate) fn legs<T: Real>(
     from: &JournalMotion<T>,

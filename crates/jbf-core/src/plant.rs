@@ -1,18 +1,18 @@
-//! A shaft with a motor, an encoder's side and friction, for analysis: the plant that the
-//! thesis's own gains describe.
+//! Simulated shaft with a motor, an encoder and friction, for analysis: the plant that the thesis's
+//! own gains describe.
 //!
 //! ```text
 //! v' = -a v + b (u - F(v, ...)),   x' = v,   |u| <= limit
 //! ```
 //!
 //! F, in volts, is any law with any effects; it may be set-valued at v = 0. A step is implicit in
-//! F: first the shaft is tried at rest, where friction holds up to its level, and only what passes
-//! that moves it (a proximal step, after Moreau 1988). So it sticks and does not chatter. Without
+//! F. First the shaft is tried at rest, where friction holds up to its level, and only the excess
+//! moves it (a proximal step, after Moreau 1988). It therefore sticks and does not chatter. Without
 //! friction a step is exact for a constant input.
 //!
 //! Source: Cohn (1998), chapter 6 and Appendices D and E. The observer of Appendix E is the
 //! observer of this plant with a = 135 1/s, b = 457 rad/s^2/V; its feed-forward 0.295 is a/b.
-// `!(x > 0)` is true of a NaN too, and means to be.
+// `!(x > 0)` is intentionally true for NaN too.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use crate::builder::with_fields;
@@ -24,19 +24,22 @@ use crate::law::Law;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// Most trials of one step: a bristle takes three or four.
+/// Largest number of trials per step; a bristle requires three or four.
 const MOST_TRIALS: u32 = 24;
 
-/// A step's speed is solved to this, rad/s, and to this share of itself. It is solved anew at every
-/// step, so that errors do not add up.
+/// Absolute tolerance of the speed of a step, rad/s, and its relative tolerance.
+///
+/// The speed is solved anew at every step, so errors do not accumulate.
 const NEAR_RAD_S: f64 = 1e-7;
 const NEAR: f64 = 1e-6;
 
-/// No shaft turns faster, rad/s: friction that has no root (one that falls with speed more than the
-/// shaft's inertia bears, or a force that leaves the number) holds the shaft for the step.
+/// Speed, rad/s, that no shaft exceeds.
+///
+/// If friction has no root, the shaft is held for the step. This happens if friction falls with
+/// speed more than the inertia of the shaft allows, or if a force is not finite.
 const LOST_RAD_S: f64 = 1e9;
 
-/// Standing still needs no short steps: the film closes slowly.
+/// Longest step at rest, s: the film closes slowly, so short steps are unnecessary.
 const LONGEST_STANDING_S: f64 = 0.02;
 
 /// Motor and shaft.
@@ -47,15 +50,17 @@ pub struct Drive {
     pub damping_1_s: f64,
     /// Input gain `b`, rad/s^2/V.
     pub input_rad_s2_v: f64,
-    /// What one newton of friction on one bearing is in volts.
+    /// Voltage that corresponds to one newton of friction on one bearing, V/N.
     pub volts_per_n: f64,
     /// Largest input, V.
     pub limit_v: f64,
 }
 
 impl Drive {
-    /// The thesis's motor and shaft. Its friction scale is not in the thesis: `volts_per_n` is
-    /// what fits the "none" columns of its Tables 6.1 and 6.2, as `jbf control tables` does.
+    /// Motor and shaft of the thesis.
+    ///
+    /// The thesis does not contain the friction scale: `volts_per_n` is fitted to the "none"
+    /// columns of its Tables 6.1 and 6.2, as `jbf control tables` does.
     pub const THESIS: Self = Self {
         damping_1_s: 135.0,
         input_rad_s2_v: 457.0,
@@ -63,8 +68,9 @@ impl Drive {
         limit_v: 10.0,
     };
 
-    /// A drive by its a (1/s) and b (rad/s^2/V); friction scale and largest input are the
-    /// thesis's until they are told.
+    /// Creates a drive from its a (1/s) and b (rad/s^2/V).
+    ///
+    /// The friction scale and the largest input are those of the thesis until they are set.
     #[must_use]
     pub const fn new(damping_1_s: f64, input_rad_s2_v: f64) -> Self {
         Self {
@@ -79,21 +85,22 @@ impl Drive {
         with_limit_v => limit_v: f64,
     }
 
-    /// True where a and b are those of another.
+    /// True if a and b are those of another drive.
     #[must_use]
     pub fn turns_like(&self, other: &Self) -> bool {
         self.damping_1_s == other.damping_1_s && self.input_rad_s2_v == other.input_rad_s2_v
     }
 
-    /// Twice the speed that the largest input holds without friction, rad/s: what turns faster is
-    /// not the shaft, it is the encoder that jumps.
+    /// Twice the speed that the largest input sustains without friction, rad/s.
+    ///
+    /// A higher speed is a jump of the encoder, not a motion of the shaft.
     #[must_use]
     pub fn top_speed_rad_s(&self) -> f64 {
         2.0 * self.limit_v * self.input_rad_s2_v / self.damping_1_s
     }
 }
 
-/// The plant, ready to step.
+/// The plant with precomputed constants.
 #[derive(Clone, Copy, Debug)]
 pub struct Plant<T: Real, L, E = Effects<T>> {
     chain: Chain<T, L, E>,
@@ -104,34 +111,35 @@ pub struct Plant<T: Real, L, E = Effects<T>> {
     step_s: T,
 }
 
-/// Where the shaft is.
+/// State of the shaft.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T: Real, S, E: EffectSet<T> = Effects<T>> {
     /// Angle, rad.
     pub angle_rad: T,
     /// Speed, rad/s.
     pub speed_rad_s: T,
-    /// Friction, V; what holds the shaft where it sticks.
+    /// Friction, V; the holding force where the shaft sticks.
     pub friction_v: T,
-    /// Friction is guessed to go on changing as it did, V a step.
+    /// Extrapolated change of friction, V per step.
     change_v: T,
     time_s: T,
     chain: chain::State<T, S, E>,
 }
 
-/// Where a step begins, and what drives it. Each trial of a step starts from here and leaves its
-/// end in [`State`].
+/// Start of a step, and its inputs.
+///
+/// Each trial of a step starts from here and stores its end in [`State`].
 struct Before<T: Real, S, E: EffectSet<T>> {
     chain: chain::State<T, S, E>,
     speed_rad_s: T,
     angle_rad: T,
-    /// Speed at the end if there were no friction, rad/s.
+    /// Speed at the end without friction, rad/s.
     free: T,
     load_n: T,
 }
 
 impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
-    /// A plant that takes steps of `step_s`. The law's own stepper must bear that step.
+    /// Creates a plant with steps of `step_s`, at which the law's own stepper must be stable.
     ///
     /// # Errors
     /// Names the number that is not positive and finite.
@@ -152,8 +160,9 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         })
     }
 
-    /// At rest at angle zero under a load (N), having stood for `stood_s`: the film has been
-    /// squeezed out, the contact has aged.
+    /// Returns the state at rest at angle zero under a load (N), after a rest of `stood_s` (s).
+    ///
+    /// During the rest the film is squeezed out and the contact ages.
     #[must_use]
     pub fn start(&self, load_n: T, stood_s: f64) -> State<T, L::State, E> {
         let mut motion = Motion::at_rest(load_n);
@@ -177,7 +186,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         }
     }
 
-    /// One step under an input (V) and a load (N).
+    /// Advances one step under an input (V) and a load (N).
     #[inline]
     pub fn step(&self, state: &mut State<T, L::State, E>, input_v: T, load_n: T) {
         let u = input_v.max(-self.limit_v).min(self.limit_v);
@@ -192,18 +201,20 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         if !self.sliding_on(state, &before) {
             self.leave_rest(state, &before);
         }
-        // True of a NaN too.
+        // Also true for NaN.
         if !(state.speed_rad_s.abs() <= T::of(LOST_RAD_S)) {
             self.attempt(state, &before, T::ZERO);
         }
-        // What the step's motion needed: at rest, whatever holds the shaft.
+        // Force required by the motion of the step; at rest, the holding force.
         let friction_v = (free - state.speed_rad_s) / self.gain;
         state.change_v = friction_v - state.friction_v;
         state.friction_v = friction_v;
         state.time_s += self.step_s;
     }
 
-    /// A step that keeps its direction; false, and worth nothing, where none does.
+    /// Tries a step that keeps its direction.
+    ///
+    /// Returns false, and an invalid state, if there is no such step.
     #[inline]
     fn sliding_on(
         &self,
@@ -219,7 +230,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         state.speed_rad_s * side > T::ZERO
     }
 
-    /// A step that may stick: only what friction at rest cannot hold moves the shaft.
+    /// Tries a step that may stick: only the excess over friction at rest moves the shaft.
     #[inline]
     fn leave_rest(&self, state: &mut State<T, L::State, E>, before: &Before<T, L::State, E>) {
         let still = self.attempt(state, before, T::ZERO);
@@ -227,7 +238,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         let hold = self.gain * still.jump;
         let side = push.sign();
         if push.abs() <= hold {
-            // In the gap of a drive nothing holds: it moves as if there were no friction.
+            // In the backlash of a drive nothing holds the shaft: it moves without friction.
             if self.chain.effects.has_drive() && side != T::ZERO {
                 if self.attempt(state, before, push).jump == T::ZERO {
                     return;
@@ -244,8 +255,8 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
         }
     }
 
-    /// The root of `v - free + gain F(v)` on one side of rest (any, where `side` is zero), by
-    /// secants from a guess.
+    /// Finds the root of `v - free + gain F(v)` on one side of rest (on either side if `side` is
+    /// zero), by secants from a guess.
     #[inline]
     fn solve(
         &self,
@@ -270,14 +281,15 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
                 break;
             }
             let after = missed(next, &self.attempt(state, before, next));
-            // Friction that falls with speed makes the slope small, never so small.
+            // Friction that falls with speed reduces the slope; this is its lower limit.
             slope = ((after - miss) / run).max(T::of(0.2));
             (here, miss) = (next, after);
         }
     }
 
-    /// Take the chain from where it was before the step to one that ends with a speed; gives the
-    /// friction there, V.
+    /// Advances the chain from the start of the step to an end with the given speed.
+    ///
+    /// Returns the friction there, V.
     #[inline]
     fn attempt(
         &self,

@@ -1,23 +1,24 @@
-//! The scalar that the physics is written over: `f32`, `f64`, or a [`crate::Dual`] that
-//! carries derivatives beside the value.
+//! Scalar type of the physics: `f32`, `f64`, or a [`crate::Dual`] that carries derivatives along
+//! with the value.
 //!
-//! Every function goes through `libm`, never through the platform, so that the same input
-//! gives the same bits on a laptop and on a microcontroller.
+//! Every function uses `libm`, never the platform, so that the same input gives the same bits on a
+//! laptop and on a microcontroller.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// What seals [`Real`]: the kinds of number are those of the crates of this project, so that an
-/// operation more is no break for others.
+/// Seals [`Real`]: number types are defined only in the crates of this project, so that an
+/// additional operation does not break other code.
 #[doc(hidden)]
 pub mod sealed {
     pub trait Sealed {}
 }
 
-/// A real number that the models can be evaluated over. It is sealed: `f32`, `f64`,
-/// [`crate::Dual`], and the lanes of `jbf-batch`.
+/// A real number type over which the models can be evaluated.
 ///
-/// Comparisons look at the value alone; a derivative never decides a branch.
+/// The trait is sealed: `f32`, `f64`, [`crate::Dual`], and the lanes of `jbf-batch` implement it.
+///
+/// Comparisons use the value alone; a derivative never decides a branch.
 pub trait Real:
     sealed::Sealed
     + Copy
@@ -40,28 +41,31 @@ pub trait Real:
     const ZERO: Self;
     /// One.
     const ONE: Self;
-    /// Largest eccentricity ratio that a state may hold: `1 - eps^2` must stay well above
-    /// the rounding error of one.
+    /// Largest eccentricity ratio that a state may hold: `1 - eps^2` must stay well above the
+    /// rounding error of one.
     const EPS_LIMIT: Self;
-    /// True for a number that is one lane of a vector. Lanes must not part: a step that leaves
-    /// the bearing is then only marked, its state means nothing any more, and it is for the
-    /// caller to take it again with a number that stands alone.
+    /// True for a type that is one lane of a vector.
+    ///
+    /// Lanes must not diverge. A step that leaves the bearing is only marked and its state is
+    /// invalid; the caller must repeat it in a scalar type.
     const SIDE_BY_SIDE: bool = false;
-    /// True for a number that carries derivatives. A function of many operations and few inputs
-    /// then computes its partial derivatives in plain numbers and joins them once, by
-    /// [`Real::joined`], where operation after operation would carry all of them.
+    /// True for a type that carries derivatives.
+    ///
+    /// A function of many operations and few inputs then computes its partial derivatives in plain
+    /// numbers and joins them once, by [`Real::joined`]. Otherwise every operation would carry all
+    /// of them.
     const HAS_SLOPES: bool = false;
 
-    /// The nearest number of this kind; derivatives are zero.
+    /// Nearest number of this type, with zero derivatives.
     fn of(value: f64) -> Self;
-    /// The value, without derivatives.
+    /// Value without derivatives.
     fn value(self) -> f64;
-    /// A whole number; on a target without double precision no detour through it.
+    /// Converts a whole number, without double precision on a target that lacks it.
     #[inline]
     fn from_i32(value: i32) -> Self {
         Self::of(f64::from(value))
     }
-    /// The largest whole number that is not above the value; the nearest `i32` where none fits.
+    /// Largest whole number not above the value; the nearest `i32` where none fits.
     #[inline]
     fn floor_i32(self) -> i32 {
         libm::floor(self.value()) as i32
@@ -70,7 +74,7 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Exponential.
     fn exp(self) -> Self;
-    /// `exp(self) - 1`, exact for small `self` too.
+    /// Computes `exp(self) - 1`, accurate for small `self` too.
     fn exp_m1(self) -> Self;
     /// Natural logarithm.
     fn ln(self) -> Self;
@@ -78,30 +82,30 @@ pub trait Real:
     fn sin(self) -> Self;
     /// Cosine of an angle in radians.
     fn cos(self) -> Self;
-    /// `self` to the power `exponent`, for a positive base.
+    /// Raises `self` to the power `exponent`, for a positive base.
     fn powf(self, exponent: Self) -> Self;
-    /// Magnitude; the derivative at zero is taken as that of `+self`.
+    /// Absolute value; the derivative at zero is taken as that of `+self`.
     fn abs(self) -> Self;
 
-    /// The root `value` of `residual(x) = 0` with the derivatives that the implicit
-    /// function theorem gives it: `residual` evaluated at the root, `slope` its derivative
-    /// with respect to the unknown.
+    /// Root `value` of `residual(x) = 0` with the derivatives of the implicit function theorem.
+    ///
+    /// `residual` is evaluated at the root; `slope` is its derivative with respect to the unknown.
     fn implicit(value: f64, residual: Self, slope: f64) -> Self;
 
-    /// A plain number of times this one.
+    /// Multiplies by a plain number.
     #[inline(always)]
     fn times(self, factor: f64) -> Self {
         self * Self::of(factor)
     }
 
-    /// `value`, with the derivatives of its inputs times the partial derivatives beside them.
+    /// Returns `value` with the derivatives of its inputs times the given partial derivatives.
     #[inline(always)]
     fn joined<const K: usize>(value: f64, inputs: [(Self, f64); K]) -> Self {
         let _ = inputs;
         Self::of(value)
     }
 
-    /// The larger of two.
+    /// Larger of two numbers.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         if self > other {
@@ -111,7 +115,7 @@ pub trait Real:
         }
     }
 
-    /// The smaller of two.
+    /// Smaller of two numbers.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         if self < other {
@@ -121,7 +125,7 @@ pub trait Real:
         }
     }
 
-    /// -1, 0 or +1 by the sign of the value, without derivative.
+    /// Sign of the value, -1, 0 or +1, without derivative.
     #[inline(always)]
     fn sign(self) -> Self {
         if self > Self::ZERO {

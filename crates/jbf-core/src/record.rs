@@ -1,33 +1,33 @@
-//! A recorded run as slices: the imposed motion, sample by sample.
+//! A recorded run as slices: the imposed motion at each sample.
 
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// The imposed motion of a run, one value a sample; all slices of one length.
+/// Imposed motion of a run, one value per sample; all slices have the same length.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
-    /// Time, s, rising; where it starts does not matter.
+    /// Time, s, ascending; its origin is arbitrary.
     pub time_s: &'a [f64],
     /// Surface speed, m/s.
     pub velocity_m_s: &'a [f64],
-    /// Its rate of change, m/s^2.
+    /// Rate of change of the surface speed, m/s^2.
     pub acceleration_m_s2: &'a [f64],
     /// Shaft angle, unwrapped, rad.
     pub angle_rad: &'a [f64],
     /// Load on one bearing, N.
     pub load_n: &'a [f64],
-    /// Recorded temperature, C, where there is one.
+    /// Recorded temperature, C, if any.
     pub temperature_c: Option<&'a [f64]>,
 }
 
 impl Record<'_> {
-    /// The motion at sample `i`; none past the shortest slice.
+    /// Motion at sample `i`; `None` beyond the shortest slice.
     #[inline(always)]
     pub fn motion<T: Real>(&self, i: usize) -> Option<Motion<T>> {
         Some(self.sample(i)?.lift())
     }
 
-    /// The same in plain numbers.
+    /// Motion at sample `i` in plain numbers.
     #[inline(always)]
     pub(crate) fn sample(&self, i: usize) -> Option<Motion<f64>> {
         Some(Motion {

@@ -1,4 +1,4 @@
-//! What the loop shall follow: sine, triangle and square as the thesis's programs make them.
+//! Reference of the control loop: sine, triangle and square as in the thesis's programs.
 //!
 //! ```text
 //! sine      (high + low + (high - low) sin(w t - p)) / 2,  p = asin((high + low)/(high - low))
@@ -25,10 +25,10 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// Every wave.
+    /// All waves.
     pub const ALL: [Self; 3] = [Self::Sine, Self::Triangle, Self::Square];
 
-    /// Name, as options spell it.
+    /// Name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Wave::Sine => "sine",
@@ -37,7 +37,7 @@ impl Wave {
         }
     }
 
-    /// The wave of that name.
+    /// Returns the wave with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|wave| wave.name() == name)
     }
@@ -47,14 +47,15 @@ impl Wave {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Target<T> {
-    /// The value: rad, or rad/s for velocity control.
+    /// Reference value: rad, or rad/s for velocity control.
     pub value: T,
-    /// Its rate of change, 1/s; zero across a jump.
+    /// Rate of change of the value, 1/s; zero across a jump.
     pub rate: T,
 }
 
-/// A periodic reference. Made in double precision: a target takes its points from a table or
-/// from a host.
+/// A periodic reference, computed in double precision.
+///
+/// A microcontroller takes its points from a table or from a host.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference {
     wave: Wave,
@@ -65,7 +66,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// A wave between `low` and `high` at a frequency (rad/s), with the thesis's phase.
+    /// Creates a wave between `low` and `high` at a frequency (rad/s), with the thesis's phase.
     ///
     /// # Errors
     /// The frequency must be positive, `high` above `low`, both finite.
@@ -92,7 +93,7 @@ impl Reference {
         })
     }
 
-    /// One period, s.
+    /// Period, s.
     pub fn period_s(&self) -> f64 {
         TAU / self.frequency_rad_s
     }

@@ -1,13 +1,15 @@
-//! `y' = (x - y) / tau` for an input on a straight line, solved exactly: the common piece
-//! of a low pass, a warming film and a bristle. Stable for any step.
+//! Exact solution of `y' = (x - y) / tau` for a linear input.
+//!
+//! It is the common part of a low pass, a warming film and a bristle, and stable for any step.
 
 use crate::real::Real;
 
-/// `y` after a step of `ratio = dt / tau` during which the input goes from `x[0]` to `x[1]`.
+/// Value of `y` after a step of `ratio = dt / tau` during which the input goes from `x[0]` to
+/// `x[1]`.
 ///
-/// Short steps are written as an increment of `y`, long ones as a distance from `x[1]`: the
-/// other way round each would cancel, which in single precision makes a quantity that can
-/// only warm up go below zero.
+/// Short steps are computed as an increment of `y`, long ones as a distance from `x[1]`. The other
+/// form of each would suffer cancellation: in single precision a quantity that can only warm up
+/// would become negative.
 #[inline(always)]
 pub fn relax<T: Real>(y: T, x: [T; 2], ratio: T) -> T {
     let gain = -(-ratio).exp_m1();
@@ -18,7 +20,7 @@ pub fn relax<T: Real>(y: T, x: [T; 2], ratio: T) -> T {
     }
 }
 
-/// `1 - gain / ratio`, by its series where the difference would cancel.
+/// Computes `1 - gain / ratio`, by its series where the difference would cancel.
 #[inline(always)]
 fn lead<T: Real>(ratio: T, gain: T) -> T {
     if ratio.value() < 1e-3 {
@@ -65,7 +67,7 @@ mod tests {
         assert!(relax(5.0_f32, [1.0, 1.0], 1e30).is_finite());
     }
 
-    /// Inputs that are never negative never give a negative answer, rounding included.
+    /// Non-negative inputs never give a negative result, including rounding.
     #[test]
     fn rounding_does_not_cross_zero() {
         for power in -80..20 {

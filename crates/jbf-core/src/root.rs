@@ -1,10 +1,12 @@
-//! The square root.
+//! Square root on every target.
 //!
-//! `libm` has that of single precision in hardware on x86-64 and 64-bit Arm, but in some sixty integer operations on a
-//! Cortex-M with a floating-point unit, and stable Rust without `std` names no other way to the
-//! instruction. A call of C's `sqrtf` is one that the compiler knows: it emits the instruction, and
-//! calls only for a negative number. With the feature `std` it is the standard library's. IEEE 754
-//! rounds a root correctly, so the bits are the same everywhere.
+//! For single precision `libm` uses the hardware on x86-64 and 64-bit Arm. On a Cortex-M with a
+//! floating-point unit it needs about sixty integer operations, and stable Rust without `std`
+//! offers no other access to the instruction. The compiler knows C's `sqrtf`: it emits the
+//! instruction, and calls the function only for a negative number.
+//!
+//! With the feature `std` the standard library's function is used. IEEE 754 rounds a root
+//! correctly, so the bits are identical on every target.
 
 #[cfg(not(any(
     feature = "std",
@@ -12,7 +14,7 @@
 )))]
 pub(crate) use libm::sqrtf;
 
-/// Square root.
+/// Square root in single precision.
 #[cfg(feature = "std")]
 #[inline(always)]
 pub(crate) fn sqrtf(x: f32) -> f32 {
@@ -29,7 +31,7 @@ pub(crate) fn sqrt(x: f64) -> f64 {
     std::primitive::f64::sqrt(x)
 }
 
-/// Square root.
+/// Square root in single precision.
 #[cfg(all(
     not(feature = "std"),
     target_arch = "arm",
@@ -40,10 +42,10 @@ pub(crate) fn sqrt(x: f64) -> f64 {
 #[inline(always)]
 pub(crate) fn sqrtf(x: f32) -> f32 {
     extern "C" {
-        // Of Rust's own compiler_builtins, or of the C library that a firmware links.
+        // Provided by Rust's compiler_builtins, or by the C library that a firmware links.
         #[link_name = "sqrtf"]
         fn root(x: f32) -> f32;
     }
-    // Sound: it takes and gives a number in a register, whatever the number is.
+    // Sound: it takes and returns a number in a register, for any value of the number.
     unsafe { root(x) }
 }

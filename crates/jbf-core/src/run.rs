@@ -1,4 +1,4 @@
-//! A whole recorded run through a chain: the samples as slices, inner steps between them.
+//! Prediction of a whole recorded run by a chain, with inner steps between the samples.
 
 use crate::chain::{Chain, State, SHORTEST_STEP_S};
 use crate::effect::{EffectSet, Rig, Signal};
@@ -8,21 +8,25 @@ use crate::real::Real;
 
 pub use crate::record::Record;
 
-/// However fast a film is, its steps are no shorter, s: a search that strays to parameters of no
-/// bearing must come back in finite time. Explicit steps of this length are stable on films of up
-/// to 28,000 1/s; a faster one is held inside the bearing, which its state tells.
+/// Shortest inner step of a film, s.
+///
+/// It bounds the time of a search with parameters outside the physical range. Explicit steps of
+/// this length are stable for films of up to 28,000 1/s. A faster film is limited to the inside of
+/// the bearing, which its state reports.
 pub const SHORTEST_FILM_STEP_S: f64 = 1e-4;
 
-/// Rate of a film, 1/s, up to which steps of [`SHORTEST_FILM_STEP_S`] follow it; see
+/// Largest rate of a film, 1/s, that steps of [`SHORTEST_FILM_STEP_S`] resolve; see
 /// [`film_rate_1_s`].
 pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
 
-/// Run `chain` along `record` with inner steps of at most `max_step_s` (shorter where the law
-/// asks for it, down to [`SHORTEST_FILM_STEP_S`]; landing on every reversal), and hand each
-/// sample's reading (N) to `sink` with its index.
+/// Runs `chain` along `record` with inner steps of at most `max_step_s`, and passes the reading (N)
+/// of each sample to `sink` with its index.
 ///
-/// The whole of it is inlined into its caller, so that a caller who compiles for a wider
-/// instruction set gets all of it there.
+/// Steps are shorter where the law requires it, down to [`SHORTEST_FILM_STEP_S`], and land on every
+/// reversal.
+///
+/// The function is inlined into its caller, so that a caller compiled for a wider instruction set
+/// includes all of it.
 #[inline(always)]
 pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
@@ -33,17 +37,19 @@ pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
     predict_by(chain, record, max_step_s, Steps::Every, sink);
 }
 
-/// Which of the steps between two samples a chain makes.
+/// Selection of the steps between two samples that a chain makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
-    /// Every one.
+    /// Every step.
     Every,
-    /// The last before a sample alone: of a chain that remembers nothing
-    /// ([`EffectSet::remembers`], [`crate::film_path::OnPath`]) the others change no reading.
+    /// Only the last step before a sample.
+    ///
+    /// The others change no reading of a chain without memory ([`EffectSet::remembers`],
+    /// [`crate::film_path::OnPath`]).
     Last,
 }
 
-/// As [`predict`], with all steps or the last ones alone.
+/// As [`predict`], with all steps or only the last ones.
 #[inline(always)]
 pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
@@ -61,8 +67,8 @@ pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
     sink(0, state.reading_n);
     let mut i = 1;
     while let Some(sample) = record.sample(i) {
-        // To the reversal first, where there is one; from there no sign changes. One at the sample
-        // itself is reached with it: no step is left behind it.
+        // Step to the reversal first, if any; from there no sign changes. A reversal at the sample
+        // itself is reached with the sample, so no step remains after it.
         let zero = reversal(&from, &sample, radius_m)
             .filter(|zero| sample.time_s - zero.time_s >= SHORTEST_STEP_S);
         let to = zero.unwrap_or(sample);
@@ -82,9 +88,11 @@ pub fn predict_by<T: Real, L: Law<T>, E: EffectSet<T>>(
     }
 }
 
-/// Fastest rate, 1/s, at which the law's film answers to this record; zero of a law without one.
-/// Beyond [`FASTEST_FILM_1_S`] a prediction holds the film inside the bearing and does not follow
-/// it.
+/// Fastest rate, 1/s, at which the law's film responds to this record; zero for a law without a
+/// film.
+///
+/// Beyond [`FASTEST_FILM_1_S`] a prediction limits the film to the inside of the bearing and does
+/// not resolve it.
 pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
@@ -92,9 +100,11 @@ pub fn film_rate_1_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     1.0 / film_step_s(chain, record)
 }
 
-/// The longest inner step, s, of [`predict`]: at most `max_step_s`, shorter where the film or an effect
-/// asks for it; infinite, which is one step a sample, where law and effects have no memory. Runs of one
-/// record with equal inner steps come to the same instants.
+/// Longest inner step, s, of [`predict`]: at most `max_step_s`, shorter where the film or an effect
+/// requires it.
+///
+/// It is infinite (one step per sample) if law and effects have no memory. Runs of one record with
+/// equal inner steps have the same instants.
 pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
@@ -110,8 +120,9 @@ pub fn inner_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     max_step_s.min(law_s).min(chain.effects.longest_step_s())
 }
 
-/// How many inner steps [`predict`] takes along a record, to within one a sample and reversal: what it
-/// costs.
+/// Number of inner steps of [`predict`] along a record, to within one per sample and reversal.
+///
+/// It measures the cost.
 pub fn inner_steps<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
@@ -121,7 +132,7 @@ pub fn inner_steps<T: Real, L: Law<T>, E: EffectSet<T>>(
     samples * (1.0 + step_s(record) / inner_step_s(chain, record, max_step_s))
 }
 
-/// Mean time from sample to sample, s.
+/// Mean sampling interval, s.
 fn step_s(record: &Record<'_>) -> f64 {
     match record.time_s {
         [first, .., last] => (last - first) / (record.time_s.len() - 1) as f64,
@@ -129,7 +140,7 @@ fn step_s(record: &Record<'_>) -> f64 {
     }
 }
 
-/// Longest step, s, that follows the film.
+/// Longest step, s, that resolves the film.
 fn film_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
     record: &Record<'_>,
@@ -141,8 +152,10 @@ fn film_step_s<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain.longest_film_step_s(record, top) / chain.effects.fastest_film()
 }
 
-/// What the instrument alone, of these effects, makes of a force (N) at times (s), straight lines
-/// between the samples; each sample's reading (N) goes to `sink` with its index.
+/// Computes the readings (N) of the instrument alone for a force (N) at times (s).
+///
+/// The force is linear between the samples, and only the instrument effects act. Each reading is
+/// passed to `sink` with its index.
 pub fn read_force<T: Real>(
     effects: &impl EffectSet<T>,
     time_s: &[f64],
@@ -181,8 +194,9 @@ pub fn read_force<T: Real>(
     }
 }
 
-/// The instant between two samples at which the speed is zero, if it changes sign there:
-/// friction jumps at it, so a step must land on it.
+/// Instant between two samples at which the speed crosses zero, if it changes sign.
+///
+/// Friction jumps there, so a step must land on it.
 #[inline(always)]
 fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motion<f64>> {
     let share = crossing(from.velocity_m_s, to.velocity_m_s)?;
@@ -191,8 +205,9 @@ fn reversal(from: &Motion<f64>, to: &Motion<f64>, radius_m: f64) -> Option<Motio
     Some(zero)
 }
 
-/// Equal inner steps from one motion to the next, from the `first` on. What is imposed has no
-/// derivatives: it is plain numbers until a step takes it.
+/// Makes equal inner steps from one motion to the next, starting with step `first`.
+///
+/// The imposed motion has no derivatives and is converted from plain numbers in each step.
 #[inline(always)]
 fn between<T: Real, L: Law<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,

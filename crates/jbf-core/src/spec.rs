@@ -1,5 +1,7 @@
-//! A chain from lists of values, as files, Python and fingerprints hand it over: the law and the
-//! effects by their names, their numbers in the order of their pages.
+//! Construction of a chain from names and lists of values.
+//!
+//! Files, Python and fingerprints use this form: names of the law and the effects, and their
+//! parameters in the order of their descriptions.
 
 use crate::bearing::Bearing;
 use crate::chain::Chain;
@@ -9,27 +11,27 @@ use crate::error::ParameterError;
 use crate::law::{with_law, Named, Visitor};
 use crate::real::Real;
 
-/// What a law is built from.
+/// Arguments from which a law is built.
 #[derive(Clone, Copy, Debug)]
 pub struct Spec<'a, T> {
-    /// The law's name.
+    /// Name of the law.
     pub law: &'a str,
-    /// Its parameters, in the order of its page.
+    /// Parameters of the law, in the order of its description.
     pub values: &'a [T],
-    /// The bearing; a law in newtons needs none.
+    /// Bearing; a law in newtons needs none.
     pub bearing: Option<&'a Bearing>,
     /// Load on one bearing, N, for a law that needs it.
     pub load_n: Option<f64>,
-    /// The clock of a law with a film.
+    /// Clock of a law with a film.
     pub clock: Clock,
 }
 
-/// Something to do with a chain of any law.
+/// Operation on a chain of any law.
 pub trait Using<T: Real> {
-    /// What comes of it.
+    /// Result of the operation.
     type Output;
 
-    /// Do it.
+    /// Performs the operation.
     fn with<L: Named<T>>(self, chain: Chain<T, L>) -> Self::Output;
 }
 
@@ -49,11 +51,11 @@ impl<T: Real, U: Using<T>> Visitor<T> for Round<'_, T, U> {
 }
 
 impl<T: Real> Spec<'_, T> {
-    /// Build the law, put the effects round it, and hand the chain on.
+    /// Builds the law, adds the effects, and passes the chain to `then`.
     ///
     /// # Errors
-    /// Names the first number that breaks its rule, an effect's before the law's, or says that
-    /// there is no such effect or law.
+    /// Names the first number that violates its rule, those of effects before those of the law, or
+    /// reports that there is no such effect or law.
     pub fn chain<'e, V: AsRef<[T]>, U: Using<T>>(
         &self,
         effects: impl IntoIterator<Item = (&'e str, V)>,

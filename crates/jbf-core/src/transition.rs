@@ -1,21 +1,21 @@
-//! Transition eccentricity eps_tr: where the asperities first touch, equation (3.20).
+//! Transition eccentricity eps_tr, at which the asperities first touch, equation (3.20).
 
 use crate::real::Real;
 use crate::root::sqrt;
 use core::f64::consts::PI;
 
-/// Solve `4 Fb^2 = eps^2 [ pi^2 / (4 d^3) + 4 eps^2 / d^4 ]`, `d = 1 - eps^2`, for eps.
+/// Solves `4 Fb^2 = eps^2 [ pi^2 / (4 d^3) + 4 eps^2 / d^4 ]`, `d = 1 - eps^2`, for eps.
 ///
-/// In the unknown d this is the polynomial `(1 - d)(4 - a d) = 4 Fb^2 d^4` with
-/// `a = 4 - pi^2 / 4`. Its left side falls and its right side rises on (0, 1), so there is
-/// one root, found by Newton steps kept inside a shrinking bracket. `load_number` must be
-/// positive; derivatives with respect to it are carried through.
+/// In the unknown d this is the polynomial `(1 - d)(4 - a d) = 4 Fb^2 d^4` with `a = 4 - pi^2 / 4`.
+/// Its left side falls and its right side rises on (0, 1), so there is one root. It is found by
+/// Newton steps inside a shrinking bracket. `load_number` must be positive; derivatives with
+/// respect to it are propagated.
 pub fn transition_eccentricity<T: Real>(load_number: T) -> T {
     let a = 4.0 - PI * PI / 4.0;
     let fb = load_number.value();
     let g = 4.0 * fb * fb;
     let (mut low, mut high) = (0.0_f64, 1.0_f64);
-    // The root of 4 = g d^4 is the limit of heavy load, and a fair start everywhere.
+    // The root of 4 = g d^4 is the limit of heavy load, and a good start value everywhere.
     let mut d = sqrt(sqrt(4.0 / (g + 4.0)));
     let mut slope = -1.0;
     for _ in 0..80 {

@@ -69,8 +69,7 @@ macro_rules! shelf {
 
 macro_rules! signal_chain {
     ($($stage:ident: $Place:ident [$($module:ident::$Type:ident),* $(,)?],)*) => {
-        /// Type of the [`Shelf`](crate::effect::registry::Shelf) of each stage, under the name of
-        /// the stage.
+        /// Type of the shelf of each stage, under the name of the stage.
         #[allow(non_camel_case_types)]
         mod line {
             $(pub(crate) type $stage<T> = $crate::effect::registry::shelf!(T $Place: $($module::$Type),*);)*

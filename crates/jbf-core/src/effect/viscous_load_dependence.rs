@@ -1,7 +1,8 @@
-//! Viscous friction that grows with the load: `+ c L v`.
+//! Load-dependent viscous friction: `+ c L v`.
 //!
-//! Source: Hamon, Gautier & Garrec (2010) and Wolf & Iskandar (2018) for robot joints, whose viscous
-//! slope grows with the transmitted torque; of a seal, that the pressure presses on its rod.
+//! Source: Hamon, Gautier & Garrec (2010) and Wolf & Iskandar (2018) for robot joints, whose
+//! viscous slope grows with the transmitted torque. It also describes a seal that the pressure
+//! presses on its rod.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -9,7 +10,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// A viscous slope over the load beside a slope.
+/// Viscous slope per load, in addition to a load-independent slope.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousLoadDependence<T> {
     slope_s_m: T,

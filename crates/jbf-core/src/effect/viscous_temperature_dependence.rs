@@ -1,9 +1,9 @@
-//! Viscous friction that changes with the recorded temperature, times
-//! `exp(B/(T - C) - B/(T_0 - C))`.
+//! Temperature-dependent viscous friction: viscous friction times `exp(B/(T - C) - B/(T_0 - C))`, T
+//! the recorded temperature.
 //!
-//! Source: Vogel (1921), of the oil, or of the base oil of grease, that resists; see `vogel.rs`.
-//! Bittencourt & Gunnarsson (2012) find the viscous friction of a robot's joint to fall exponentially
-//! with the temperature, Simoni et al. (2019) a polynomial of it.
+//! Source: Vogel (1921), for the viscosity of an oil or of the base oil of a grease; see
+//! `vogel.rs`. Bittencourt & Gunnarsson (2012) find that the viscous friction of a robot joint
+//! falls exponentially with the temperature; Simoni et al. (2019) use a polynomial.
 
 use super::vogel::{Vogel, C, REFERENCE};
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
@@ -12,7 +12,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// A viscous slope by a thermometer.
+/// Viscous slope that depends on the recorded temperature.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousTemperatureDependence<T> {
     relation: Vogel<T>,

@@ -1,11 +1,12 @@
-//! Viscous friction that grows less than the speed: `F_v v -> F_v v / (1 + w |v|)`.
+//! Viscous friction that grows less than proportionally to the speed: `F_v v -> F_v v / (1 + w
+//! |v|)`.
 //!
-//! Source: Cross (1965) with the exponent one, of grease that thins in shear; Grotjahn, Daemi &
-//! Heimann (2001) and Bona & Indri (2005) for robots' joints, whose viscous friction flattens (they
-//! take a power below one, whose slope at rest has no bound).
+//! Source: Cross (1965) with exponent one, for grease that thins in shear; Grotjahn, Daemi &
+//! Heimann (2001) and Bona & Indri (2005) for robot joints, whose viscous friction flattens. The
+//! latter use a power below one, whose slope at rest is unbounded.
 //!
-//! w is one over the speed at which half of the straight line is left: so its null is in a fit's
-//! reach, where that speed's is at infinity.
+//! w is the inverse of the speed at which the friction is half of the linear value. Its null value
+//! zero is within reach of a fit, whereas that of the speed would be infinite.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -14,7 +15,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// One over the speed at which half of a straight line is left.
+/// Inverse of the speed at which viscous friction is half of its linear value.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousThinning<T> {
     slowness_s_m: T,

@@ -1,28 +1,29 @@
-//! Vogel's relation between viscosity and temperature:
+//! Vogel relation between viscosity and temperature:
 //!
 //! ```text
 //! mu(T) = mu(T_0) exp(B/(T - C) - B/(T_0 - C))
 //! ```
 //!
-//! Source: Vogel (1921), Fulcher (1925), Tammann & Hesse (1926). B tells how steeply an oil thins, C
-//! at which temperature it would set. For mineral oils of every grade C = -95 C serves (Crouch &
-//! Cameron 1961), which leaves one parameter. Over 20 to 30 K a record does not tell C from B: a C that
-//! is off by 15 K changes the viscosity by less than 2 % there once B is found with it. Walther's
-//! relation (ASTM D341) has two parameters of an oil, too, and no reason to be preferred between 0 and
-//! 100 C: the tests compare the two.
+//! Source: Vogel (1921), Fulcher (1925), Tammann & Hesse (1926). B determines how steeply the
+//! viscosity falls, C the temperature at which the oil would solidify. C = -95 C is valid for
+//! mineral oils of every grade (Crouch & Cameron 1961), which leaves one parameter.
+//!
+//! Over 20 to 30 K a record cannot distinguish C from B. An error of C by 15 K changes the
+//! viscosity by less than 2 % there, once B is fitted with it. Walther's relation (ASTM D341) also
+//! has two parameters and is not better between 0 and 100 C: the tests compare the two.
 
 use crate::page::{Parameter, Start};
 use crate::real::Real;
 
-/// The C of mineral oils, C.
+/// Vogel's C of mineral oils, C.
 const OILS_C: f64 = -95.0;
-/// So close to C, K, the relation is followed: oil sets long before.
+/// Smallest distance from C, K, at which the relation is evaluated; oil solidifies long before.
 const NEAREST_K: f64 = 20.0;
-/// The natural logarithm of the viscosity is held within so much of its reference: beyond, no oil
-/// runs any more in the same bearing.
+/// Largest deviation of the natural logarithm of the viscosity from its reference. Beyond it no oil
+/// runs in the same bearing.
 const FURTHEST: f64 = 7.0;
 
-/// The page of a reference temperature.
+/// Description of a reference temperature.
 pub(super) const REFERENCE: Parameter = Parameter::new(
     "T_0_c",
     "C",
@@ -33,7 +34,7 @@ pub(super) const REFERENCE: Parameter = Parameter::new(
 .start(Start::ReferenceTemperature)
 .stated();
 
-/// The page of Vogel's C.
+/// Description of Vogel's C.
 pub(super) const C: Parameter = Parameter::new(
     "C_c",
     "C",
@@ -46,16 +47,16 @@ pub(super) const C: Parameter = Parameter::new(
 /// The relation with its parameters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vogel<T> {
-    /// B, K.
+    /// Vogel's B, K.
     pub b_k: T,
-    /// C, C.
+    /// Vogel's C, C.
     pub c_c: T,
-    /// Temperature at which the viscosity is the law's, C.
+    /// Temperature at which the viscosity is that of the law, C.
     pub reference_c: T,
 }
 
 impl<T: Real> Vogel<T> {
-    /// Viscosity over that at the reference temperature; one without a temperature.
+    /// Viscosity relative to that at the reference temperature; one without a temperature.
     #[inline(always)]
     pub(super) fn factor(&self, temperature_c: Option<T>) -> T {
         let Some(temperature_c) = temperature_c else {

@@ -1,11 +1,11 @@
-//! `Ub -> Ub m`, `t -> t/m`, `m = exp(B/(T - C) - B/(T_0 - C))`: oil that thins with the recorded
-//! temperature.
+//! Oil that thins with the recorded temperature: `Ub -> Ub m`, `t -> t/m`, `m = exp(B/(T - C) -
+//! B/(T_0 - C))`.
 //!
 //! Source: Vogel (1921); see `vogel.rs` for the relation and its C. Viscosity and transition speed
-//! go together (mu U_tr = const), so Fb and eps_tr stay, as in `thermal_thinning`, whose temperature
-//! nobody recorded. The film's clock, U_tr/R, goes with 1/mu: thin oil is squeezed out sooner. On the
-//! journal's clock the law of another oil is then this one at another temperature: two oils, or two
-//! days, are one model.
+//! go together (mu U_tr = const), so Fb and eps_tr stay constant, as in `thermal_thinning`, whose
+//! temperature is not recorded. The film's clock, U_tr/R, is proportional to 1/mu: thin oil is
+//! squeezed out sooner. On the journal's clock the law of another oil is then this law at another
+//! temperature. Two oils, or two days, are therefore one model.
 
 use super::vogel::{Vogel, C, REFERENCE};
 use super::{Effect, Info, Lubricant, Need, Parameter, Rig, Stage};
@@ -13,7 +13,7 @@ use crate::error::ParameterError;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Viscosity by a thermometer.
+/// Viscosity that depends on the recorded temperature.
 #[derive(Clone, Copy, Debug)]
 pub struct VogelViscosity<T> {
     relation: Vogel<T>,

@@ -1,14 +1,17 @@
-//! Friction times `1 + a exp(-t/tau)`, t since the run began: a drive that starts cold.
+//! Warm-up: friction times `1 + a exp(-t/tau)`, t since the start of the run.
 //!
-//! Grease and oil of a gearbox warm from the motor, from the bearings, from the sun, and all that
-//! they resist falls with it, sliding or not: by the clock. `wear_in` goes by the distance slid and
-//! changes the dry level alone; `thermal_thinning` is a film's, warmed by its own friction and by
-//! nothing else; `sensor_drift` is a force one way. Where a temperature was recorded,
-//! `dry_temperature_dependence` and `viscous_temperature_dependence` say more.
+//! The grease and oil of a gearbox are warmed by the motor, the bearings or the sun. All its
+//! friction falls with time, whether it slides or not. Related effects:
 //!
-//! Source: Bittencourt & Gunnarsson (2012) and Simoni et al. (2019) on robot joints that warm; of one
-//! lumped body the temperature goes as `exp(-t/tau)`, and friction with it as long as it changes by
-//! little.
+//! - `wear_in` depends on the sliding distance and changes only the dry level.
+//! - `thermal_thinning` is that of a film, warmed only by its own friction.
+//! - `sensor_drift` is a force in one direction.
+//! - `dry_temperature_dependence` and `viscous_temperature_dependence` are more informative where a
+//!   temperature was recorded.
+//!
+//! Source: Bittencourt & Gunnarsson (2012) and Simoni et al. (2019) on robot joints that warm up.
+//! The temperature of one lumped body follows `exp(-t/tau)`, and friction is proportional to it for
+//! small changes.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -17,7 +20,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// An excess of friction that dies away with time.
+/// Excess of friction that decays with time.
 #[derive(Clone, Copy, Debug)]
 pub struct WarmUp<T> {
     excess: T,

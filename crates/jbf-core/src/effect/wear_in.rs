@@ -1,4 +1,4 @@
-//! f_m times `1 + a exp(-s/s_0)`, s the distance slid in the run: the surfaces run in.
+//! Running-in: f_m times `1 + a exp(-s/s_0)`, s the sliding distance in the run.
 //!
 //! Source: Cohn (1998), section 4.2 (the worn clearance); running-in after Blau (1989).
 
@@ -8,7 +8,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Asperity friction that changes with the distance slid.
+/// Asperity friction that changes with the sliding distance.
 #[derive(Clone, Copy, Debug)]
 pub struct WearIn<T> {
     excess: T,
@@ -39,7 +39,7 @@ impl<T: Real> Effect<T> for WearIn<T> {
             )
             .log(),
         ]);
-    /// Distance slid, m.
+    /// Sliding distance, m.
     type State = T;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

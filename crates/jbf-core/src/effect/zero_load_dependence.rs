@@ -1,7 +1,7 @@
-//! A force that goes with the load and knows no direction of motion: `+ k L`.
+//! Force proportional to the load and independent of the direction of motion: `+ k L`.
 //!
-//! Source: a pressure that acts on a rod's area, a screw or a guide that is out of line with its
-//! load; Hamon, Gautier & Garrec (2010) for the asymmetry of loaded transmissions.
+//! Source: a pressure that acts on a rod's area; a screw or a guide that is not aligned with its
+//! load. Hamon, Gautier & Garrec (2010) for the asymmetry of loaded transmissions.
 
 use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -9,7 +9,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// A share of the load that the drive feels.
+/// Share of the load that acts on the drive.
 #[derive(Clone, Copy, Debug)]
 pub struct ZeroLoadDependence<T> {
     share: T,

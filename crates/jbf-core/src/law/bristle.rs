@@ -1,16 +1,21 @@
-//! A bristle that bends towards a level over the way slid, `dF/dx = sigma (1 - F/(level sgn v))`:
-//! LuGre's, and that of a contact that bends under any law.
+//! Bristle that deflects towards a level over the sliding distance, `dF/dx = sigma (1 - F/(level
+//! sgn v))`.
+//!
+//! It is used by LuGre's law and by a contact that deflects under any law.
 
 use crate::motion::JournalMotion;
 use crate::path::{legs, Leg};
 use crate::real::Real;
 use crate::relaxation::relax;
 
-/// Smallest level that a bristle bends towards: keeps a level of zero from dividing.
+/// Smallest level towards which a bristle deflects; prevents a division by zero.
 pub(crate) const LEAST_LEVEL: f64 = 1e-9;
 
-/// Force at the end of a leg that begins with `force`, of a bristle of `stiffness` (force over
-/// length): exact in the way slid, with the level on a straight line, so no stiffness is too large.
+/// Force at the end of a leg that begins with `force`, of a bristle of `stiffness` (force per
+/// length).
+///
+/// The solution is exact in the sliding distance for a level that changes linearly, so any
+/// stiffness is stable.
 #[inline(always)]
 pub(crate) fn bent<T: Real>(force: T, leg: &Leg<T>, stiffness: T) -> T {
     if leg.distance_m.value() <= 0.0 {
@@ -21,8 +26,10 @@ pub(crate) fn bent<T: Real>(force: T, leg: &Leg<T>, stiffness: T) -> T {
     relax(force, target, stiffness * leg.distance_m / mean)
 }
 
-/// Take a bristle of one force through a step whose level turns at the mean of its ends, as of a
-/// law whose dry friction no speed changes. Without time the bristle slides.
+/// Advances a bristle of one force through a step.
+///
+/// The level at a reversal is the mean of its ends, as for a law whose dry friction does not depend
+/// on the speed. In a step of zero length the bristle slides.
 #[inline(always)]
 pub(crate) fn along<T: Real>(
     force: &mut T,

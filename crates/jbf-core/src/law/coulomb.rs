@@ -1,13 +1,13 @@
-//! `F = (F_c + F_v |v|) sgn(v)` in motion, anything up to `F_s` either way at rest.
+//! Coulomb friction: `F = (F_c + F_v |v|) sgn(v)` in motion, `|F| <= F_s` at rest.
 //!
-//! Source: Coulomb (1785); Morin (1833) for static friction; Reynolds (1886) for the viscous
-//! part; Cohn (1998), section 2.1.1.
+//! Source: Coulomb (1785); Morin (1833) for static friction; Reynolds (1886) for the viscous part;
+//! Cohn (1998), section 2.1.1.
 //!
-//! Static friction is set-valued: it acts where the journal *stays* at rest and something
-//! elastic pulls at it, which is what a soft drive does (`drive_compliance`): the journal then
-//! holds to `F_s` and slides on at `F_c`. Under a speed imposed by a rigid drive a rest has no
-//! force of its own and the breakaway takes no time, so `F_s` cannot be seen and a fit says
-//! that it never moved. A reversal in passing is no rest.
+//! Static friction is set-valued: it acts where the journal *stays* at rest and an elastic element
+//! pulls at it. A compliant drive does so (`drive_compliance`): the journal then holds up to `F_s`
+//! and slides on at `F_c`. Under a speed imposed by a rigid drive, a rest has no force of its own
+//! and the breakaway takes no time. `F_s` is then not identifiable, and a fit reports that it did
+//! not change. A reversal without a stop is not a rest.
 
 use super::newtons::{in_newtons, moving, F_C, F_S, F_V};
 use super::{Info, Law, Named, SteadyCurve};

@@ -1,11 +1,12 @@
-//! `dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v))`, x the way slid.
+//! Dahl's law `dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v))`, x the sliding
+//! distance.
 //!
-//! Source: Dahl (1968, 1977). i = 1 is the usual form; i below 1 is ductile (the force reaches
-//! F_c after a finite way), i above 1 brittle (it creeps towards F_c). As sigma_0 grows the law
+//! Source: Dahl (1968, 1977). i = 1 is the usual form; i below 1 is ductile (the force reaches F_c
+//! after a finite distance), i above 1 brittle (it approaches F_c slowly). As sigma_0 grows the law
 //! becomes Coulomb's.
 //!
-//! The rate does not enter, so a step is solved in the way slid, in closed form for any i: with
-//! `u = 1 - (F/F_c) sgn(v)` and `k = sigma_0/F_c`
+//! The law is rate-independent, so a step is solved in the sliding distance, in closed form for any
+//! i. With `u = 1 - (F/F_c) sgn(v)` and `k = sigma_0/F_c`:
 //!
 //! ```text
 //! u(s) = u_0 (1 - (1 - i) k s u_0^(i-1))^(1/(1-i)),   u_0 exp(-k s) for i = 1
@@ -22,7 +23,7 @@ use crate::motion::JournalMotion;
 use crate::path::Leg;
 use crate::real::Real;
 
-/// A bristle that bends before it slides, by way alone.
+/// Bristle that deflects before it slides and depends on distance only.
 #[derive(Clone, Copy, Debug)]
 pub struct Dahl<T> {
     coulomb_n: T,
@@ -32,7 +33,7 @@ pub struct Dahl<T> {
 }
 
 impl<T: Real> Dahl<T> {
-    /// The force at the end of a leg that begins with `force_n`.
+    /// Force at the end of a leg that begins with `force_n`.
     #[inline(always)]
     fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
         if leg.distance_m.value() <= 0.0 {
@@ -41,23 +42,23 @@ impl<T: Real> Dahl<T> {
         let way = leg.direction;
         let mean = ((leg.level[0] + leg.level[1]) * T::of(0.5)).max(T::of(LEAST_LEVEL));
         let ratio = self.stiffness_n_m * leg.distance_m / mean;
-        // A way so short that its ratio rounds to zero.
+        // The distance is so short that its ratio rounds to zero.
         if ratio <= T::ZERO {
             return force_n;
         }
         let lacking = T::ONE - way * force_n / mean;
         let left = lacking.sign() * self.decay(lacking.abs(), ratio);
-        // A level that changes on the way (a ripple) is met at its mean; this is what the
-        // closed form of a ramp for i = 1 adds, so that a sliding bristle ends at level[1].
+        // A level that changes during the leg (a ripple) enters as its mean. This is the term that
+        // the closed form of a ramp for i = 1 adds, so that a sliding bristle ends at level[1].
         let gain = -(-ratio).exp_m1();
         let change = leg.level[1] - leg.level[0];
         way * (mean * (T::ONE - left) + change * (T::of(0.5) * (T::of(2.0) - gain) - gain / ratio))
     }
 
-    /// What remains of `u > 0` after `ratio = k s`.
+    /// Remainder of `u > 0` after `ratio = k s`.
     #[inline(always)]
     fn decay(&self, u: T, ratio: T) -> T {
-        // So close to sliding that powers below one would lose their digits.
+        // So close to sliding, powers below one would lose their digits.
         if u.value() < 1e-12 {
             return u;
         }

@@ -1,20 +1,21 @@
-//! The single-state elasto-plastic law: purely elastic up to a breakaway, plastic beyond.
+//! Single-state elasto-plastic law: purely elastic up to a breakaway force, plastic beyond.
 //!
 //! ```text
 //! dF/dx = sigma_0                                     while F sgn(v) < b F_c
 //!       = sigma_0 (1 - (F/F_c) sgn(v))/(1 - b)        beyond;       + F_v v
 //! ```
 //!
-//! Source: Dupont, Hayward, Armstrong & Altpeter (2002), `z' = v (1 - alpha(z, v) sgn(v) z/z_ss)` with
-//! `F = sigma_0 z`, alpha = 0 up to the breakaway displacement `z_ba = b F_c/sigma_0` and on the way
-//! back, and 1 at `z_ss = F_c/sigma_0`. They leave open how alpha rises between; theirs is half a sine.
-//! Here it is `alpha = (1 - z_ba/|z|)/(1 - b)`: the force then nears its level exponentially, and a
-//! step is solved in the way slid, to the point where it breaks away and exactly beyond it, so that
-//! none is too long.
+//! Source: Dupont, Hayward, Armstrong & Altpeter (2002), `z' = v (1 - alpha(z, v) sgn(v) z/z_ss)`
+//! with `F = sigma_0 z`. There alpha = 0 up to the breakaway displacement `z_ba = b F_c/sigma_0`
+//! and on unloading, and 1 at `z_ss = F_c/sigma_0`. They leave the rise of alpha between open and
+//! use half a sine. Here it is `alpha = (1 - z_ba/|z|)/(1 - b)`: the force then approaches its
+//! level exponentially. A step is solved in the sliding distance, up to breakaway and exactly
+//! beyond it, so any step length is stable.
 //!
-//! A load or a vibration that stays below the breakaway moves nothing for good, where Dahl's law and
-//! LuGre creep. b towards 1 is a spring and a slider; a Stribeck fall is `stribeck_excess`, a level that
-//! grows with the load `dry_load_dependence`: both move F_c and leave sigma_0 and b as they are.
+//! A load or a vibration that stays below the breakaway causes no lasting displacement, where
+//! Dahl's law and LuGre drift. As b approaches 1 the law becomes a spring and a slider. A Stribeck
+//! fall is `stribeck_excess`, a level that grows with the load `dry_load_dependence`. Both change
+//! F_c and leave sigma_0 and b constant.
 
 use super::bristle::{along, bent};
 use super::newtons::{in_newtons, moving, stiffness, F_C, F_V};
@@ -28,7 +29,7 @@ use crate::page::Parameter;
 use crate::path::Leg;
 use crate::real::Real;
 
-/// A contact that is elastic, then plastic.
+/// Contact that is elastic, then plastic.
 #[derive(Clone, Copy, Debug)]
 pub struct ElastoPlastic<T> {
     coulomb_n: T,
@@ -38,13 +39,13 @@ pub struct ElastoPlastic<T> {
 }
 
 impl<T: Real> ElastoPlastic<T> {
-    /// The force at the end of a leg that begins with `force_n`.
+    /// Force at the end of a leg that begins with `force_n`.
     #[inline(always)]
     fn slide(&self, force_n: T, leg: &Leg<T>) -> T {
         let (way, [begin, end]) = (leg.direction, leg.level);
         let plastic_n_m = self.stiffness_n_m / (T::ONE - self.breakaway);
-        // How far the force is below breakaway, and by how much it closes in on it: both go on
-        // straight lines.
+        // Distance of the force from breakaway, and the amount by which the leg reduces it; both
+        // are linear in the distance.
         let gap = self.breakaway * begin - way * force_n;
         if gap.value() <= 0.0 {
             return bent(force_n, leg, plastic_n_m);

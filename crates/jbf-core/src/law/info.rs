@@ -1,4 +1,4 @@
-//! The catalogue's page of a law, and how every law of the catalogue is built.
+//! Description of a law in the catalogue, and the construction of laws by name.
 
 use super::Law;
 use crate::bearing::Bearing;
@@ -7,37 +7,40 @@ use crate::error::ParameterError;
 use crate::page::{in_bounds, Parameter};
 use crate::real::Real;
 
-/// The page of one law.
+/// Description of one law.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Info {
-    /// Fixed name, as files and options spell it.
+    /// Fixed name, as used in files and options.
     pub name: &'static str,
-    /// One line: what it describes.
+    /// Physical meaning, in one line.
     pub summary: &'static str,
-    /// The form, in plain characters.
+    /// Equation, in plain characters.
     pub equation: &'static str,
-    /// Where the form comes from.
+    /// Source of the equation.
     pub source: &'static str,
-    /// Where the form stops being true.
+    /// Limits of validity of the equation.
     pub limits: &'static str,
-    /// Parameters in order.
+    /// Parameters, in order.
     pub parameters: &'static [Parameter],
-    /// True where the law computes from a bearing's geometry, lubricant and load; the others
-    /// give newtons and need none.
+    /// True if the law is computed from the geometry, lubricant and load of a bearing; other laws
+    /// return newtons and require none.
     pub needs_bearing: bool,
-    /// True where the law has a lubricant film, which can warm or thin.
+    /// True if the law has a lubricant film, which can warm up or thin.
     pub has_film: bool,
-    /// True where the law bends before it slides: it has no jump at zero speed. Only
-    /// [`Law::HAS_BRISTLE`] says so; the page repeats it.
+    /// True if the law deflects before it slides and has no jump at zero speed.
+    ///
+    /// It is defined by [`Law::HAS_BRISTLE`] and repeated here.
     pub has_bristle: bool,
-    /// True where the law already holds a dry friction `F sgn(v)` that depends on no load and
-    /// jumps at zero speed: a second one beside it could not be told from it.
+    /// True if the law contains a dry friction `F sgn(v)` that is independent of the load and jumps
+    /// at zero speed.
+    ///
+    /// A second such term would not be distinguishable from it.
     pub has_dry_level: bool,
 }
 
 impl Info {
-    /// The page of the law `L`, to be filled in: of a law in newtons, without a film.
+    /// Creates an empty description of the law `L`, a law in newtons without a film.
     pub const fn new<T: Real, L: Law<T>>(name: &'static str) -> Self {
         Self {
             name,
@@ -53,55 +56,55 @@ impl Info {
         }
     }
 
-    /// What it describes, in one line.
+    /// Sets the physical meaning, in one line.
     pub const fn summary(mut self, text: &'static str) -> Self {
         self.summary = text;
         self
     }
 
-    /// The form, in plain characters.
+    /// Sets the equation, in plain characters.
     pub const fn equation(mut self, text: &'static str) -> Self {
         self.equation = text;
         self
     }
 
-    /// Where the form comes from.
+    /// Sets the source of the equation.
     pub const fn source(mut self, text: &'static str) -> Self {
         self.source = text;
         self
     }
 
-    /// Where the form stops being true.
+    /// Sets the limits of validity of the equation.
     pub const fn limits(mut self, text: &'static str) -> Self {
         self.limits = text;
         self
     }
 
-    /// Parameters in order.
+    /// Sets the parameters, in order.
     pub const fn parameters(mut self, pages: &'static [Parameter]) -> Self {
         self.parameters = pages;
         self
     }
 
-    /// It computes from a bearing's geometry, lubricant and load.
+    /// Marks a law that is computed from the geometry, lubricant and load of a bearing.
     pub const fn on_a_bearing(mut self) -> Self {
         self.needs_bearing = true;
         self
     }
 
-    /// It has a lubricant film.
+    /// Marks a law with a lubricant film.
     pub const fn with_a_film(mut self) -> Self {
         self.has_film = true;
         self
     }
 
-    /// It holds a dry friction that depends on no load.
+    /// Marks a law with a dry friction that is independent of the load.
     pub const fn with_a_dry_level(mut self) -> Self {
         self.has_dry_level = true;
         self
     }
 
-    /// Check a list of values against the bounds.
+    /// Checks a list of values against the bounds.
     ///
     /// # Errors
     /// Names the first value that is missing or out of bounds.
@@ -110,17 +113,18 @@ impl Info {
     }
 }
 
-/// A law of the catalogue: built from a list of values, whatever it is.
+/// A law of the catalogue, which is built from a list of values.
 pub trait Named<T: Real>: Law<T> + Copy + Send + Sync + 'static {
-    /// The page in the catalogue.
+    /// Description in the catalogue.
     const INFO: Info;
 
-    /// Build from the parameters in the order of `INFO.parameters`. A law that needs no
-    /// bearing ignores the first two and the clock.
+    /// Creates the law from its parameters, in the order of `INFO.parameters`.
+    ///
+    /// A law that needs no bearing ignores the bearing, the load and the clock.
     ///
     /// # Errors
-    /// Names the first number that breaks its rule; what a law needs of a bearing and was not
-    /// given is reported as the parameter `bearing` or `load_n`.
+    /// Names the first number that violates its rule. A missing bearing or load is reported as the
+    /// parameter `bearing` or `load_n`.
     fn build(
         bearing: Option<&Bearing>,
         load_n: Option<f64>,
@@ -131,19 +135,19 @@ pub trait Named<T: Real>: Law<T> + Copy + Send + Sync + 'static {
 
 /// A law with a curve of steady friction against speed.
 pub trait SteadyCurve {
-    /// Friction after a long time at one speed (m/s, not zero), N, with the sign of the speed;
-    /// under the load that the law was built with.
+    /// Steady friction at one speed (m/s, not zero), N, with the sign of the speed, under the load
+    /// that the law was built with.
     ///
     /// # Errors
     /// The speed must be finite and not zero: at rest friction is set-valued.
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError>;
 }
 
-/// Something to do with a law of any kind; see [`super::with_law`].
+/// Operation on a law of any type; see [`super::with_law`].
 pub trait Visitor<T: Real> {
-    /// What comes of it.
+    /// Result of the operation.
     type Output;
 
-    /// Do it.
+    /// Performs the operation.
     fn visit<L: Named<T>>(self, law: L) -> Self::Output;
 }

@@ -1,4 +1,4 @@
-//! LuGre in Olsson's form: bristles with a Stribeck curve and a damping that dies with speed.
+//! LuGre law in Olsson's form: bristles with a Stribeck curve and a damping that decays with speed.
 //!
 //! ```text
 //! F  = sigma_0 z + sigma_1(v) z' + F_v v
@@ -7,13 +7,13 @@
 //! sigma_1(v) = sigma_1 exp(-(v/v_d)^2)
 //! ```
 //!
-//! Source: Canudas de Wit, Olsson, Astrom & Lischinsky (1995); Olsson (1996); Cohn (1998),
-//! section 2.3.1. The fall of sigma_1 with speed keeps the law passive where
-//! `sigma_1(v) |v| < 4 sigma_0 g(v)`, that is, surely, where `sigma_1 v_d < 9 min(F_c, F_s)`.
+//! Source: Canudas de Wit, Olsson, Astrom & Lischinsky (1995); Olsson (1996); Cohn (1998), section
+//! 2.3.1. The decay of sigma_1 with speed keeps the law passive where `sigma_1(v) |v| < 4 sigma_0
+//! g(v)`. This holds everywhere if `sigma_1 v_d < 9 min(F_c, F_s)`.
 //!
-//! With `y = sigma_0 z` this is a relaxation of y towards `sigma_0 g sgn(v)` over the way slid
-//! at the rate `1/g`: it is solved exactly in the way, with the level on a straight line, so any
-//! step is stable and short ones are exact to second order.
+//! With `y = sigma_0 z` this is a relaxation of y towards `sigma_0 g sgn(v)` over the sliding
+//! distance at the rate `1/g`. It is solved exactly in the distance, for a level that changes
+//! linearly. Any step is therefore stable, and short steps are accurate to second order.
 
 use super::bristle::{bent, LEAST_LEVEL};
 use super::newtons::{damping, in_newtons, moving, speed, stiffness, F_C, F_S, F_V, V_S};
@@ -40,7 +40,7 @@ pub struct LuGre<T> {
 }
 
 impl<T: Real> LuGre<T> {
-    /// `sigma_0 g(v)`, N.
+    /// Level `sigma_0 g(v)`, N.
     #[inline(always)]
     fn level(&self, velocity_m_s: T) -> T {
         let share = velocity_m_s / self.stribeck_m_s;
@@ -49,7 +49,7 @@ impl<T: Real> LuGre<T> {
         self.coulomb_n * (T::ONE - still) + self.static_n * still
     }
 
-    /// `sigma_1(v) z'`, N, with the bristle at `force_n`.
+    /// Damping force `sigma_1(v) z'`, N, with the bristle at `force_n`.
     #[inline(always)]
     fn damping(&self, force_n: T, velocity_m_s: T, level: T) -> T {
         let share = velocity_m_s / self.damping_speed_m_s;
@@ -98,7 +98,7 @@ impl<T: Real> Named<T> for LuGre<T> {
 }
 
 impl<T: Real> Law<T> for LuGre<T> {
-    /// `sigma_0 z`, N.
+    /// Bristle force `sigma_0 z`, N.
     type State = T;
 
     const HAS_BRISTLE: bool = true;
@@ -119,7 +119,8 @@ impl<T: Real> Law<T> for LuGre<T> {
         }
     }
 
-    /// The level bends with the speed, which a straight line per step must follow.
+    /// The level is a nonlinear function of the speed, which a linear change per step must
+    /// approximate.
     fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
         0.002
     }
@@ -140,8 +141,8 @@ impl<T: Real> Law<T> for LuGre<T> {
         if dt_s.value() <= 0.0 {
             *state = level[1] * v.sign();
         } else {
-            // At the turn the law is at its static level, times what contact effects made of
-            // the levels at the ends.
+            // At the reversal the level is the static level of the law, times the factor of the
+            // contact effects on the levels at the ends.
             let turning = |_| {
                 let own = self.level(from.velocity_m_s) + self.level(v);
                 self.level(T::ZERO) * (level[0] + level[1]) / own

@@ -1,33 +1,38 @@
-//! Maxwell slip: springs side by side, each of which slips at its own share of the level.
+//! Maxwell slip law: parallel springs, each of which slips at its own share of the level.
 //!
 //! ```text
 //! F = sum F_j + F_v v,   dF_j/dx = k_j  while |F_j| < a_j F_c,   F_j = a_j F_c sgn(v)  beyond
 //! ```
 //!
-//! Source: Iwan (1966) for the elements; Lampaert, Swevers & Al-Bender (2003) and Al-Bender, Lampaert
-//! & Swevers (2005), whose generalised form (GMS) lets the level fall with the speed: here that is the
-//! contact effect `stribeck_excess`, and `dry_load_dependence` a level that grows with the load. They
-//! move F_c; the elements keep their stiffness and their shares of it. Each element remembers where it
-//! last turned round, so the force obeys Masing's rules (1926): a branch after a reversal is the
-//! virgin curve, twice as large; an inner loop closes, and behind it the force goes on as if the loop
-//! had not been. Dahl's law and LuGre, of one state, drift there.
+//! Source: Iwan (1966) for the elements; Lampaert, Swevers & Al-Bender (2003) and Al-Bender,
+//! Lampaert & Swevers (2005). In their generalised form (GMS) the level falls with the speed: here
+//! that is the contact effect `stribeck_excess`. A level that grows with the load is
+//! `dry_load_dependence`. Both change F_c; the elements keep their stiffness and their shares of
+//! F_c.
 //!
-//! Free stiffnesses and shares are more numbers than a record determines, and change places without a
-//! trace. Of a contact two are known: how stiff it is at a reversal, `sigma_0`, and how its virgin
-//! curve bends. So the elements follow the virgin curve of Dahl's law, with Dahl's parameters,
+//! Each element stores its last reversal, so the force obeys Masing's rules (1926). A branch after
+//! a reversal is the virgin curve, twice as large. An inner loop closes, and after it the force
+//! continues as if the loop had not occurred. Dahl's law and LuGre, with one state, drift there.
+//!
+//! Free stiffnesses and shares are more parameters than a record determines, and permutations of
+//! them are equivalent. Two properties of a contact are known: the stiffness at a reversal,
+//! `sigma_0`, and the shape of its virgin curve. The elements therefore follow the virgin curve of
+//! Dahl's law, with Dahl's parameters,
 //!
 //! ```text
 //! F(x) = F_c [1 - (1 - (1 - i) sigma_0 x/F_c)^(1/(1 - i))]
 //! ```
 //!
-//! whose exponent i spans what is known of contacts: towards 0 all slip at once (elastic, then
-//! plastic), 1/3 is a sphere on a plane (Cattaneo 1938; Mindlin 1949), 1/2 slip displacements spread
-//! evenly (Iwan), 1 an exponential. While x grows the share u of the stiffness that still sticks falls;
-//! the springs from the last to slip up to that share carry `g(u) = (u - i u^(1/i))/(1 - i)` of F_c, and
-//! an element is what lies between two borders of u.
+//! The exponent i spans the known contacts. Towards 0 all elements slip at once (elastic, then
+//! plastic); 1/3 is a sphere on a plane (Cattaneo 1938; Mindlin 1949). At 1/2 the slip
+//! displacements are spread evenly (Iwan); 1 is an exponential.
 //!
-//! The rate does not enter: a sticking element is a spring and a sliding one is at its level, so a step
-//! along one way is exact whatever its length, and stable.
+//! While x grows, the share u of the stiffness that still sticks falls. The springs from the last
+//! to slip up to that share carry `g(u) = (u - i u^(1/i))/(1 - i)` of F_c. An element is the
+//! interval between two values of u.
+//!
+//! The law is rate-independent: a sticking element is a spring and a sliding one is at its level. A
+//! step in one direction is therefore exact and stable for any length.
 
 use super::newtons::{in_newtons, moving, number, stiffness, F_C, F_V};
 use super::{Info, Law, Named, SteadyCurve};
@@ -39,22 +44,25 @@ use crate::motion::JournalMotion;
 use crate::path::{legs, Leg};
 use crate::real::Real;
 
-/// How many elements: they meet the virgin curve to 0.8 % of F_c at i = 0.1, 0.2 % at 1/2, 0.6 % at 1.
+/// Number of elements.
+///
+/// Their error relative to the virgin curve is 0.8 % of F_c at i = 0.1, 0.2 % at 1/2, 0.6 % at 1.
 pub const ELEMENTS: usize = 16;
 
-/// Springs side by side that slip one after the other.
+/// Parallel springs that slip one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct MaxwellSlip<T> {
     coulomb_n: T,
     viscous_n_s_m: T,
     /// Stiffness of each element, N/m.
     stiffness_n_m: [T; ELEMENTS],
-    /// Share of the level that each carries.
+    /// Share of the level that each element carries.
     share: [T; ELEMENTS],
 }
 
-/// Share of the stiffness that lies below each border between two elements: close together where
-/// the last of a brittle curve slip.
+/// Cumulative share of the stiffness at each border between two elements.
+///
+/// The borders are close together where the last elements of a brittle curve slip.
 fn borders() -> [f64; ELEMENTS + 1] {
     core::array::from_fn(|j| {
         let part = j as f64 / ELEMENTS as f64;
@@ -62,7 +70,7 @@ fn borders() -> [f64; ELEMENTS + 1] {
     })
 }
 
-/// `g(u) = (u - i u^(1/i))/(1 - i)`, which goes on through i = 1.
+/// Function `g(u) = (u - i u^(1/i))/(1 - i)`, continuous through i = 1.
 fn carried<T: Real>(u: f64, exponent: T) -> T {
     if u <= 0.0 {
         return T::ZERO;
@@ -80,7 +88,7 @@ fn carried<T: Real>(u: f64, exponent: T) -> T {
 }
 
 impl<T: Real> MaxwellSlip<T> {
-    /// All elements along one leg.
+    /// Advances all elements along one leg.
     #[inline(always)]
     fn slide(&self, forces_n: &mut [T; ELEMENTS], leg: &Leg<T>) {
         let way = leg.direction * leg.distance_m;
@@ -98,13 +106,13 @@ impl<T: Real> MaxwellSlip<T> {
         }
     }
 
-    /// All elements at their levels, in the direction of motion.
+    /// Forces of all elements at their levels, in the direction of motion.
     fn sliding(&self, level: T, direction: T) -> [T; ELEMENTS] {
         self.share.map(|share| share * level * direction)
     }
 }
 
-/// The force of all elements, N.
+/// Total force of all elements, N.
 #[inline(always)]
 fn sum<T: Real>(forces_n: &[T; ELEMENTS]) -> T {
     forces_n.iter().fold(T::ZERO, |sum, &force| sum + force)

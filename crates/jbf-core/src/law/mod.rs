@@ -1,11 +1,13 @@
-//! Friction laws, one a file. A law turns motion into a friction coefficient; what a rig
-//! adds to it belongs to [`crate::effect`].
+//! Friction laws, one per file.
 //!
-//! Laws in newtons (all but those of a bearing) press with 1 N, so that their coefficient is
+//! A law turns motion into a friction coefficient; the contributions of a rig belong to
+//! [`crate::effect`].
+//!
+//! Laws in newtons (all except those of a bearing) use a load of 1 N, so that their coefficient is
 //! a force.
 //!
-//! To add one: write its file with [`Law`], [`Named`] and [`SteadyCurve`], name the file below,
-//! and name the law in `laws!`.
+//! To add a law, write its file with [`Law`], [`Named`] and [`SteadyCurve`], declare the module
+//! below, and add the law to `laws!`.
 
 pub mod coulomb;
 pub mod dahl;
@@ -35,63 +37,67 @@ use crate::friction::Friction;
 use crate::motion::JournalMotion;
 use crate::real::Real;
 
-/// A friction law: configuration here, what changes in `State`.
+/// A friction law, which holds the configuration; variables are in `State`.
 pub trait Law<T: Real> {
-    /// What the law remembers.
+    /// State of the law.
     type State: Copy + Send + 'static;
 
-    /// False where friction at a sample depends on the last step before it alone, however long that
-    /// step is.
+    /// False if friction at a sample depends only on the last step before it, for any length of
+    /// that step.
     const HAS_MEMORY: bool = core::mem::size_of::<Self::State>() > 0;
 
-    /// True where the law bends before it slides: [`Law::bend`] then takes the place of the
-    /// sign of the motion.
+    /// True if the law deflects before it slides: [`Law::bend`] then replaces the sign of the
+    /// motion.
     const HAS_BRISTLE: bool = false;
 
-    /// True where a contact that bends before it slides bends under all of the friction; false
-    /// where the viscous part acts beside it, as it does beside a law's own bristle.
+    /// True if a contact that deflects before it slides carries all of the friction.
+    ///
+    /// False if the viscous part acts in parallel with it, as it does with a law's own bristle.
     const BENDS_WHOLE: bool = !Self::HAS_BRISTLE;
 
-    /// So many steps from sample to sample are enough, however far apart the samples are: a law whose
-    /// stepper is stable at any step goes on a straight line between them, and of more than the line
-    /// no record tells. Infinite where a step that is too long loses its way.
+    /// Number of steps between samples that is sufficient for any sampling interval.
+    ///
+    /// A law whose stepper is stable at any step follows a straight line between samples, and a
+    /// record contains no more than that line. Infinite if a step that is too long diverges.
     const ENOUGH_STEPS: f64 = f64::INFINITY;
 
-    /// The two parameters, by their numbers on the law's page, on which the path of its film
-    /// depends, where friction is told no more of the film than [`Law::film`]; see
+    /// Indices, in the description of the law, of the two parameters that determine the path of its
+    /// film.
+    ///
+    /// It is set only if friction depends on the film through [`Law::film`] alone; see
     /// [`crate::film_path`].
     const FILM_PARAMETERS: Option<[usize; 2]> = None;
 
-    /// What friction is told of the film.
+    /// State of the film that enters friction.
     #[inline(always)]
     fn film(&self, state: &Self::State) -> T {
         let _ = state;
         T::ZERO
     }
 
-    /// Put the film where [`Law::film`] said it was.
+    /// Sets the film to a value of [`Law::film`].
     #[inline(always)]
     fn put_film(&self, state: &mut Self::State, film: T) {
         let _ = (state, film);
     }
 
-    /// The state at which every run starts.
+    /// Returns the state at the start of a run.
     fn start(&self, load_n: T) -> Self::State;
 
-    /// The load (N) that the law computes with, and that its coefficient refers to: a law
-    /// may have a lightest one.
+    /// Load (N) that the law uses and that its coefficient refers to; a law may have a lightest
+    /// load.
     fn pressed_n(&self, load_n: T) -> T {
         load_n.max(T::ZERO)
     }
 
-    /// A load as a share of the one that the law was built with; one for a law that asks for
-    /// no load.
+    /// Load relative to the load that the law was built with; one for a law that does not depend on
+    /// it.
     fn load_share(&self, load_n: T) -> T {
         let _ = load_n;
         T::ONE
     }
 
-    /// The same law with its parameters scaled; none of a law that has no such parameters.
+    /// Returns the law with scaled parameters; `None` if it has no such parameters.
     fn scaled(&self, scales: &Scales<T>) -> Option<Self>
     where
         Self: Sized,
@@ -100,23 +106,27 @@ pub trait Law<T: Real> {
         None
     }
 
-    /// Take a new load; cheap when it did not change.
+    /// Sets a new load; inexpensive when it did not change.
     fn set_load(&self, state: &mut Self::State, load_n: T);
 
-    /// Coefficient of friction now, at the film speed `velocity_m_s` (signed).
+    /// Friction coefficient at the film speed `velocity_m_s` (signed).
     fn friction(&self, state: &Self::State, velocity_m_s: T) -> Friction<T>;
 
-    /// Longest step, s, that the law's own stepper takes without loss up to a speed.
+    /// Longest step, s, of the law's own stepper without loss of accuracy, up to a speed.
     fn longest_step_s(&self, top_speed_m_s: f64) -> f64;
 
-    /// Advance by `dt_s`; `speed_m_s` is |U| at the start, middle and end of the step, and
-    /// `rate` a factor on the law's own clock.
+    /// Advances by `dt_s`.
+    ///
+    /// `speed_m_s` is |U| at the start, middle and end of the step, and `rate` a factor on the
+    /// law's own clock.
     fn advance(&self, state: &mut Self::State, speed_m_s: [T; 3], rate: T, dt_s: T);
 
-    /// For laws with [`Law::HAS_BRISTLE`]: bend the bristle along the motion of a step and give
-    /// its coefficient, signed, without the viscous part. `level` is [`Friction::jump`] at both
-    /// ends of the step, contact effects included. A step of no length is the start of a run:
-    /// the bristle is then bent already where the run starts in motion.
+    /// Deflects the bristle along the motion of a step and returns its signed coefficient, without
+    /// the viscous part.
+    ///
+    /// It is called for laws with [`Law::HAS_BRISTLE`]. `level` is [`Friction::jump`] at both ends
+    /// of the step, including contact effects. A step of zero length is the start of a run: the
+    /// bristle is then fully deflected if the run starts in motion.
     #[inline]
     fn bend(
         &self,
@@ -143,9 +153,10 @@ registry::laws! {
     elasto_plastic::ElastoPlastic,
 }
 
-/// True where the catalogue has a law of that name, and the values are as many as its parameters and
-/// each within its bounds. A constant can be checked by it while a program is compiled; what
-/// `jbf export` writes is.
+/// True if the catalogue has a law of this name and the values fit its parameters.
+///
+/// The number of values must be that of the parameters, and each value must be within its bounds.
+/// The function can check a constant at compile time, such as those that `jbf export` writes.
 ///
 /// ```
 /// const _: () = assert!(jbf_core::law::fits("journal", &[0.26, 0.06, 7.5e5, 33.0]));

@@ -1,13 +1,15 @@
-//! What the laws in newtons share: the pages of their parameters, whose bounds span every
-//! machine from a watch to a press, and the check of a speed.
+//! Common parts of the laws in newtons.
 //!
-//! The starting values are those of a machine with some 10 N of friction; a fit takes its own
-//! from the data.
+//! They are the descriptions of their parameters, whose bounds span every machine from a watch to a
+//! press, and the check of a speed.
+//!
+//! The start values are those of a machine with about 10 N of friction; a fit takes its own from
+//! the data.
 
 use crate::error::{check, ParameterError};
 use crate::page::{Parameter, Start};
 
-/// A force that is never zero, N.
+/// Description of a force that is never zero, N.
 pub(super) const fn force(
     name: &'static str,
     meaning: &'static str,
@@ -16,7 +18,7 @@ pub(super) const fn force(
     Parameter::new(name, "N", meaning, [1e-6, 1e7], starts).log()
 }
 
-/// A speed that is a scale, m/s.
+/// Description of a speed that is a scale, m/s.
 pub(super) const fn speed(
     name: &'static str,
     meaning: &'static str,
@@ -25,7 +27,7 @@ pub(super) const fn speed(
     Parameter::new(name, "m/s", meaning, [1e-7, 1e3], starts).log()
 }
 
-/// A stiffness of the contact, N/m.
+/// Description of a stiffness of the contact, N/m.
 pub(super) const fn stiffness(
     name: &'static str,
     meaning: &'static str,
@@ -36,7 +38,7 @@ pub(super) const fn stiffness(
         .start(Start::Stiffness)
 }
 
-/// A damping that may be absent, N s/m.
+/// Description of a damping that may be zero, N s/m.
 pub(super) const fn damping(
     name: &'static str,
     meaning: &'static str,
@@ -45,7 +47,7 @@ pub(super) const fn damping(
     Parameter::new(name, "N s/m", meaning, [0.0, 1e7], starts)
 }
 
-/// A time that is a scale, from `lower` to `upper`, s.
+/// Description of a time that is a scale, from `lower` to `upper`, s.
 pub(super) const fn time(
     name: &'static str,
     meaning: &'static str,
@@ -55,7 +57,7 @@ pub(super) const fn time(
     Parameter::new(name, "s", meaning, bounds, starts).log()
 }
 
-/// A plain number that is a scale.
+/// Description of a dimensionless number that is a scale.
 pub(super) const fn number(
     name: &'static str,
     meaning: &'static str,
@@ -82,7 +84,7 @@ pub(super) const V_S: Parameter = speed(
 )
 .start(Start::StribeckSpeed);
 
-/// The rule of every steady curve: at rest friction is set-valued.
+/// Checks the speed of a steady curve: at rest friction is set-valued.
 pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {
     check(
         velocity_m_s.is_finite() && velocity_m_s != 0.0,
@@ -92,10 +94,11 @@ pub(super) fn moving(velocity_m_s: f64) -> Result<(), ParameterError> {
     )
 }
 
-/// The methods of [`super::Law`] that are the same for every law in newtons.
+/// Methods of [`super::Law`] that are identical for all laws in newtons.
 macro_rules! in_newtons {
     () => {
-        /// Its viscous part is another place's (a seal, grease), as Dahl's and LuGre's is.
+        /// The viscous part belongs to another element (a seal, grease), as in Dahl's law and
+        /// LuGre's.
         const BENDS_WHOLE: bool = false;
 
         /// One newton: the coefficient of this law is a force.

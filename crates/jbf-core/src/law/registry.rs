@@ -1,13 +1,13 @@
-//! The macro behind the catalogue of laws: from the list in `law/mod.rs` it makes the
-//! catalogue, and the dispatch by name.
+//! Macro that generates, from the list in `law/mod.rs`, the catalogue of laws and the dispatch by
+//! name.
 
 macro_rules! laws {
     ($($module:ident::$Type:ident),* $(,)?) => {
-        /// Every law, the default first.
+        /// All laws, the default first.
         pub const CATALOGUE: &[Info] = &[$(<$module::$Type<f64> as Named<f64>>::INFO,)*];
 
-        /// Build the law of that name and hand it to `visitor`: one call for every law, each
-        /// compiled for its own type.
+        /// Builds the law of that name and passes it to `visitor`, compiled for the type of each
+        /// law.
         ///
         /// # Errors
         /// Those of [`Named::build`]; an unknown name is reported as the parameter `law`.
@@ -26,7 +26,7 @@ macro_rules! laws {
             Err(ParameterError::UnknownLaw)
         }
 
-        /// The Rust type of the law of that name, as `law::NAME::TYPE` has it.
+        /// Rust type of the law of that name, as in `law::NAME::TYPE`.
         pub fn type_name(name: &str) -> Option<&'static str> {
             $(if name == <$module::$Type<f64> as Named<f64>>::INFO.name {
                 return Some(stringify!($Type));
@@ -34,7 +34,8 @@ macro_rules! laws {
             None
         }
 
-        /// Steady friction (N) of the law of that name at speeds (m/s, not zero), into `out`.
+        /// Computes steady friction (N) of the law of that name at speeds (m/s, not zero), into
+        /// `out`.
         ///
         /// # Errors
         /// Those of [`Named::build`] and of [`SteadyCurve::steady_n`].

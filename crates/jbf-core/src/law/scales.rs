@@ -1,6 +1,6 @@
-//! A law's own parameters under a load, against those under the load that it was built with.
+//! Parameters of a law under a load, relative to those under the load that it was built with.
 
-/// Factors on them; see [`super::Law::scaled`].
+/// Factors on the parameters of a law; see [`super::Law::scaled`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales<T> {
     /// Factor on the transition speed U_tr.

@@ -1,5 +1,5 @@
-//! The seven-parameter model: a spring before breakaway, a Stribeck curve with pure delay in
-//! sliding, and static friction that rises with the time at rest.
+//! Seven-parameter model: a spring before breakaway, a Stribeck curve with pure delay in sliding,
+//! and static friction that rises with the time at rest.
 //!
 //! ```text
 //! stuck:    F = k_t x                                      until |F| = F_c + F_s(t_2)
@@ -8,13 +8,14 @@
 //! ```
 //!
 //! t_2 is the time stuck, F_s,a the Stribeck part of friction at the end of the last sliding.
-//! Without a delay that part is whole again at every stop, so that rising static friction shows
-//! only with tau_L above zero: the model's own trait.
+//! Without a delay that part is fully restored at every stop. Rising static friction is therefore
+//! visible only with tau_L above zero, a property of the model.
 //!
-//! Source: Armstrong-Helouvry & Dupont (1993); Armstrong-Helouvry, Dupont & Canudas de Wit
-//! (1994); Cohn (1998), section 2.3.1.
+//! Source: Armstrong-Helouvry & Dupont (1993); Armstrong-Helouvry, Dupont & Canudas de Wit (1994);
+//! Cohn (1998), section 2.3.1.
 //!
-//! A stop leaves the spring bent as it was: the force does not jump. A run starts rested.
+//! At a stop the spring keeps its deflection: the force does not jump. A run starts after a long
+//! rest.
 
 use super::newtons::{force, in_newtons, moving, stiffness, time, F_C, F_V, V_S};
 use super::{Info, Law, Named, SteadyCurve};
@@ -40,33 +41,33 @@ pub struct SevenParameter<T> {
     dwell_s: T,
 }
 
-/// What the model remembers.
+/// State of the model.
 #[derive(Clone, Copy, Debug)]
 pub struct State<T> {
-    /// -1 or +1 in sliding, zero while stuck.
+    /// Direction: -1 or +1 in sliding, zero while stuck.
     way: T,
     /// Force without the viscous part, N.
     force_n: T,
     /// Stribeck part at the end of the last sliding, N.
     arrival_n: T,
-    /// Stribeck part that the contact has grown to, N.
+    /// Present Stribeck part of the contact, N.
     grown_n: T,
     /// Time stuck, s.
     stuck_s: T,
-    /// |v| a delay ago, m/s.
+    /// Speed |v| one delay ago, m/s.
     late_m_s: T,
     line: DelayLine<T>,
 }
 
 impl<T: Real> SevenParameter<T> {
-    /// Share of the Stribeck part that is there at a (delayed) speed.
+    /// Share of the Stribeck part at a (delayed) speed.
     #[inline(always)]
     fn share(&self, speed_m_s: T) -> T {
         let x = speed_m_s / self.stribeck_m_s;
         T::ONE / (T::ONE + x * x)
     }
 
-    /// The contact comes to rest.
+    /// Stops the contact.
     #[inline(always)]
     fn stop(&self, state: &mut State<T>) {
         if state.way != T::ZERO {
@@ -76,7 +77,7 @@ impl<T: Real> SevenParameter<T> {
         }
     }
 
-    /// Along one leg: the spring bends, breaks away, or slides on.
+    /// Advances along one leg: the spring deflects, breaks away, or slides on.
     #[inline(always)]
     fn slide(&self, state: &mut State<T>, leg: &Leg<T>) {
         let (way, level) = (leg.direction, leg.level[1]);
@@ -89,7 +90,8 @@ impl<T: Real> SevenParameter<T> {
                 state.way = way;
             }
         }
-        // A spring still bent beyond a level that fell meanwhile is let be: it unbends backwards.
+        // A spring deflected beyond a level that fell meanwhile keeps its force; it relaxes on
+        // reversal.
         if state.way != T::ZERO {
             state.force_n = level * way;
         }
@@ -120,7 +122,7 @@ impl<T: Real> Named<T> for SevenParameter<T> {
             )
             .start(Start::BreakawayExcess),
             V_S,
-            // It may be zero: no scale.
+            // The delay may be zero, so it is not a scale.
             Parameter::new(
                 "tau_L_s",
                 "s",
@@ -178,7 +180,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
 
     #[inline(always)]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Friction<T> {
-        // A run has no past yet at its first sample: it went on as it begins.
+        // At its first sample a run has no history; the speed before it is taken as constant.
         let late = if state.line.is_empty() {
             velocity_m_s
         } else {
@@ -190,7 +192,7 @@ impl<T: Real> Law<T> for SevenParameter<T> {
         }
     }
 
-    /// Breakaway is found to the step.
+    /// Breakaway is resolved to one step.
     fn longest_step_s(&self, _top_speed_m_s: f64) -> f64 {
         0.002
     }

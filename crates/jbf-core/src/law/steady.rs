@@ -2,7 +2,7 @@
 
 use crate::film::FilmIntegrals;
 
-/// The film after a long time at one speed.
+/// Steady state of the film at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steady {
     /// Eccentricity ratio.
@@ -13,11 +13,11 @@ pub struct Steady {
     pub coefficient: f64,
 }
 
-/// Eccentricity and attitude that balance the load number `fb` at `ub = |U|/U_tr`:
+/// Solves for the eccentricity and attitude that balance the load number `fb` at `ub = |U|/U_tr`:
 /// `(W - J12 eps Ub/2)^2 + (J11 eps Ub/2)^2 = Fb^2`.
 ///
-/// The left side grows with eps from 0 to infinity, so halving the bracket cannot miss. The
-/// unknown is `log(1 - eps)`, which resolves light and near-contact films alike.
+/// The left side grows with eps from 0 to infinity, so bisection always converges. The unknown is
+/// `log(1 - eps)`, which resolves light and near-contact films alike.
 pub(crate) fn solve(fb: f64, ub: f64, asperity_load: impl Fn(f64) -> f64) -> (f64, f64) {
     let parts = |eps: f64| {
         let j = FilmIntegrals::at(eps);

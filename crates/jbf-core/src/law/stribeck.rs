@@ -1,8 +1,9 @@
-//! `F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)`: friction falls from its
-//! static level as the speed rises, then grows with it.
+//! Stribeck law `F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)`.
 //!
-//! Source: Tustin (1947), delta = 1; Bo & Pavelescu (1982), delta 0.5 to 1;
-//! Armstrong-Helouvry (1991), delta = 2; Cohn (1998), section 2.2.
+//! Friction falls from its static level as the speed rises, then grows with it.
+//!
+//! Source: Tustin (1947), delta = 1; Bo & Pavelescu (1982), delta 0.5 to 1; Armstrong-Helouvry
+//! (1991), delta = 2; Cohn (1998), section 2.2.
 
 use super::newtons::{in_newtons, moving, number, F_C, F_S, F_V, V_S};
 use super::{Info, Law, Named, SteadyCurve};
@@ -12,7 +13,7 @@ use crate::error::ParameterError;
 use crate::friction::Friction;
 use crate::real::Real;
 
-/// The Stribeck curve without memory.
+/// Stribeck curve without memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Stribeck<T> {
     coulomb_n: T,

@@ -1,4 +1,4 @@
-//! The Coulomb friction observer with an exponent, (6.1):
+//! Coulomb friction observer with an exponent, (6.1):
 //!
 //! ```text
 //! F_hat = a_hat sgn(v),  a_hat = z - k_F phi(|v|),  phi(w) = w^p
@@ -8,16 +8,17 @@
 //! Source: Friedland & Park (1992); Friedland & Mentzelopoulou (1992) for the exponent; Cohn
 //! (1998), (6.1). The thesis writes (u - F_hat) in units of acceleration.
 //!
-//! For p < 1 the gain `k_F p w^(p-1)` has a pole at v = 0, for p > 1 it grows without bound with
-//! speed. Where the gain would pass half of what one step can take (`k_F phi' b dt = 1/2`), phi
-//! goes on as its own tangent: the gain is then bounded, and phi and phi' still belong together,
-//! so that no error builds up on the way through zero. With p = 1 this never acts. At v = 0
-//! exactly the sign is zero and the observer holds.
+//! For p < 1 the gain `k_F p w^(p-1)` has a pole at v = 0; for p > 1 it grows without bound with
+//! speed. Where the gain would exceed half of the stable value of one step (`k_F phi' b dt = 1/2`),
+//! phi continues as its own tangent. The gain is then bounded, and phi and phi' remain consistent,
+//! so that no error accumulates on the passage through zero. With p = 1 this has no effect. At v =
+//! 0 exactly the sign is zero and the observer holds.
 
 use crate::error::{check, positive, Error};
 use crate::real::Real;
 
-/// No shaft turns faster, rad/s: a guard that reached as far would take phi's place everywhere.
+/// Highest speed of any shaft, rad/s. A tangent that extended that far would replace phi at all
+/// speeds.
 const FASTEST_RAD_S: f64 = 1e4;
 
 /// Gains of the Coulomb observer.
@@ -26,7 +27,7 @@ pub struct CoulombObserver<T> {
     gain: T,
     exponent: T,
     linear: bool,
-    /// Where phi becomes its tangent: below it for p < 1, above it for p > 1.
+    /// Speed at which phi becomes its tangent: below it for p < 1, above it for p > 1.
     edge: T,
     edge_slope: T,
     edge_power: T,
@@ -34,14 +35,14 @@ pub struct CoulombObserver<T> {
     dt_s: T,
 }
 
-/// `z`, in volts.
+/// State `z` of the observer, in volts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State<T> {
     z_v: T,
 }
 
-/// phi and its slope at one speed.
+/// Value of phi and its slope at one speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Power<T> {
     value: T,
@@ -49,12 +50,16 @@ pub struct Power<T> {
 }
 
 impl<T: Real> CoulombObserver<T> {
-    /// Gain `k_F` (in the thesis's units, V per (rad/s)^p), exponent `p`, the plant's input gain
-    /// `b` (rad/s^2/V), and the most that may be learned, V.
+    /// Creates an observer.
+    ///
+    /// - `gain`: `k_F`, in the thesis's units, V per (rad/s)^p.
+    /// - `exponent`: `p`.
+    /// - `input_rad_s2_v`: the plant's input gain `b`, rad/s^2/V.
+    /// - `limit_v`: largest level that may be learned, V.
     ///
     /// # Errors
-    /// All must be positive and finite; `p` at most 4; with p = 1 `k_F b dt` below 1, with p < 1 a
-    /// gain that some speed of a shaft bears.
+    /// All must be positive and finite, and `p` at most 4. With p = 1 `k_F b dt` must be below 1;
+    /// with p < 1 the gain must be stable at some speed of a shaft.
     pub fn new(
         gain: f64,
         exponent: f64,
@@ -99,7 +104,7 @@ impl<T: Real> CoulombObserver<T> {
         })
     }
 
-    /// phi at a speed, rad/s.
+    /// Evaluates phi at a speed, rad/s.
     #[inline]
     #[must_use]
     pub fn power(&self, velocity_rad_s: T) -> Power<T> {
@@ -129,16 +134,18 @@ impl<T: Real> CoulombObserver<T> {
         }
     }
 
-    /// The level `a_hat`, V.
+    /// Friction level `a_hat`, V.
     #[inline]
     #[must_use]
     pub fn level_v(&self, state: &State<T>, power: &Power<T>) -> T {
         state.z_v - self.gain * power.value
     }
 
-    /// Learn from one step: the acceleration (rad/s^2) that the plant would have without the
-    /// friction that is compensated, `-a v + b u` with u before compensation. The estimate then
-    /// follows the friction with the rate `k_F phi' b`.
+    /// Learns from one step.
+    ///
+    /// `free_rad_s2` is the acceleration (rad/s^2) of the plant without the compensated friction,
+    /// `-a v + b u` with u before compensation. The estimate then follows the friction at the rate
+    /// `k_F phi' b`.
     #[inline]
     pub fn learn(&self, state: &mut State<T>, power: &Power<T>, velocity_rad_s: T, free_rad_s2: T) {
         state.z_v += self.dt_s * self.gain * power.slope * free_rad_s2 * velocity_rad_s.sign();
@@ -149,7 +156,7 @@ impl<T: Real> CoulombObserver<T> {
             .min(least + self.limit_v);
     }
 
-    /// A state that has learned a level, V, at rest; held within the limit.
+    /// State at rest that has learned a level, V, limited to the bound.
     #[must_use]
     pub fn learned(&self, level_v: T) -> State<T> {
         let rest = self.power(T::ZERO);

@@ -1,4 +1,4 @@
-//! Observers, one a file: what the encoder does not tell.
+//! Observers, one per file, of quantities that the encoder does not measure.
 
 pub mod coulomb;
 pub mod velocity;

@@ -1,4 +1,4 @@
-//! Speed from an encoder, (6.2), plain or with the plant's input fed forward:
+//! Speed estimate from an encoder, (6.2), plain or with feedforward of the plant's input:
 //!
 //! ```text
 //! v_hat = z + k x,   z' = -k v_hat                    (plain)
@@ -7,16 +7,16 @@
 //!
 //! Source: Tafazoli, de Silva & Lawrence (1995); Cohn (1998), (6.2), Appendices D and E.
 //!
-//! The step keeps v_hat instead of z: `v_hat += k (x - x_before) + dt z'`. Term for term that is
-//! the thesis's Euler step, and neither the angle nor its rounding grows with the hours.
+//! The step stores v_hat instead of z: `v_hat += k (x - x_before) + dt z'`. Term for term this is
+//! the thesis's Euler step, and neither the angle nor its rounding error grows over hours.
 
 use crate::error::{check, not_negative, positive, Error};
 use crate::real::Real;
 
-/// The thesis's gain `k`, 1/s.
+/// Gain `k` of the thesis, 1/s.
 pub const THESIS_1_S: f64 = 15.0;
 
-/// Gains of the velocity observer. Its state is the speed, rad/s.
+/// Gains of the velocity observer, whose state is the speed, rad/s.
 #[derive(Clone, Copy, Debug)]
 pub struct VelocityObserver<T> {
     gain_1_s: T,
@@ -25,7 +25,7 @@ pub struct VelocityObserver<T> {
 }
 
 impl<T: Real> VelocityObserver<T> {
-    /// Plain: gain `k` (1/s).
+    /// Creates the plain observer with gain `k` (1/s).
     ///
     /// # Errors
     /// The gain must be positive, and `k dt` below 1.
@@ -33,7 +33,7 @@ impl<T: Real> VelocityObserver<T> {
         Self::fed_forward(gain_1_s, 0.0, 0.0, dt_s)
     }
 
-    /// With the input of the plant `v' = -a v + b u` fed forward.
+    /// Creates the observer with feedforward of the input of the plant `v' = -a v + b u`.
     ///
     /// # Errors
     /// Gains must be positive (`a` and `b` may be zero), and `(a + k) dt` below 1.
@@ -65,15 +65,19 @@ impl<T: Real> VelocityObserver<T> {
         })
     }
 
-    /// The estimate once the shaft has moved by `moved_rad`, rad/s. Call before the control law.
+    /// Updates the estimate, rad/s, after the shaft has moved by `moved_rad`.
+    ///
+    /// Call it before the control law.
     #[inline]
     #[must_use]
     pub fn measure(&self, velocity_rad_s: T, moved_rad: T) -> T {
         velocity_rad_s + self.gain_1_s * moved_rad
     }
 
-    /// What becomes of the estimate until the next sample, under the input `u_v` (V; of no
-    /// account to the plain form). Call after the control law.
+    /// Predicts the estimate at the next sample under the input `u_v` (V; ignored by the plain
+    /// form).
+    ///
+    /// Call it after the control law.
     #[inline]
     #[must_use]
     pub fn carry(&self, velocity_rad_s: T, u_v: T) -> T {

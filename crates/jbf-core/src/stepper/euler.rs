@@ -1,11 +1,11 @@
-//! Explicit Euler: `y += dt f(y)`. First order; what the thesis ran in its 2 ms loop.
+//! Explicit Euler method `y += dt f(y)`, of first order, as in the 2 ms loop of the thesis.
 //!
 //! (The thesis prints `eps_{i+1} = eps' dt`; the state itself is missing there.)
 
 use super::{along, Stepper, System};
 use crate::real::Real;
 
-/// Explicit Euler.
+/// Explicit Euler method.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Euler;
 

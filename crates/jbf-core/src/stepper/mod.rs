@@ -1,5 +1,7 @@
-//! Fixed-step integrators, one a file. A stepper knows nothing of friction: it advances
-//! any [`System`] whose input is known at the start, middle and end of the step.
+//! Fixed-step integrators, one per file.
+//!
+//! A stepper is independent of friction: it advances any [`System`] whose input is known at the
+//! start, middle and end of the step.
 
 mod euler;
 mod rk4;
@@ -16,12 +18,13 @@ pub use stiff::{Linear, SecondOrder, ShiftedSolver, StiffStepper, StiffSystem, T
 
 use crate::real::Real;
 
-/// `state' = slope(state, input)`: `N` states driven by one input.
+/// A system `state' = slope(state, input)`: `N` states driven by one input.
 pub trait System<T: Real, const N: usize> {
     /// Rate of change of the state.
     fn slope(&self, state: &[T; N], input: T) -> [T; N];
 
-    /// The same where a step begins, of which a system may know more than `state` tells.
+    /// Rate of change of the state at the start of a step, where a system may know more than
+    /// `state` contains.
     #[inline(always)]
     fn slope_at_start(&self, state: &[T; N], input: T) -> [T; N] {
         self.slope(state, input)
@@ -30,7 +33,7 @@ pub trait System<T: Real, const N: usize> {
 
 /// One fixed step of an explicit method.
 pub trait Stepper {
-    /// Advance `state` by `dt`; `input` holds the input at the start, middle and end.
+    /// Advances `state` by `dt`; `input` holds the input at the start, middle and end.
     fn step<T: Real, S: System<T, N>, const N: usize>(
         &self,
         system: &S,
@@ -40,7 +43,7 @@ pub trait Stepper {
     );
 }
 
-/// `state + slope * dt`.
+/// Computes `state + slope * dt`.
 #[inline(always)]
 fn along<T: Real, const N: usize>(state: &[T; N], slope: &[T; N], dt: T) -> [T; N] {
     let mut moved = *state;

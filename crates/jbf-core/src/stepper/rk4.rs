@@ -1,4 +1,4 @@
-//! The classical Runge-Kutta method of order four (Kutta 1901).
+//! Classical Runge-Kutta method of order four (Kutta 1901).
 
 use super::{along, Stepper, System};
 use crate::real::Real;

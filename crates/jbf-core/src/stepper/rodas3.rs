@@ -1,14 +1,15 @@
-//! RODAS3 (Sandu, Verwer, Blom, Spee, Carmichael & Potra, Atmospheric Environment 31, 1997):
-//! a Rosenbrock method of order three, L-stable and stiffly accurate, of order three on
-//! differential-algebraic systems too, which is what the full bearing becomes as its mass
-//! number goes to zero.
+//! RODAS3, a Rosenbrock method of order three (Sandu, Verwer, Blom, Spee, Carmichael & Potra,
+//! Atmospheric Environment 31, 1997).
 //!
-//! Why this one for the loop: a Rosenbrock step is a fixed amount of work (no Newton
-//! iteration that may need more), and at 2 ms the film moves little enough that order three
-//! leaves errors far below a sensor's: 7e-6 of the loop's peak on the full model at 2 rad/s, for
-//! 140 ns a step. [`Rodas5P`](super::Rodas5P) takes 340 ns and is no better there, since what is
-//! left comes from the kink of |U| inside a step. Two slopes beside the linearisation; coefficients
-//! are small fractions.
+//! It is L-stable and stiffly accurate. It has order three on differential-algebraic systems too,
+//! which the full bearing becomes as its mass number approaches zero.
+//!
+//! It suits the loop because a Rosenbrock step has a fixed cost (no Newton iteration, which may
+//! need more). At 2 ms the film moves so little that order three leaves errors far below a
+//! sensor's. The error is 7e-6 of the loop's peak on the full model at 2 rad/s, for 140 ns per
+//! step. [`Rodas5P`](super::Rodas5P) takes 340 ns and is no better there, because the remaining
+//! error comes from the kink of |U| inside a step. It evaluates two slopes in addition to the
+//! linearisation; its coefficients are small fractions.
 
 use super::stiff::{Linear, ShiftedSolver, StiffStepper, StiffSystem};
 use crate::real::Real;
@@ -31,7 +32,7 @@ impl StiffStepper for Rodas3 {
             jacobian,
             by_input,
         } = system.linearise(state, start);
-        // The input's change over the step if it kept the rate of its parabola at the start.
+        // Change of the input over the step at the initial rate of its parabola.
         let change = T::of(4.0) * middle - T::of(3.0) * start - end;
         let inverse_dt = T::ONE / dt;
         let solver = S::Solver::new(&jacobian, inverse_dt * T::of(2.0));

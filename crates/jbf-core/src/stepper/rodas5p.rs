@@ -1,8 +1,9 @@
-//! Rodas5P (Steinebach, BIT Numerical Mathematics 63:27, 2023): a Rosenbrock method of order
-//! five, L-stable and stiffly accurate, with an embedded method of order four, made for stiff
-//! and differential-algebraic systems.
+//! Rodas5P, a Rosenbrock method of order five (Steinebach, BIT Numerical Mathematics 63:27, 2023).
 //!
-//! Written in the unknowns that need no product with the Jacobian (Hairer & Wanner, Solving
+//! It is L-stable and stiffly accurate, with an embedded method of order four, made for stiff and
+//! differential-algebraic systems.
+//!
+//! It is written in the unknowns that need no product with the Jacobian (Hairer & Wanner, Solving
 //! Ordinary Differential Equations II, IV.7):
 //!
 //! ```text
@@ -13,27 +14,27 @@ use super::rodas5p_tableau::{A, C, D, GAMMA, H, NODES};
 use super::stiff::{Linear, ShiftedSolver, StiffStepper, StiffSystem};
 use crate::real::Real;
 
-/// The input along a step, as the stages need it.
+/// Input along a step, as required by the stages.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Input<T> {
-    /// Its value at [`NODES`].
+    /// Value of the input at [`NODES`].
     pub at_nodes: [T; 4],
-    /// Its value at the end of the step.
+    /// Value of the input at the end of the step.
     pub at_end: T,
-    /// Its rate at the start of the step, times the length of the step.
+    /// Rate of change of the input at the start of the step, times the length of the step.
     pub change: T,
 }
 
-/// What one step computed.
+/// Result of one step.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<T, const N: usize> {
     pub(crate) unknowns: [[T; N]; 8],
-    /// The state at the end.
+    /// State at the end.
     pub end: [T; N],
 }
 
 impl<const N: usize> Stages<f64, N> {
-    /// No stages.
+    /// Placeholder without values.
     pub(crate) const NONE: Self = Self {
         unknowns: [[0.0; N]; 8],
         end: [0.0; N],
@@ -41,15 +42,18 @@ impl<const N: usize> Stages<f64, N> {
 }
 
 impl<T: Real, const N: usize> Stages<T, N> {
-    /// Estimate of the error of the end.
+    /// Error estimate of the state at the end.
     #[inline]
     pub fn error(&self) -> &[T; N] {
         &self.unknowns[7]
     }
 
-    /// Component `n` along the step, of order four: coefficients of 1, s, .., s^4, where s goes
-    /// from zero to one. (Hermite's polynomial through slopes and curvatures is finer where the film is not stiff,
-    /// and much coarser where it is: there they magnify the error of the state.)
+    /// Component `n` along the step, of order four.
+    ///
+    /// The coefficients are those of 1, s, .., s^4, where s goes from zero to one. (Hermite's
+    /// polynomial from slopes and curvatures is finer where the film is not stiff. It is much
+    /// coarser where the film is stiff, because there slopes and curvatures amplify the error of
+    /// the state.)
     #[inline]
     pub fn quartic(&self, start: &[T; N], n: usize) -> [T; 5] {
         let row = |r: usize| {
@@ -64,7 +68,8 @@ impl<T: Real, const N: usize> Stages<T, N> {
     }
 }
 
-/// `sum_j row_j u_j` of the first `K` unknowns; `K` is a constant so that the sum has no loop.
+/// Computes `sum_j row_j u_j` of the first `K` unknowns; `K` is a constant so that the sum has no
+/// loop.
 #[inline(always)]
 fn combined<T: Real, const N: usize, const K: usize>(
     row: &[f64],
@@ -78,7 +83,7 @@ fn combined<T: Real, const N: usize, const K: usize>(
     sum
 }
 
-/// One step from a system already linearised at `state`.
+/// Computes one step of a system already linearised at `state`.
 #[inline(always)]
 pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
     system: &S,
@@ -90,12 +95,12 @@ pub(crate) fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
     use core::array::from_fn;
     let inverse_dt = T::ONE / dt;
     let solver = S::Solver::new(&linear.jacobian, inverse_dt * T::of(1.0 / GAMMA));
-    // f_t h, which each stage takes a share of.
+    // f_t h, of which each stage takes a share.
     let drift: [T; N] = from_fn(|i| linear.by_input[i] * input.change);
     let mut u = [[T::ZERO; N]; 8];
     u[0] = solver.solve(&from_fn(|i| linear.slope[i] + drift[i] * T::of(D[0])));
     let mut at: [T; N];
-    // Written out stage by stage: as a loop it takes a third longer.
+    // Written out stage by stage: a loop takes a third longer.
     macro_rules! stage {
         ($k:literal, $input:expr, $at:expr, $share:expr) => {
             at = $at;
@@ -158,7 +163,7 @@ impl StiffStepper for Rodas5P {
         [start, middle, end]: [T; 3],
         dt: T,
     ) {
-        // Three values make a parabola.
+        // Three values define a parabola.
         let change = T::of(4.0) * middle - T::of(3.0) * start - end;
         let bend = (start + end - T::of(2.0) * middle) * T::of(2.0);
         let input = Input {

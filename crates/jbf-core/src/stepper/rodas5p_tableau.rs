@@ -4,7 +4,8 @@
 /// Diagonal of the method.
 pub(crate) const GAMMA: f64 = 0.21193756319429014;
 
-/// `a_ij` of stages two to six; stages seven and eight and the end each add the unknown before.
+/// Coefficients `a_ij` of stages two to six; stages seven and eight and the end each add the
+/// previous unknown.
 pub(crate) const A: [[f64; 5]; 5] = [
     [3.0, 0.0, 0.0, 0.0, 0.0],
     [2.849394379747939, 0.45842242204463923, 0.0, 0.0, 0.0],
@@ -31,7 +32,7 @@ pub(crate) const A: [[f64; 5]; 5] = [
     ],
 ];
 
-/// `C_ij` of stages two to eight.
+/// Coefficients `C_ij` of stages two to eight.
 pub(crate) const C: [[f64; 7]; 7] = [
     [-14.155112264123755, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [
@@ -90,7 +91,7 @@ pub(crate) const C: [[f64; 7]; 7] = [
     ],
 ];
 
-/// Where stages two to five look at the input; the others look at the end of the step.
+/// Points at which stages two to five evaluate the input; the others evaluate it at the end.
 pub(crate) const NODES: [f64; 4] = [
     0.6358126895828704,
     0.4095798393397535,
@@ -98,7 +99,7 @@ pub(crate) const NODES: [f64; 4] = [
     0.4288403609558664,
 ];
 
-/// `d_i` of stages one to five.
+/// Coefficients `d_i` of stages one to five.
 pub(crate) const D: [f64; 5] = [
     GAMMA,
     -0.42387512638858027,

@@ -1,8 +1,8 @@
-//! What an implicit stepper asks of a system, and how it solves its linear equations.
+//! Interface between an implicit stepper and a system, and the solvers of its linear equations.
 //!
-//! The solves are written out here, not taken from nalgebra: its decompositions want a
-//! `RealField`, which dual numbers are not, and cost more (factor and four solves, `f64`, AMD EPYC:
-//! 80 ns against 240 ns for the four states, 55 ns against 85 ns for the two).
+//! The solvers are written here instead of taken from nalgebra. Its decompositions require a
+//! `RealField`, which dual numbers are not, and are slower. Factorisation and four solves (`f64`,
+//! AMD EPYC) take 80 ns here against 240 ns for the four states, 55 ns against 85 ns for the two.
 
 use super::System;
 use crate::real::Real;
@@ -18,10 +18,9 @@ pub struct Linear<T, const N: usize> {
     pub by_input: [T; N],
 }
 
-/// A [`System`] that knows its own derivatives.
+/// A [`System`] with derivatives.
 pub trait StiffSystem<T: Real, const N: usize>: System<T, N> {
-    /// How `(shift I - jacobian) x = right` is solved: a system knows the zeros of its
-    /// Jacobian.
+    /// Solver of `(shift I - jacobian) x = right`; a system knows the zeros of its Jacobian.
     type Solver: ShiftedSolver<T, N>;
 
     /// Slope and derivatives at a state and input.
@@ -30,7 +29,7 @@ pub trait StiffSystem<T: Real, const N: usize>: System<T, N> {
 
 /// One fixed step of an implicit method.
 pub trait StiffStepper {
-    /// Advance `state` by `dt`; `input` holds the input at the start, middle and end.
+    /// Advances `state` by `dt`; `input` holds the input at the start, middle and end.
     fn step<T: Real, S: StiffSystem<T, N>, const N: usize>(
         &self,
         system: &S,
@@ -40,16 +39,18 @@ pub trait StiffStepper {
     );
 }
 
-/// `(shift I - jacobian) x = right`, factored once and solved for many right sides.
+/// Solver of `(shift I - jacobian) x = right`, factored once and used for many right sides.
 pub trait ShiftedSolver<T: Real, const N: usize>: Copy {
-    /// Factor.
+    /// Factors the matrix.
     fn new(jacobian: &[[T; N]; N], shift: T) -> Self;
-    /// Solve for one right side.
+    /// Solves for one right side.
     fn solve(&self, right: &[T; N]) -> [T; N];
 }
 
-/// Two equations, by elimination with the larger pivot first. (Cramer's rule would be as
-/// quick, but its products overflow single precision close to the wall of the bearing.)
+/// Two equations, solved by elimination with the larger pivot first.
+///
+/// (Cramer's rule would be as fast, but its products overflow single precision close to the wall of
+/// the bearing.)
 #[derive(Clone, Copy, Debug)]
 pub struct TwoByTwo<T> {
     inverse_pivot: T,
@@ -94,14 +95,16 @@ impl<T: Real> ShiftedSolver<T, 2> for TwoByTwo<T> {
     }
 }
 
-/// Two positions and their velocities: `[p', v'] = [v, a(p, v)]`. The upper rows of the
-/// Jacobian are `[0, I]`, so the positions go out by hand and a two by two solve is left,
-/// a quarter of the work of a general four by four and free of its large pivots.
+/// Two positions and their velocities: `[p', v'] = [v, a(p, v)]`.
+///
+/// The upper rows of the Jacobian are `[0, I]`, so the positions are eliminated by hand and a two
+/// by two solve remains. It has a quarter of the cost of a general four by four and none of its
+/// large pivots.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondOrder<T> {
-    /// `1 / shift`.
+    /// Value of `1 / shift`.
     inverse_shift: T,
-    /// Derivatives of the acceleration by position, over `shift`.
+    /// Derivatives of the acceleration with respect to the position, divided by `shift`.
     stiffness: [[T; 2]; 2],
     velocity: TwoByTwo<T>,
 }

@@ -1,4 +1,4 @@
-//! Building the law: every number checked once, constants folded together.
+//! Construction of the law: checks every number and precomputes constants.
 
 use super::{Journal, Loaded, Parameters};
 use crate::bearing::Bearing;
@@ -8,7 +8,7 @@ use crate::real::Real;
 use core::f64::consts::PI;
 
 impl<T: Real> Journal<T> {
-    /// Check the numbers once and fold the constants together.
+    /// Checks the numbers and precomputes the constants.
     ///
     /// # Errors
     /// Names the first number that is not positive and finite.
@@ -45,12 +45,12 @@ impl<T: Real> Journal<T> {
             clock,
         };
         law.nominal = law.under(T::of(load_n));
-        // Sizes in the wrong unit overflow here, and would step as infinities.
+        // Sizes in a wrong unit overflow here and would otherwise give infinite steps.
         let folded = [law.viscous_s_m, law.inverse_u_tr, law.rate]
             .iter()
             .all(|x| x.is_finite());
         let load_number = law.nominal.load_number;
-        // One over the lightest load that the law will compute with, too.
+        // The inverse load number of the lightest load of the law is checked too.
         let lightest = law.under(T::ZERO);
         check(
             folded
@@ -64,8 +64,8 @@ impl<T: Real> Journal<T> {
         Ok(law)
     }
 
-    /// The same law with a transition eccentricity given instead of solved from (3.20), for
-    /// reproducing the printed tables.
+    /// Sets the transition eccentricity instead of the solution of (3.20), to reproduce the printed
+    /// tables.
     ///
     /// # Errors
     /// `eps_tr` must lie between 0 and 1.

@@ -1,4 +1,4 @@
-//! Derivatives of the equations of motion of the film, in the frame that turns with it:
+//! Derivatives of the equations of motion of the film, in the co-rotating frame:
 //!
 //! ```text
 //! slope = vr r + vt t,   d slope/d eps = (vr_e, vt_e),   d slope/d phi = (vr_phi - vt, vt_phi + vr)
@@ -12,7 +12,7 @@ use crate::real::Real;
 use crate::stepper::{Linear, StiffSystem, System, TwoByTwo};
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// The place of the journal centre in polar form.
+/// Position of the journal centre in polar form.
 #[derive(Clone, Copy)]
 pub(crate) struct Polar<T> {
     pub e: T,
@@ -22,7 +22,7 @@ pub(crate) struct Polar<T> {
 }
 
 impl<T: Real> Polar<T> {
-    /// Held inside the bearing in its own direction, as [`Film`] does it.
+    /// Position limited to the inside of the bearing in its own direction, as in [`Film`].
     #[inline]
     pub fn held(x: T, y: T) -> Self {
         let distance = (x * x + y * y).sqrt().max(T::of(1e-12));
@@ -35,7 +35,7 @@ impl<T: Real> Polar<T> {
         }
     }
 
-    /// `Q M Q^T`.
+    /// Rotated matrix `Q M Q^T`.
     #[inline]
     pub fn turned(&self, m: [[T; 2]; 2]) -> [[T; 2]; 2] {
         let (c, s) = (self.cos, self.sin);
@@ -47,7 +47,7 @@ impl<T: Real> Polar<T> {
         ]
     }
 
-    /// A vector from its radial and tangential parts.
+    /// Vector from its radial and tangential components.
     #[inline]
     pub fn vector(&self, radial: T, tangential: T) -> [T; 2] {
         [
@@ -111,14 +111,15 @@ impl<T: Real> StiffSystem<T, 2> for Film<'_, T> {
     }
 }
 
-/// The film with its asperities in touch, or free of them, whatever its eccentricity: smooth
-/// where the law itself has the kink of `W` at eps_tr, so that an error-controlled step may
-/// look across it. Outside the bearing its numbers are not finite.
+/// The film with or without asperity contact, at any eccentricity.
+///
+/// It is smooth where the law itself has the kink of `W` at eps_tr, so that an error-controlled
+/// step may extend across it. Outside the bearing its values are not finite.
 #[derive(Clone, Copy, Debug)]
 pub struct SmoothFilm<T> {
     load_number: T,
     eps_tr: T,
-    /// `K0`, or zero where the film is free.
+    /// Stiffness `K0`, or zero for a film without contact.
     k0: T,
 }
 
@@ -133,7 +134,7 @@ impl<T: Real> SmoothFilm<T> {
 }
 
 impl SmoothFilm<f64> {
-    /// A film that carries nothing.
+    /// Placeholder film without asperity load.
     pub(crate) const NONE: Self = Self {
         load_number: 1.0,
         eps_tr: 0.5,
@@ -148,7 +149,7 @@ impl<T: Copy> SmoothFilm<T> {
         [self.load_number, self.eps_tr, self.k0]
     }
 
-    /// From these.
+    /// Creates the film from the values of [`Self::parts`].
     #[inline(always)]
     pub(crate) fn of_parts([load_number, eps_tr, k0]: [T; 3]) -> Self {
         Self {
@@ -216,7 +217,7 @@ mod tests {
         JournalFull::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal).expect("valid")
     }
 
-    /// Derivatives written by hand against those that dual numbers give the slope.
+    /// Checks hand-written derivatives against those of dual numbers.
     fn agree<const N: usize>(system: &impl StiffSystem<D, N>, state: [f64; N], ub: f64) {
         let lifted = core::array::from_fn(|i| D::parameter(state[i], i));
         let exact = system.slope(&lifted, D::parameter(ub, 4));

@@ -1,15 +1,15 @@
-//! The equations of motion of the film, (3.18) and (3.19), in `x = eps cos(phi)`,
-//! `y = eps sin(phi)`, with the film integrals folded together:
+//! Equations of motion of the film, (3.18) and (3.19), in `x = eps cos(phi)`, `y = eps sin(phi)`,
+//! with the film integrals combined:
 //!
 //! ```text
 //! J12/J11         = -(4/pi) eps / sqrt(d),  d = 1 - eps^2
 //! J22 - J12^2/J11 = d^(-5/2) [ pi/2 + (pi - 8/pi) eps^2 ]
 //! ```
 //!
-//! A step waits for its slowest chain of operations, so the two square roots and the one division
-//! stand side by side: each is taken of numbers that need none of the others, and what multiplies
-//! them is formed meanwhile. `sqrt(d)^2 = d` leaves no root in the turning. On x86-64 that is
-//! 1.9 times faster than the printed order.
+//! The latency of a step is that of its longest chain of operations, so the two square roots and
+//! the division are independent of each other. The factors that multiply them are computed
+//! meanwhile. `sqrt(d)^2 = d` leaves no root in the rotation. On x86-64 this is 1.9 times faster
+//! than the printed order.
 
 use super::film_slopes;
 use super::{Journal, Loaded};
@@ -18,23 +18,25 @@ use crate::real::Real;
 use crate::stepper::System;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// Closer to the centre than this the journal has no direction of its own.
+/// Distance from the centre below which the journal has no direction.
 const CENTRE: f64 = 1e-12;
 
-/// True where the equations hold as they stand: off the centre and inside the bearing.
+/// True where the equations hold without a limit: off the centre and inside the bearing.
 #[inline(always)]
 pub(super) fn within<T: Real>(e2: T) -> bool {
     e2 <= T::EPS_LIMIT * T::EPS_LIMIT && e2 >= T::of(CENTRE * CENTRE)
 }
 
-/// The film as a system of two states driven by `|Ub|`: its way from where a step began,
-/// which single precision resolves far better than the place itself.
+/// The film as a system of two states driven by `|Ub|`.
+///
+/// The states are the displacement since the start of the step, which single precision resolves far
+/// better than the position.
 pub(super) struct Film<'a, T> {
     pub(super) law: &'a Journal<T>,
     pub(super) loaded: &'a Loaded<T>,
-    /// `x` and `y` where the step began.
+    /// Values of `x` and `y` at the start of the step.
     pub(super) from: [T; 2],
-    /// `x^2 + y^2` there.
+    /// Value of `x^2 + y^2` at the start of the step.
     pub(super) from_e2: T,
 }
 
@@ -62,8 +64,10 @@ impl<T: Real> Film<'_, T> {
         self.inside(x, y, e2, ub)
     }
 
-    /// Stages of a coarse step may look outside the bearing: show them the limit, in their own
-    /// direction; and the centre the slope beside it.
+    /// Slope outside the bearing and at the centre.
+    ///
+    /// Stages of a coarse step may be outside the bearing: they are evaluated at the limit, in
+    /// their own direction. The centre is evaluated next to it.
     #[cold]
     #[inline(never)]
     fn edge(&self, x: T, y: T, e2: T, ub: T) -> [T; 2] {
@@ -84,23 +88,23 @@ impl<T: Real> Film<'_, T> {
     }
 }
 
-/// What carries load where surfaces touch.
+/// Asperities, which carry load in contact.
 #[derive(Clone, Copy)]
 pub(super) struct Asperities<T> {
     pub(super) k0: T,
     pub(super) eps_tr: T,
-    /// False where the parabola goes on below eps_tr, for a step that may look across it.
+    /// False if the parabola continues below eps_tr, for a step that may extend across it.
     pub(super) part: bool,
 }
 
 impl<T: Real> Asperities<T> {
-    /// How deep they are pressed at an eccentricity ratio.
+    /// Depth of contact at an eccentricity ratio.
     #[inline(always)]
     pub(super) fn touch(&self, e: T) -> T {
         e - self.eps_tr
     }
 
-    /// `W = K0 (eps - eps_tr)^2`, zero below eps_tr.
+    /// Asperity load `W = K0 (eps - eps_tr)^2`, zero below eps_tr.
     #[inline(always)]
     pub(super) fn load(&self, e: T) -> T {
         let touch = self.touch(e);
@@ -112,7 +116,7 @@ impl<T: Real> Asperities<T> {
         }
     }
 
-    /// Without derivatives.
+    /// Returns the values without derivatives.
     #[inline(always)]
     pub(super) fn plain(&self) -> Asperities<f64> {
         Asperities {
@@ -123,21 +127,20 @@ impl<T: Real> Asperities<T> {
     }
 }
 
-/// What costs time at a place, and is shared by all that is computed there: two roots, one
-/// division.
+/// Costly terms at a position, shared by all functions of it: two roots and one division.
 #[derive(Clone, Copy)]
 pub(super) struct Gap<T> {
-    /// `eps^2`.
+    /// Value of `eps^2`.
     pub(super) e2: T,
-    /// `1 - eps^2`.
+    /// Value of `1 - eps^2`.
     pub(super) d: T,
     /// Eccentricity ratio.
     pub(super) e: T,
-    /// `sqrt(1 - eps^2)`.
+    /// Value of `sqrt(1 - eps^2)`.
     pub(super) root: T,
-    /// `(J22 - J12^2/J11) d^(5/2)`.
+    /// Value of `(J22 - J12^2/J11) d^(5/2)`.
     pub(super) determinant: T,
-    /// `1 / (eps^2 d determinant)`, infinite at the centre.
+    /// Value of `1 / (eps^2 d determinant)`, infinite at the centre.
     pub(super) inverse: T,
 }
 
@@ -158,7 +161,7 @@ impl<T: Real> Gap<T> {
         }
     }
 
-    /// `1 / sqrt(1 - eps^2)`.
+    /// Value of `1 / sqrt(1 - eps^2)`.
     #[inline(always)]
     pub(super) fn inverse_root(&self) -> T {
         let inverse = self.root * (self.e2 * self.determinant * self.inverse);
@@ -170,7 +173,7 @@ impl<T: Real> Gap<T> {
     }
 }
 
-/// The slope at `e2 = x^2 + y^2`, well between 0 and 1.
+/// Slope at `e2 = x^2 + y^2`, well between 0 and 1.
 #[inline(always)]
 pub(super) fn slope<T: Real>(
     fb: T,
@@ -187,7 +190,7 @@ pub(super) fn slope<T: Real>(
     }
 }
 
-/// The same, operation by operation.
+/// Slope computed operation by operation.
 #[inline(always)]
 pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, [x, y]: [T; 2], load: T, ub: T) -> [T; 2] {
     let &Gap {
@@ -199,11 +202,11 @@ pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, [x, y]: [T; 2], load: T, ub: T
         inverse,
     } = gap;
     let stiff = d * d * d * inverse;
-    // Fb cos(phi), the asperities' load, Fb (J12/J11) sin(phi).
+    // Fb cos(phi), the asperity load, Fb (J12/J11) sin(phi).
     let along = (fb * x) * d * determinant * inverse * e;
     let across = (fb * T::of(FOUR_OVER_PI)) * y * e2 * determinant * inverse * root;
     let push = along - load - across;
-    // eps'/eps, and phi' in two parts: what the radial motion and what the oil turns.
+    // eps'/eps, and phi' in two parts: from the radial motion and from the rotation of the oil.
     let radial = push * (stiff * e * root);
     let swing = push * (stiff * e2 * T::of(FOUR_OVER_PI));
     let lag = (fb * T::of(FRAC_2_PI)) * y * d * d * determinant * inverse * root - T::of(0.5) * ub;
@@ -224,8 +227,8 @@ mod tests {
         }
     }
 
-    /// At the centre the load squeezes the film straight down, `eps' = (2/pi) Fb`; beyond the edge
-    /// a stage sees what holds at the edge in its direction.
+    /// At the centre the load squeezes the film straight down, `eps' = (2/pi) Fb`. Beyond the edge
+    /// a stage has the slope at the edge in its direction.
     #[test]
     fn a_stage_sees_the_centre_and_the_edge() {
         let law = Journal::<f64>::new(

@@ -1,8 +1,8 @@
-//! The film with derivatives: partial derivatives by its few inputs in plain numbers, joined once
-//! with those that the inputs carry.
+//! Film with derivatives: partial derivatives with respect to its few inputs in plain numbers,
+//! joined once with the derivatives that the inputs carry.
 //!
-//! Operation by operation each of some sixty operations carries every derivative; joined, a slope
-//! carries them through a dozen. With
+//! Computed operation by operation, each of about sixty operations carries all derivatives; joined,
+//! a slope carries them through a dozen. With
 //!
 //! ```text
 //! g = d^(5/2) / (eps D)      h = (4/pi) d^2 / D      q = (2/pi) d^(3/2) / eps^2
@@ -10,8 +10,8 @@
 //! radial = g push            turn = h push - q Fb y + |Ub|/2
 //! ```
 //!
-//! (`d = 1 - eps^2`, `D = pi/2 + (pi - 8/pi) eps^2`) the slope is `radial (x, y) + turn (-y, x)`. The
-//! value is that of [`plain`], to the bit.
+//! (`d = 1 - eps^2`, `D = pi/2 + (pi - 8/pi) eps^2`) the slope is `radial (x, y) + turn (-y, x)`.
+//! The value is identical bit for bit to that of [`plain`].
 
 use super::film_motion::{plain, Asperities, Gap};
 use crate::film::{FOUR_OVER_PI, PI_LESS_8_OVER_PI};
@@ -19,7 +19,7 @@ use crate::friction::Friction;
 use crate::real::Real;
 use core::f64::consts::FRAC_2_PI;
 
-/// The slope of the film at `e2 = x^2 + y^2`.
+/// Slope of the film at `e2 = x^2 + y^2`.
 #[inline(always)]
 pub(super) fn motion<T: Real>(
     fb: T,
@@ -38,7 +38,7 @@ pub(super) fn motion<T: Real>(
     let touch = held.touch(gap.e);
     let touch = if load > 0.0 || !held.part { touch } else { 0.0 };
     let stiffness = 2.0 * held.k0 * touch;
-    // 1/eps^2, 1/d and 1/D out of the one inverse.
+    // 1/eps^2, 1/d and 1/D from the one inverse.
     let by_e2 = gap.d * gap.determinant * gap.inverse;
     let by_d = gap.e2 * gap.determinant * gap.inverse;
     let by_det = gap.e2 * gap.d * gap.inverse;
@@ -51,7 +51,7 @@ pub(super) fn motion<T: Real>(
     let push_fb = x * by_e - FOUR_OVER_PI * y * by_root;
     let push = f * push_fb - load;
     let (radial, turn) = (g * push, h * push - q * f * y + 0.5 * ub.value());
-    // By eps^2, then by x and y, eps^2 among what moves with them.
+    // Derivatives with respect to eps^2, then x and y, which include the change of eps^2.
     let push_e2 =
         -0.5 * (f * x * by_e * by_e2 + stiffness * by_e + FOUR_OVER_PI * f * y * by_root * by_d);
     let radial_e2 = g * push_e2 - radial * (2.5 * by_d + 0.5 * by_e2 + bend);
@@ -62,7 +62,7 @@ pub(super) fn motion<T: Real>(
     let radial_y = g * push_y + 2.0 * y * radial_e2;
     let turn_x = h * push_x + 2.0 * x * turn_e2;
     let turn_y = h * push_y - q * f + 2.0 * y * turn_e2;
-    // What the asperities' load passes on to push, once for both.
+    // Contribution of the asperity load to the push, computed once for both components.
     let pressed = T::joined(
         0.0,
         [
@@ -96,7 +96,7 @@ pub(super) fn motion<T: Real>(
     ]
 }
 
-/// Friction, (3.14), of `f_m`, `gamma (C R/L^2) 2 pi / U_tr` and `1/Fb`.
+/// Friction, (3.14), from `f_m`, `gamma (C R/L^2) 2 pi / U_tr` and `1/Fb`.
 #[inline(always)]
 pub(super) fn sliding<T: Real>(
     [f_m, viscous_s_m, per_load]: [T; 3],
@@ -147,7 +147,7 @@ mod tests {
     fn near(got: &D, exact: &D) {
         assert_eq!(got.value.to_bits(), exact.value.to_bits());
         for (i, (a, b)) in got.slope.iter().zip(&exact.slope).enumerate() {
-            // Differences of large terms: what rounding leaves of the largest.
+            // For differences of large terms the tolerance is the rounding of the largest.
             let size = exact
                 .slope
                 .iter()
@@ -156,7 +156,7 @@ mod tests {
         }
     }
 
-    /// Joined derivatives against those carried through each operation, all inputs free.
+    /// Compares joined derivatives with those carried through each operation, for all inputs.
     #[test]
     fn joined_slopes_are_those_of_every_operation() {
         for (eps, phi, ub) in [

@@ -1,4 +1,4 @@
-//! The reduced Harnoy-Friedland model of a journal bearing, equations (3.14), (3.18), (3.19):
+//! Reduced Harnoy-Friedland model of a journal bearing, equations (3.14), (3.18), (3.19):
 //!
 //! ```text
 //! eps' = (Fb cos(phi) - W + Fb J12 sin(phi)/J11) / (J22 - J12^2/J11)
@@ -7,8 +7,8 @@
 //! f    = [ f_m W sgn(U) + gamma (C R/L^2) 2 pi Ub / sqrt(1 - eps^2) ] / Fb
 //! ```
 //!
-//! The state is held as `x = eps cos(phi)`, `y = eps sin(phi)`: no sine, no cosine, and no
-//! singularity at the centre of the bearing.
+//! The state is stored as `x = eps cos(phi)`, `y = eps sin(phi)`, which avoids sine and cosine and
+//! has no singularity at the centre of the bearing.
 //!
 //! Source: Harnoy & Friedland, Tribology Transactions 37 (1994); Cohn, MS thesis, NJIT (1998),
 //! chapter 3.
@@ -40,40 +40,42 @@ use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use film_motion::{within, Asperities, Film, Gap};
 use parameters::FILM_PARAMETERS;
 
-/// Attitude angle at which a run starts, rad. The film forgets it within a second.
+/// Attitude angle at the start of a run, rad; its influence decays within a second.
 pub const START_PHI_RAD: f64 = 0.15;
 
-/// Lightest load that the law computes with, as a share of the constructor's. (3.20) lets
-/// eps_tr fall with the load, to zero for a lifted bearing: asperities would touch at the
-/// centre, with a stiffness beyond explicit steps. The model has no meaning there.
+/// Lightest load that the law uses, as a share of the constructor's load.
+///
+/// By (3.20) eps_tr falls with the load, to zero for a lifted bearing. Asperities would then touch
+/// at the centre, with a stiffness too high for explicit steps. The model has no meaning there.
 pub const LIGHTEST_SHARE: f64 = 0.01;
 
-/// The law, ready to step.
+/// The law with precomputed constants.
 #[derive(Clone, Copy, Debug)]
 pub struct Journal<T> {
-    /// `Fb` of one newton.
+    /// Load number `Fb` per newton.
     fb_per_n: T,
     pub(crate) f_m: T,
     pub(crate) k0: T,
-    /// `gamma (C R/L^2) 2 pi / U_tr`.
+    /// Viscous factor `gamma (C R/L^2) 2 pi / U_tr`.
     viscous_s_m: T,
     pub(crate) inverse_u_tr: T,
     /// Dimensionless time per second.
     pub(crate) rate: T,
-    /// The load of the constructor and its eps_tr, so that a start costs nothing.
+    /// Load of the constructor and its eps_tr, stored so that a start needs no computation.
     nominal: Loaded<T>,
     clock: Clock,
 }
 
 impl<T: Real> Journal<T> {
-    /// Load number and transition eccentricity under a load; see [`LIGHTEST_SHARE`]
-    /// for a lifted bearing.
+    /// Load number and transition eccentricity under a load; see [`LIGHTEST_SHARE`] for a lifted
+    /// bearing.
     pub fn under(&self, load_n: T) -> Loaded<T> {
         if load_n == self.nominal.load_n {
             return self.nominal;
         }
         let load_number = self.fb_per_n * self.pressed_n(load_n);
-        // A heavy load in single precision rounds eps_tr to one: outside the bearing.
+        // Under a heavy load eps_tr rounds to one in single precision, which is outside the
+        // bearing.
         let eps_tr = transition_eccentricity(load_number).min(T::EPS_LIMIT);
         Loaded {
             load_n,
@@ -83,12 +85,12 @@ impl<T: Real> Journal<T> {
         }
     }
 
-    /// What the constructor's load gave.
+    /// Load number and transition eccentricity under the constructor's load.
     pub fn nominal(&self) -> Loaded<T> {
         self.nominal
     }
 
-    /// The asperities under a load.
+    /// Asperities under a load.
     #[inline(always)]
     fn asperities(&self, loaded: &Loaded<T>) -> Asperities<T> {
         Asperities {
@@ -105,7 +107,7 @@ impl<T: Real> Journal<T> {
         Asperities { k0, eps_tr, part }.load(eps)
     }
 
-    /// Friction at an eccentricity ratio, given with its square, and a speed, (3.14).
+    /// Friction at an eccentricity ratio, given by its square `e2`, and a speed, (3.14).
     #[inline(always)]
     pub(crate) fn sliding(&self, loaded: &Loaded<T>, e2: T, velocity_m_s: T) -> Friction<T> {
         let asperities = self.asperities(loaded);
@@ -126,7 +128,7 @@ impl<T: Real> Journal<T> {
         }
     }
 
-    /// One step with any explicit stepper; [`Law::advance`] uses Runge-Kutta.
+    /// Advances one step with any explicit stepper; [`Law::advance`] uses Runge-Kutta.
     #[inline]
     pub fn advance_with<S: Stepper>(
         &self,
@@ -139,8 +141,8 @@ impl<T: Real> Journal<T> {
         self.advance_inline(stepper, state, speed_m_s, rate, dt_s);
     }
 
-    /// As [`Journal::advance_with`], and part of its caller whatever its size: for loops that are
-    /// compiled for a wider instruction set.
+    /// As [`Journal::advance_with`], always inlined: for loops that are compiled for a wider
+    /// instruction set.
     #[inline(always)]
     pub fn advance_inline<S: Stepper>(
         &self,
@@ -157,13 +159,13 @@ impl<T: Real> Journal<T> {
             from_e2: state.e2,
         };
         let ub = speed_m_s.map(|u| u * self.inverse_u_tr);
-        // Minus zero is the neutral start of a sum: `-0.0 + x` is `x`, and costs nothing.
+        // Minus zero is the neutral start of a sum: `-0.0 + x` is exactly `x`.
         let mut way = [-T::ZERO; 2];
         stepper.step(&film, &mut way, ub, dt_s * rate * self.rate);
         self.moved(state, way);
     }
 
-    /// One step with any implicit stepper.
+    /// Advances one step with any implicit stepper.
     #[inline]
     pub fn advance_stiff_with<S: StiffStepper>(
         &self,
@@ -185,14 +187,14 @@ impl<T: Real> Journal<T> {
         self.moved(state, way);
     }
 
-    /// The end of a step, held inside the bearing.
+    /// Stores the end of a step, limited to the inside of the bearing.
     #[inline(always)]
     fn moved(&self, state: &mut State<T>, way: [T; 2]) {
         let way = [way[0] + state.kept[0], way[1] + state.kept[1]];
         let xy = [state.xy[0] + way[0], state.xy[1] + way[1]];
         let e2 = xy[0] * xy[0] + xy[1] * xy[1];
         let limit = T::EPS_LIMIT * T::EPS_LIMIT;
-        // Compensated summation (Kahan 1965): the rounding of this sum goes into the next.
+        // Compensated summation (Kahan 1965): the rounding error of this sum enters the next.
         let kept = [
             way[0] - (xy[0] - state.xy[0]),
             way[1] - (xy[1] - state.xy[1]),
@@ -206,8 +208,8 @@ impl<T: Real> Journal<T> {
             (state.xy, state.e2, state.kept) = (xy, e2, kept);
             return;
         }
-        // Too coarse a step. A step that lost its numbers altogether leaves the film as it
-        // was; any other is held in its direction.
+        // The step was too coarse. A step without finite values leaves the film unchanged; any
+        // other is limited in its direction.
         state.clamped = state.clamped.saturating_add(1);
         if e2.is_finite() {
             let shrink = self.deepest(&state.loaded) / e2.sqrt();
@@ -215,10 +217,11 @@ impl<T: Real> Journal<T> {
         }
     }
 
-    /// Where a step too coarse is held: at the eccentricity of a journal at rest, whose
-    /// asperities carry the load alone, or where that is too deep (soft asperities) nine
-    /// tenths of the way from eps_tr to the wall. Closer to the wall the film hardly flows,
-    /// and the journal would stay there for hours.
+    /// Eccentricity at which a step that was too coarse is limited.
+    ///
+    /// It is that of a journal at rest, whose asperities alone carry the load. Where that is too
+    /// deep (soft asperities), it is nine tenths of the distance from eps_tr to the wall. Closer to
+    /// the wall the film hardly flows, and the journal would stay there for hours.
     pub(crate) fn deepest(&self, loaded: &Loaded<T>) -> T {
         let at_rest = loaded.eps_tr + (loaded.load_number / self.k0).sqrt();
         let near_wall = loaded.eps_tr + (T::ONE - loaded.eps_tr) * T::of(0.9);
@@ -231,7 +234,7 @@ impl<T: Real> Law<T> for Journal<T> {
 
     const FILM_PARAMETERS: Option<[usize; 2]> = Some(FILM_PARAMETERS);
 
-    /// The square of the eccentricity ratio.
+    /// Square of the eccentricity ratio.
     #[inline(always)]
     fn film(&self, state: &State<T>) -> T {
         state.e2
@@ -248,8 +251,9 @@ impl<T: Real> Law<T> for Journal<T> {
     }
 
     fn longest_step_s(&self, top_speed_m_s: f64) -> f64 {
-        // The fastest rates of the film, 1/s, at eps_tr: the oil carried round with the shaft,
-        // some four times U/R, the load that squeezes the film, and the asperities' push.
+        // The fastest rates of the film, 1/s, at eps_tr. They are those of the oil carried round
+        // with the shaft, about four times U/R, of the load that squeezes the film, and of the
+        // asperities' push.
         let loaded = self.nominal;
         let (rate, fb) = (self.rate.value(), loaded.load_number.value());
         let ub = libm::fabs(top_speed_m_s * self.inverse_u_tr.value());
@@ -259,7 +263,7 @@ impl<T: Real> Law<T> for Journal<T> {
         let squeezing = FRAC_2_PI * fb * d32;
         let stiffness = 2.0 * crate::root::sqrt(fb * self.k0.value());
         let pushing = stiffness * d32 * d / (FRAC_PI_2 + PI_LESS_8_OVER_PI);
-        // Runge-Kutta is stable to 2.8 times the inverse of a rate, exact well below it.
+        // Runge-Kutta is stable up to 2.8 times the inverse of a rate, and accurate well below it.
         1.0 / (rate * (4.0 * ub + squeezing + pushing))
     }
 
@@ -273,8 +277,8 @@ impl<T: Real> Law<T> for Journal<T> {
         self.pressed_n(load_n) / self.nominal.load_n
     }
 
-    /// The scales belong to one load and are one under the constructor's, so that what that gave
-    /// still holds.
+    /// The scales belong to one load and are one under the constructor's load, so its precomputed
+    /// values remain valid.
     #[inline(always)]
     fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
         let slower = T::ONE / scales.transition_speed;
@@ -301,7 +305,7 @@ impl<T: Real> Law<T> for Journal<T> {
 
     #[inline(always)]
     fn friction(&self, state: &State<T>, velocity_m_s: T) -> Friction<T> {
-        // Of the same number as the slope, so that a step and its friction share roots and
+        // Uses the same `e2` as the slope, so that a step and its friction share roots and
         // division.
         self.sliding(&state.loaded, state.e2, velocity_m_s)
     }

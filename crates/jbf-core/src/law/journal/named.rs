@@ -1,4 +1,4 @@
-//! The law's page in the catalogue.
+//! Description of the law in the catalogue.
 
 use super::{Journal, Parameters, PARAMETERS, SUMMARY};
 use crate::bearing::Bearing;
@@ -31,7 +31,7 @@ impl<T: Real> Named<T> for Journal<T> {
     }
 }
 
-/// What both journal laws are built from.
+/// Arguments of both journal laws.
 pub(in crate::law) fn parts<'a, T: Real>(
     bearing: Option<&'a Bearing>,
     load_n: Option<f64>,

@@ -1,14 +1,14 @@
-//! The parameters of the law: the catalogue's page, the printed tables, and the original form
-//! (3.15) of the asperity stiffness.
+//! Parameters of the law: their description, the printed tables, and the original form (3.15) of
+//! the asperity stiffness.
 
 use crate::error::{check, positive, ParameterError};
 use crate::page::{Bound, Parameter};
 
-/// One line for the catalogue.
+/// Physical meaning, in one line, for the catalogue.
 pub const SUMMARY: &str =
     "hydrodynamic journal bearing, boundary to full film (reduced Harnoy-Friedland model)";
 
-/// Names, bounds and starting values of [`Parameters`], in order.
+/// Names, bounds and start values of [`Parameters`], in order.
 pub const PARAMETERS: &[Parameter] = &[
     Parameter::new(
         "f_m",
@@ -45,10 +45,10 @@ pub const PARAMETERS: &[Parameter] = &[
     .log(),
 ];
 
-/// `U_tr_m_s` and `K0`: those that move the film.
+/// Indices of `U_tr_m_s` and `K0`, which affect the film.
 pub(in crate::law) const FILM_PARAMETERS: [usize; 2] = [1, 2];
 
-/// The four numbers that a fit finds.
+/// The four parameters of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T> {
     /// Largest friction coefficient of the asperities, -.
@@ -92,10 +92,10 @@ impl Parameters<f64> {
     };
 }
 
-/// `K0` from the original pair of (3.15): `K0 = kappa0 / (eps_b - eps_tr)`.
+/// Computes `K0` from the original pair of (3.15): `K0 = kappa0 / (eps_b - eps_tr)`.
 ///
 /// # Errors
-/// `kappa0` must be positive, and `eps_b` lie between `eps_tr` and 1.
+/// `kappa0` must be positive, and `eps_b` must lie between `eps_tr` and 1.
 pub fn k0_from_original(kappa0: f64, eps_b: f64, eps_tr: f64) -> Result<f64, ParameterError> {
     positive("kappa0", kappa0)?;
     check(

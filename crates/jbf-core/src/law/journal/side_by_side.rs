@@ -1,14 +1,14 @@
-//! Several laws side by side, each with its film: one array a number, so that a compiler can put
-//! neighbours into the lanes of one register.
+//! Several laws in parallel, each with its film: one array per variable, so that a compiler can
+//! place neighbours in the lanes of one register.
 //!
-//! The physics stays in [`Journal`]; this only sorts the numbers. `T` is meant to be a lane
+//! The physics is in [`Journal`]; this module only arranges the data. `T` is meant to be a lane
 //! ([`Real::SIDE_BY_SIDE`]).
 
 use super::{Journal, Loaded, State};
 use crate::clock::Clock;
 use crate::real::Real;
 
-/// `N` laws and films.
+/// Data of `N` laws and films.
 #[derive(Clone, Copy, Debug)]
 pub struct SideBySide<T, const N: usize> {
     fb_per_n: [T; N],
@@ -29,14 +29,14 @@ pub struct SideBySide<T, const N: usize> {
     clamped: [u32; N],
 }
 
-/// The same number of another kind.
+/// Converts a value to another number type.
 #[inline(always)]
 fn as_kind<S: Real, T: Real>(value: S) -> T {
     T::of(value.value())
 }
 
 impl<T: Real, const N: usize> SideBySide<T, N> {
-    /// From laws and films of a kind of the same precision.
+    /// Creates the arrays from laws and films of a number type of the same precision.
     pub fn new<S: Real>(laws: &[Journal<S>; N], films: &[State<S>; N]) -> Self {
         let law = |pick: fn(&Journal<S>) -> S| core::array::from_fn(|i| as_kind(pick(&laws[i])));
         let film = |pick: fn(&State<S>) -> S| core::array::from_fn(|i| as_kind(pick(&films[i])));
@@ -60,8 +60,8 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         }
     }
 
-    /// Law number `i`; for stepping only: its nominal load is that of the film, and its clock is
-    /// in its rate.
+    /// Law number `i`, for stepping only: its nominal load is that of the film, and its rate
+    /// includes its clock.
     #[inline(always)]
     pub fn law(&self, i: usize) -> Journal<T> {
         Journal {
@@ -98,7 +98,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         }
     }
 
-    /// Film number `i` as a number that stands alone.
+    /// Film number `i` in a scalar number type.
     pub fn film_alone<S: Real>(&self, i: usize) -> State<S> {
         let film = self.film(i);
         State {
@@ -115,7 +115,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         }
     }
 
-    /// Take back film number `i`, under the load that it had.
+    /// Stores film number `i`, under the load that it had.
     #[inline(always)]
     pub fn put<S: Real>(&mut self, i: usize, film: &State<S>) {
         self.x[i] = as_kind(film.xy[0]);
@@ -126,7 +126,7 @@ impl<T: Real, const N: usize> SideBySide<T, N> {
         self.clamped[i] = film.clamped;
     }
 
-    /// How often the films were held inside the bearing, or have to be.
+    /// Number of times each film was limited to the inside of the bearing, or must be.
     #[inline(always)]
     pub fn clamped(&self) -> [u32; N] {
         self.clamped

@@ -1,8 +1,8 @@
-//! The state of the film, and what of the law depends on the load.
+//! State of the film, and the load-dependent quantities of the law.
 
 use crate::real::Real;
 
-/// What depends on the load.
+/// Load-dependent quantities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loaded<T> {
     pub(crate) load_n: T,
@@ -14,29 +14,29 @@ pub struct Loaded<T> {
 }
 
 impl<T: Real> Loaded<T> {
-    /// The load, N.
+    /// Load, N.
     pub fn load_n(&self) -> T {
         self.load_n
     }
 }
 
-/// The film now.
+/// Present state of the film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
     pub(super) xy: [T; 2],
-    /// `x^2 + y^2`, as the last step left it.
+    /// Value of `x^2 + y^2` after the last step.
     pub(super) e2: T,
-    /// What rounding kept out of `xy` so far: without it a single-precision film that creeps,
-    /// or takes short steps, stands still.
+    /// Accumulated rounding error of `xy`. Without it a single-precision film that creeps, or takes
+    /// short steps, would not move.
     pub(super) kept: [T; 2],
     pub(super) loaded: Loaded<T>,
-    /// How often a step had to be held inside the bearing, because `dt_s` was too coarse
-    /// or the input not finite.
+    /// Number of steps that were limited to the inside of the bearing, because `dt_s` was too
+    /// coarse or the input not finite.
     pub clamped: u32,
 }
 
 impl<T: Real> State<T> {
-    /// A state at a given eccentricity ratio and attitude angle (rad).
+    /// State at a given eccentricity ratio and attitude angle (rad).
     pub fn at(eps: T, phi_rad: T, loaded: Loaded<T>) -> Self {
         let mut state = Self {
             xy: [T::ZERO; 2],
@@ -49,7 +49,7 @@ impl<T: Real> State<T> {
         state
     }
 
-    /// Put the journal somewhere, exactly.
+    /// Sets the position of the journal exactly.
     pub(super) fn put(&mut self, xy: [T; 2]) {
         self.xy = xy;
         self.e2 = xy[0] * xy[0] + xy[1] * xy[1];
@@ -62,7 +62,7 @@ impl<T: Real> State<T> {
         self.e2.sqrt()
     }
 
-    /// `eps cos(phi)` and `eps sin(phi)`.
+    /// Position `eps cos(phi)` and `eps sin(phi)`.
     #[inline]
     pub fn xy(&self) -> [T; 2] {
         self.xy

@@ -1,4 +1,4 @@
-//! The Stribeck curve: steady states of the law, (3.5) and (3.6).
+//! Stribeck curve: steady states of the law, (3.5) and (3.6).
 
 use super::Journal;
 use crate::error::{check, ParameterError};

@@ -1,4 +1,4 @@
-//! Building the law.
+//! Construction of the law.
 
 use super::JournalFull;
 use crate::bearing::Bearing;
@@ -8,7 +8,7 @@ use crate::law::journal::{Journal, Parameters};
 use crate::real::Real;
 
 impl<T: Real> JournalFull<T> {
-    /// Check the numbers once and fold the constants together.
+    /// Checks the numbers and precomputes the constants.
     ///
     /// # Errors
     /// Names the first number that is not positive and finite.

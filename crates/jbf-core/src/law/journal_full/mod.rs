@@ -1,4 +1,4 @@
-//! The full Harnoy-Friedland model of a journal bearing, the journal's inertia included,
+//! Full Harnoy-Friedland model of a journal bearing, including the inertia of the journal,
 //! equations (3.7), (3.8) and (3.14); a dot is d/d(tbar):
 //!
 //! ```text
@@ -7,22 +7,25 @@
 //! ```
 //!
 //! These are Newton's law in polar coordinates: the two terms in `mb phi'` are those of an
-//! acceleration seen in a turning frame. With `r = (eps cos(phi), eps sin(phi))` and the load
-//! along x they say
+//! acceleration in a rotating frame. With `r = (eps cos(phi), eps sin(phi))` and the load along x
+//! they become
 //!
 //! ```text
 //! mb r'' = Fb x - W r/eps - D (r' - (|Ub|/2) z cross r),   D = [ J22  J12 ]  in the frame of r,
 //!                                                              [ J12  J11 ]
 //! ```
 //!
-//! which is how [`motion`] has them (derived anew: the printed equations are right). The state
-//! is `(x, y)` and its rate. Why not eps and phi: no sine or cosine in a step, no singularity at
-//! the centre, no terms in `mb phi'` that would couple the fast variables, and `D` stays
-//! symmetric and positive, so that the linear system of an implicit step, `mb s I + D + K/s`
-//! (`s` of the order of one over the step, `K` the stiffness of film and asperities), has good
-//! pivots for every mass, down to none.
+//! which is the form in [`motion`] (derived independently: the printed equations are right). The
+//! state is `(x, y)` and its rate, not eps and phi, for these reasons:
 //!
-//! The two rates fall onto the reduced model's within `mb/J11`, some ten microseconds: an
+//! - A step has no sine or cosine.
+//! - There is no singularity at the centre.
+//! - There are no terms in `mb phi'` that would couple the fast variables.
+//! - `D` stays symmetric and positive. The linear system of an implicit step, `mb s I + D + K/s`,
+//!   then has good pivots for every mass, down to zero. Here `s` is of the order of the inverse
+//!   step and `K` is the stiffness of film and asperities.
+//!
+//! The two rates relax to those of the reduced model within `mb/J11`, about ten microseconds. An
 //! explicit step would have to be shorter than that. The law's own stepper is [`Rodas3`].
 //!
 //! Source: Harnoy & Friedland, Tribology Transactions 37 (1994); Cohn, MS thesis, NJIT (1998),
@@ -43,14 +46,19 @@ use crate::real::Real;
 use crate::stepper::{Rodas3, StiffStepper};
 use motion::FullFilm;
 
-/// Where a step is cut in three while the rates fall onto the film's: at a start and after a
-/// jump of the load. In one step of 2 ms the fall would cost 2e-4 of the friction's peak, in three 6e-7.
+/// Fractions at which a step is split in three while the rates relax to those of the film: at a
+/// start and after a jump of the load.
+///
+/// In one step of 2 ms the relaxation would cost an error of 2e-4 of the friction's peak, in three
+/// 6e-7.
 const CUTS: [f64; 2] = [0.05, 0.2];
 
-/// A change of the load by more than this share is a jump.
+/// Relative change of the load above which it counts as a jump.
 const JUMP: f64 = 0.01;
 
-/// The law, ready to step. Parameters are those of [`Journal`]; the mass is the bearing's.
+/// The law with precomputed constants.
+///
+/// Its parameters are those of [`Journal`]; the mass is that of the bearing.
 #[derive(Clone, Copy, Debug)]
 pub struct JournalFull<T> {
     pub(crate) film: Journal<T>,
@@ -58,12 +66,12 @@ pub struct JournalFull<T> {
 }
 
 impl<T: Real> JournalFull<T> {
-    /// The same film without the journal's inertia.
+    /// Film without the inertia of the journal.
     pub fn reduced(&self) -> &Journal<T> {
         &self.film
     }
 
-    /// One step with any implicit stepper; [`Law::advance`] uses [`Rodas3`].
+    /// Advances one step with any implicit stepper; [`Law::advance`] uses [`Rodas3`].
     #[inline]
     pub fn advance_with<S: StiffStepper>(
         &self,
@@ -110,14 +118,15 @@ impl<T: Real> JournalFull<T> {
         let sound = e2.is_finite() && vx.is_finite() && vy.is_finite();
         let limit = T::EPS_LIMIT;
         if sound && e2.value() <= (limit * limit).value() {
-            // Compensated summation (Kahan 1965): the rounding of this sum goes into the next.
+            // Compensated summation (Kahan 1965): the rounding error of this sum enters the next.
             state.kept = [wx - (xy[0] - state.xy[0]), wy - (xy[1] - state.xy[1])];
             state.xy = xy;
             state.velocity = [vx, vy];
             return;
         }
-        // Too coarse a step. One that lost its numbers leaves the film where it was; any other
-        // is held in its direction. The film takes up any velocity at once, so none is kept.
+        // The step was too coarse. A step without finite values leaves the film unchanged; any
+        // other is limited in its direction. The film adopts any velocity immediately, so the
+        // velocity is reset.
         state.clamped = state.clamped.saturating_add(1);
         state.velocity = [T::ZERO; 2];
         if sound {
@@ -141,7 +150,7 @@ impl<T: Real> Law<T> for JournalFull<T> {
         State::at(loaded.eps_tr, T::of(START_PHI_RAD), loaded)
     }
 
-    /// The implicit stepper is stable at any step; the film's own pace asks for this one.
+    /// The implicit stepper is stable at any step; accuracy for the film requires this one.
     fn longest_step_s(&self, top_speed_m_s: f64) -> f64 {
         self.film.longest_step_s(top_speed_m_s)
     }
@@ -156,7 +165,7 @@ impl<T: Real> Law<T> for JournalFull<T> {
         self.film.load_share(load_n)
     }
 
-    /// The mass number goes with U_tr.
+    /// The mass number is proportional to U_tr.
     #[inline]
     fn scaled(&self, scales: &Scales<T>) -> Option<Self> {
         Some(Self {

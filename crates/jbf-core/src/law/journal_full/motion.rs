@@ -1,5 +1,6 @@
-//! The equations of motion of the journal in its film as a system of four states, `(x, y)` and
-//! its rate, driven by `|Ub|`, with their derivatives.
+//! Equations of motion of the journal in its film, with their derivatives.
+//!
+//! They are a system of four states, `(x, y)` and its rate, driven by `|Ub|`.
 
 use super::JournalFull;
 use crate::film::FilmIntegrals;
@@ -16,15 +17,17 @@ pub struct FullFilm<T> {
     load_number: T,
     eps_tr: T,
     k0: T,
-    /// `x` and `y` where the step began: the state is the way from there, which single
-    /// precision resolves far better than the place itself.
+    /// Values of `x` and `y` at the start of the step. The state is the displacement from there,
+    /// which single precision resolves far better than the position.
     from: [T; 2],
-    /// Hold every stage inside the bearing, and part the asperities below eps_tr.
+    /// If true, limits every stage to the inside of the bearing, and removes asperity contact below
+    /// eps_tr.
     held: bool,
 }
 
 impl<T: Real> FullFilm<T> {
-    /// The law itself, for a loop: any stage of any step gives finite numbers.
+    /// Creates the system of the law itself, for a loop: any stage of any step gives finite
+    /// numbers.
     pub(crate) fn held(law: &JournalFull<T>, loaded: &Loaded<T>, from: [T; 2]) -> Self {
         Self {
             inverse_mass: law.inverse_mass_number,
@@ -36,8 +39,10 @@ impl<T: Real> FullFilm<T> {
         }
     }
 
-    /// With its asperities in touch, or free of them, whatever the eccentricity: smooth where
-    /// the law has the kink of `W`. Outside the bearing its numbers are not finite.
+    /// Creates the system with or without asperity contact, at any eccentricity.
+    ///
+    /// It is smooth where the law has the kink of `W`. Outside the bearing its values are not
+    /// finite.
     pub(crate) fn smooth(law: &JournalFull<T>, loaded: &Loaded<T>, touching: bool) -> Self {
         Self {
             k0: if touching { law.film.k0 } else { T::ZERO },
@@ -81,12 +86,12 @@ impl<T: Real> System<T, 4> for FullFilm<T> {
         let (e, fb) = (at.e, self.load_number);
         let d = (T::ONE - e) * (T::ONE + e);
         let inverse_d = T::ONE / d;
-        // The integrals of (3.11) to (3.13) from one root and one division.
+        // Integrals of (3.11) to (3.13) from one root and one division.
         let j11 = T::of(FRAC_PI_2) * d.sqrt() * inverse_d * inverse_d;
         let j12 = T::of(-2.0) * e * inverse_d * inverse_d;
         let j22 = j11 * inverse_d * (T::ONE + T::of(2.0) * e * e);
         let radial = vx * at.cos + vy * at.sin;
-        // Tangential velocity against that of oil that turns at half the journal's speed.
+        // Tangential velocity relative to oil that rotates at half the journal's speed.
         let slip = vy * at.cos - vx * at.sin - T::of(0.5) * e * ub;
         let touch = self.touch(e);
         let outward = fb * at.cos - self.k0 * touch * touch - j22 * radial - j12 * slip;
@@ -99,8 +104,9 @@ impl<T: Real> System<T, 4> for FullFilm<T> {
 impl<T: Real> StiffSystem<T, 4> for FullFilm<T> {
     type Solver = SecondOrder<T>;
 
-    /// As [`System::slope`], with the derivatives of each force by eps and, the velocity held,
-    /// by phi: `radial' = tangential velocity`, `slip' = -radial`.
+    /// Computes [`System::slope`] and the derivatives of each force with respect to eps and phi.
+    ///
+    /// For phi the velocity is held constant: `radial' = tangential velocity`, `slip' = -radial`.
     #[inline]
     fn linearise(&self, state: &[T; 4], ub: T) -> Linear<T, 4> {
         let at = self.polar(state);

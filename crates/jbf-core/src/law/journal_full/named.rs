@@ -30,7 +30,7 @@ impl<T: Real> Named<T> for JournalFull<T> {
 }
 
 impl SteadyCurve for JournalFull<f64> {
-    /// Inertia plays no part in a steady state: the curve is the reduced model's.
+    /// Inertia has no influence on a steady state: the curve is that of the reduced model.
     fn steady_n(&self, velocity_m_s: f64) -> Result<f64, ParameterError> {
         self.film.steady_n(velocity_m_s)
     }

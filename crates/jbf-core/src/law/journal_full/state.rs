@@ -1,26 +1,26 @@
-//! The state of the full model.
+//! State of the full model.
 
 use crate::law::journal::Loaded;
 use crate::real::Real;
 
-/// Place and velocity of the journal's centre.
+/// Position and velocity of the journal centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
     pub(super) xy: [T; 2],
-    /// What rounding kept out of `xy` so far.
+    /// Accumulated rounding error of `xy`.
     pub(super) kept: [T; 2],
-    /// Rate of `xy`, per unit of dimensionless time.
+    /// Rate of change of `xy`, per unit of dimensionless time.
     pub(super) velocity: [T; 2],
     pub(super) loaded: Loaded<T>,
-    /// The rates have not yet met this load: the next step must follow their fall.
+    /// True if the rates have not yet relaxed under this load; the next step must resolve it.
     pub(super) fresh: bool,
-    /// How often a step had to be held inside the bearing, because `dt_s` was too coarse
-    /// or the input not finite.
+    /// Number of steps that were limited to the inside of the bearing, because `dt_s` was too
+    /// coarse or the input not finite.
     pub clamped: u32,
 }
 
 impl<T: Real> State<T> {
-    /// At rest at a given eccentricity ratio and attitude angle (rad).
+    /// State at rest at a given eccentricity ratio and attitude angle (rad).
     pub fn at(eps: T, phi_rad: T, loaded: Loaded<T>) -> Self {
         Self {
             xy: [eps * phi_rad.cos(), eps * phi_rad.sin()],
@@ -38,13 +38,13 @@ impl<T: Real> State<T> {
         (self.xy[0] * self.xy[0] + self.xy[1] * self.xy[1]).sqrt()
     }
 
-    /// `eps cos(phi)` and `eps sin(phi)`.
+    /// Position `eps cos(phi)` and `eps sin(phi)`.
     #[inline]
     pub fn xy(&self) -> [T; 2] {
         self.xy
     }
 
-    /// Their rates, per unit of dimensionless time.
+    /// Rate of change of the position, per unit of dimensionless time.
     #[inline]
     pub fn velocity(&self) -> [T; 2] {
         self.velocity

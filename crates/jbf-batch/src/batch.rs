@@ -1,4 +1,4 @@
-//! The batch: laws and a method here, films in [`Films`], the motion with each call.
+//! The batch: laws and a method; films are in [`Films`], and the motion is passed with each call.
 
 use crate::lane::Float;
 use crate::part::{self, Block, Out, LANES};
@@ -8,32 +8,32 @@ use jbf_core::law::journal::{Journal, State};
 use jbf_core::law::Law;
 use rayon::prelude::*;
 
-/// How a step is taken.
+/// Integration method of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Explicit Euler, as the thesis's loop.
+    /// Explicit Euler method, as in the thesis's loop.
     #[default]
     Euler,
-    /// The classical Runge-Kutta method of order four.
+    /// Classical Runge-Kutta method of order four.
     Rk4,
 }
 
-/// Many laws to be stepped together.
+/// Laws that are stepped together.
 #[derive(Clone, Debug)]
 pub struct Batch<F> {
     laws: Vec<Journal<F>>,
-    /// How a step is taken.
+    /// Integration method of a step.
     pub method: Method,
-    /// Instruction set; the best that the machine has, unless a test asks for another.
+    /// Instruction set: the best of the machine, unless a test selects another.
     pub simd: Simd,
 }
 
-/// The films of a batch.
+/// Films of a batch.
 #[derive(Clone, Debug)]
 pub struct Films<F>(pub Vec<State<F>>);
 
 impl<F: Float> Batch<F> {
-    /// Laws to be stepped together by `method`.
+    /// Creates a batch of laws that are stepped together by `method`.
     pub fn new(laws: Vec<Journal<F>>, method: Method) -> Self {
         Self {
             laws,
@@ -42,16 +42,17 @@ impl<F: Float> Batch<F> {
         }
     }
 
-    /// Films at the start of a run, each under the load of its law's constructor.
+    /// Returns the films at the start of a run, each under the load of its law's constructor.
     pub fn start(&self) -> Films<F> {
         let film = |law: &Journal<F>| law.start(law.nominal().load_n());
         Films(self.laws.iter().map(film).collect())
     }
 
-    /// Friction coefficients at every sample: `out` has a row a sample, a place a set.
+    /// Computes the friction coefficients at every sample into `out`, with one row per sample and
+    /// one column per set.
     ///
     /// # Panics
-    /// Where `out`, `films` and `speeds` do not fit together.
+    /// If the sizes of `out`, `films` and `speeds` do not match.
     pub fn friction(&self, films: &mut Films<F>, speeds: &Speeds<'_, F>, dt_s: F, out: &mut [F]) {
         let sets = self.laws.len();
         assert_eq!(out.len(), speeds.len() * sets, "out: samples x sets");
@@ -72,10 +73,10 @@ impl<F: Float> Batch<F> {
         self.run(films, speeds, dt_s, &parts, outs);
     }
 
-    /// Sum over the samples of `(friction - data)^2`, one a set; nothing else is stored.
+    /// Sum over the samples of `(friction - data)^2`, one per set, without storing the friction.
     ///
     /// # Panics
-    /// Where `data`, `films` and `speeds` do not fit together.
+    /// If the sizes of `data`, `films` and `speeds` do not match.
     pub fn squares(
         &self,
         films: &mut Films<F>,
@@ -89,7 +90,7 @@ impl<F: Float> Batch<F> {
         self.run(films, speeds, dt_s, &parts, outs)
     }
 
-    /// First and last set of each part: whole blocks, a few parts a thread.
+    /// First set and end of each part: whole blocks, a few parts per thread.
     fn parts(&self) -> Vec<(usize, usize)> {
         let sets = self.laws.len();
         let blocks = sets.div_ceil(LANES);
@@ -134,7 +135,7 @@ impl<F: Float> Batch<F> {
         sums
     }
 
-    /// Sets `first..end` in blocks; the last one is filled up with copies of its last set.
+    /// Sets `first..end` in blocks; the last block is filled up with copies of its last set.
     fn blocks(&self, films: &Films<F>, first: usize, end: usize) -> Vec<Block<F>> {
         (first..end)
             .step_by(LANES)

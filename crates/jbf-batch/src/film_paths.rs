@@ -1,4 +1,4 @@
-//! The paths of several films, each along a motion of its own, in lanes.
+//! Paths of several films in lanes, each along its own motion.
 
 use crate::lane::Lane;
 use crate::simd::Simd;
@@ -10,19 +10,24 @@ use jbf_core::Real;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 
-/// Films in one block: one register of AVX-512, which roots and divisions keep busy by themselves; and
-/// of few films of unlike lengths few wait for others.
+/// Number of films in one block: one register of AVX-512.
+///
+/// Roots and divisions keep one register busy. With few films of different lengths, few lanes wait
+/// for others.
 const LANES: usize = 8;
 
-/// Steps sorted into lanes at a time.
+/// Number of steps that are sorted into lanes at a time.
 const TILE: usize = 64;
 
-/// Square of the eccentricity ratio after every step, of each film; none of a film that a step carried
-/// out of its bearing, where it must be stepped alone ([`Real::SIDE_BY_SIDE`]).
+/// Square of the eccentricity ratio after every step, for each film.
 ///
-/// The load of a film is that of its first step. The bits are those of [`Law::advance`].
+/// It is `None` for a film that a step carried out of its bearing; such a film must be stepped in a
+/// scalar type ([`Real::SIDE_BY_SIDE`]).
+///
+/// The load of a film is that of its first step. The result is identical bit for bit to that of
+/// [`Law::advance`].
 pub fn film_paths(films: &[(Journal<f64>, &[FilmStep])], simd: Simd) -> Vec<Option<Vec<f64>>> {
-    // Neighbours of one length waste no lanes.
+    // Neighbours of similar length waste no lanes.
     let mut order: Vec<usize> = (0..films.len()).collect();
     order.sort_by_key(|&i| Reverse(films[i].1.len()));
     let blocks: Vec<&[usize]> = order.chunks(LANES).collect();
@@ -44,7 +49,9 @@ pub fn film_paths(films: &[(Journal<f64>, &[FilmStep])], simd: Simd) -> Vec<Opti
     paths
 }
 
-/// At least one film and at most [`LANES`], the longest first; the lanes beyond them repeat the last.
+/// Integrates at least one film and at most [`LANES`], the longest first.
+///
+/// The remaining lanes repeat the last film.
 #[inline(always)]
 fn side_by_side(films: &[(Journal<f64>, &[FilmStep])]) -> Vec<Option<Vec<f64>>> {
     let film = |i: usize| films[i.min(films.len() - 1)];
@@ -70,11 +77,12 @@ fn side_by_side(films: &[(Journal<f64>, &[FilmStep])]) -> Vec<Option<Vec<f64>>> 
         .collect()
 }
 
-/// The steps from `begin` on; a film that has come to its end stays where it is, in steps of no
-/// length.
+/// Sorts the steps from `begin` on into lanes.
 ///
-/// A function of its own, as the next: wide instructions make gathers of it, which cost more than
-/// all the steps.
+/// A film at its end stays at its position, in steps of zero length.
+///
+/// It is a separate function, as is the next: wide instructions would turn it into gathers, which
+/// cost more than all the steps.
 #[inline(never)]
 fn sort_in(
     asked: &mut [[[f64; LANES]; 4]; TILE],
@@ -86,7 +94,7 @@ fn sort_in(
         let mut values = [0.0; 4];
         for lane in 0..LANES {
             let steps = films.get(lane).map_or(last, |f| f.1);
-            // Neighbours that go along one motion ask once.
+            // Neighbours along the same motion are read once.
             if !std::ptr::eq(steps, last) {
                 last = steps;
                 values = steps.get(begin + k).map_or([0.0; 4], |s| {
@@ -101,7 +109,7 @@ fn sort_in(
     }
 }
 
-/// The films' places of a tile that begins at `begin`.
+/// Sorts the results of a tile that begins at `begin` into the paths of the films.
 #[inline(never)]
 fn sort_out(found: &[[f64; LANES]; TILE], paths: &mut [Vec<f64>], begin: usize) {
     for (lane, path) in paths.iter_mut().enumerate() {
@@ -111,7 +119,7 @@ fn sort_out(found: &[[f64; LANES]; TILE], paths: &mut [Vec<f64>], begin: usize) 
     }
 }
 
-/// One step of every film.
+/// Advances every film by one step.
 #[inline(always)]
 fn step(
     lanes: &mut SideBySide<Lane<f64>, LANES>,

@@ -1,7 +1,7 @@
-//! One lane of a vector: a plain number whose square root the compiler can see through.
+//! One lane of a vector: a plain number with a square root that the compiler can vectorise.
 //!
-//! IEEE 754 rounds a square root correctly, so `std`'s and `libm`'s have the same bits; but
-//! `libm`'s is a piece of assembly, one number at a time.
+//! IEEE 754 rounds a square root correctly, so those of `std` and `libm` have the same bits. That
+//! of `libm` is assembly code for one number at a time.
 
 use core::cmp::Ordering;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -12,9 +12,9 @@ use jbf_core::Real;
 #[repr(transparent)]
 pub struct Lane<F>(pub F);
 
-/// The kinds of number that a lane can hold.
+/// Number types that a lane can hold.
 pub trait Float: Real + Send + Sync + Default {
-    /// `std`'s square root.
+    /// Square root of `std`.
     fn root(self) -> Self;
 }
 

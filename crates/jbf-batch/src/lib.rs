@@ -1,10 +1,10 @@
-//! Many parameter sets of the journal law side by side: a fit's many starts, a sweep, a cloud of
-//! samples.
+//! Parallel evaluation of many parameter sets of the journal law: multiple starts of a fit, a
+//! sweep, a set of samples.
 //!
-//! Neighbouring sets share a register, the instruction set (SSE2, AVX2, AVX-512) is chosen at run
-//! time, and blocks of sets go to all cores. The answer has the same bits on any number of
-//! threads and any instruction set, and those of [`jbf_core`] stepping one set after the other:
-//! the physics is the same code, over a [`Lane`].
+//! Neighbouring sets share a register, the instruction set (SSE2, AVX2, AVX-512) is selected at run
+//! time, and blocks of sets are distributed to all cores. The result is identical bit for bit for
+//! any number of threads and any instruction set. It equals that of [`jbf_core`] stepping one set
+//! after the other: the physics is the same code, over a [`Lane`].
 //!
 //! ```
 //! use jbf_batch::{Batch, Method, Speeds};
@@ -24,7 +24,7 @@
 //! # Ok::<(), ParameterError>(())
 //! ```
 //!
-//! [`film_paths`] steps a few films, each along a motion of its own.
+//! [`film_paths`] integrates a few films, each along its own motion.
 
 #![deny(missing_docs)]
 

@@ -1,5 +1,5 @@
-//! What one thread steps: some blocks of lanes, a tile of steps at a time, so that the rows that
-//! are written stay in the nearest cache.
+//! Work of one thread: some blocks of lanes, one tile of steps at a time, so that the rows that are
+//! written stay in the nearest cache.
 
 use crate::batch::Method;
 use crate::lane::{Float, Lane};
@@ -10,11 +10,11 @@ use jbf_core::stepper::{Euler, Rk4, Stepper};
 use jbf_core::Real;
 use std::ops::Range;
 
-/// Sets in one block: four full registers of AVX-512 in double precision, so that each hides
-/// the others' latency.
+/// Number of sets in one block: four full registers of AVX-512 in double precision, so that each
+/// hides the latency of the others.
 pub(crate) const LANES: usize = 32;
 
-/// Steps between two looks at the clamps.
+/// Number of steps between two checks for lanes outside the bearing.
 const TILE: usize = 64;
 
 /// Neighbouring sets and their films.
@@ -41,8 +41,8 @@ impl<F: Float> Block<F> {
         self.lanes.film_alone(lane)
     }
 
-    /// Samples `begin..end` again, one set after the other: a lane left the bearing and has to
-    /// be held.
+    /// Repeats samples `begin..end` one set after the other, after a lane left the bearing and must
+    /// be limited.
     #[cold]
     #[inline(never)]
     fn alone<S: Stepper>(
@@ -69,16 +69,16 @@ impl<F: Float> Block<F> {
     }
 }
 
-/// Where the friction goes.
+/// Destination of the friction.
 pub(crate) enum Out<'a, F> {
-    /// One slice a sample, one place a set.
+    /// One slice per sample, one element per set.
     Rows(Vec<&'a mut [F]>),
-    /// Sum of squared distances from these, one a sample.
+    /// Sum of squared deviations from these values, one per sample.
     Squares(&'a [F]),
 }
 
 impl<F: Float> Out<'_, F> {
-    /// Take a tile of the block whose first set stands at `place`.
+    /// Stores a tile of the block whose first set has index `place`.
     #[inline(always)]
     fn take(
         &mut self,
@@ -111,7 +111,7 @@ impl<F: Float> Out<'_, F> {
     }
 }
 
-/// All blocks of a part along the whole motion.
+/// Runs all blocks of a part along the whole motion.
 #[inline(always)]
 pub(crate) fn run<F: Float>(
     blocks: &mut [Block<F>],
@@ -178,7 +178,7 @@ fn tiles<F: Float, C: Course<F>, S: Stepper>(
     }
 }
 
-/// |U| at the start, middle and end of a step: straight lines between samples.
+/// Speed |U| at the start, middle and end of a step, linear between samples.
 #[inline(always)]
 fn ends<T: Real>(from: T, to: T) -> [T; 3] {
     [from.abs(), ((from + to) * T::of(0.5)).abs(), to.abs()]
@@ -198,7 +198,7 @@ fn friction_of<F: Float>(
     }
 }
 
-/// Friction of every lane now, then one step: together, for they share their roots.
+/// Friction of every lane now, followed by one step; combined because they share their roots.
 #[inline(always)]
 fn step<F: Float, S: Stepper>(
     lanes: &mut SideBySide<Lane<F>, LANES>,

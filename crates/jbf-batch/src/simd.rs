@@ -1,17 +1,17 @@
-//! The instruction set, chosen at run time.
+//! Instruction set, selected at run time.
 //!
-//! Lanes never meet and nothing is contracted (no fused multiply-add), so every choice gives the
-//! same bits.
+//! Lanes are independent and nothing is contracted (no fused multiply-add), so every selection
+//! gives the same bits.
 
 use core::fmt::Debug;
 
-/// An instruction set as a type, for code that is compiled once for each set.
+/// An instruction set as a type, for code that is compiled once per set.
 pub trait InstructionSet: Copy + Debug + Send + Sync {
-    /// Call `work` as a function of its own, everything inlined into it compiled for this set.
+    /// Calls `work` as a separate function; all code inlined into it is compiled for this set.
     fn call<R>(self, work: impl FnOnce() -> R) -> R;
 }
 
-/// What every machine of the target has (SSE2 on x86-64).
+/// Baseline instruction set of the target (SSE2 on x86-64).
 #[derive(Clone, Copy, Debug)]
 pub struct Baseline;
 
@@ -38,10 +38,10 @@ impl InstructionSet for pulp::x86::V4 {
     }
 }
 
-/// Which instructions the lanes run on.
+/// Instruction set of the lanes.
 #[derive(Clone, Copy, Debug)]
 pub enum Simd {
-    /// What every machine of the target has (SSE2 on x86-64).
+    /// Baseline instruction set of the target (SSE2 on x86-64).
     Baseline,
     /// AVX2: four numbers of double precision.
     #[cfg(all(feature = "wide", target_arch = "x86_64"))]
@@ -52,7 +52,7 @@ pub enum Simd {
 }
 
 impl Simd {
-    /// Every choice that this machine has, best first.
+    /// Instruction sets that this machine supports, best first.
     pub fn available() -> Vec<Self> {
         #[cfg(all(feature = "wide", target_arch = "x86_64"))]
         let wide = [
@@ -64,12 +64,12 @@ impl Simd {
         wide.into_iter().flatten().chain([Self::Baseline]).collect()
     }
 
-    /// The best that this machine has.
+    /// Best instruction set that this machine supports.
     pub fn best() -> Self {
         Self::available()[0]
     }
 
-    /// Its name.
+    /// Name of the instruction set.
     pub fn name(self) -> &'static str {
         match self {
             Self::Baseline => "baseline",
@@ -80,7 +80,7 @@ impl Simd {
         }
     }
 
-    /// Run `work`, everything inlined into it compiled for this instruction set.
+    /// Runs `work`; all code inlined into it is compiled for this instruction set.
     #[inline(always)]
     pub fn dispatch<R>(self, work: impl FnOnce() -> R) -> R {
         match self {

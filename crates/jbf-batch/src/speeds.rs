@@ -1,24 +1,24 @@
-//! The imposed motion: one for all sets, or one a set.
+//! Imposed motion: one for all sets, or one per set.
 
 use crate::lane::Float;
 use crate::part::LANES;
 
-/// Surface speed, m/s, at samples one step apart.
+/// Surface speed, m/s, at equally spaced samples.
 #[derive(Clone, Copy, Debug)]
 pub enum Speeds<'a, F> {
     /// One motion for every set.
     Common(&'a [F]),
-    /// One motion a set: row by row, a row for each sample, `sets` values wide.
+    /// One motion per set, in rows: one row per sample, with `sets` values.
     Each {
-        /// The rows.
+        /// Rows of speeds.
         rows: &'a [F],
-        /// Values in a row.
+        /// Number of values in a row.
         sets: usize,
     },
 }
 
 impl<F: Float> Speeds<'_, F> {
-    /// Samples.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         match self {
             Self::Common(speeds) => speeds.len(),
@@ -26,20 +26,19 @@ impl<F: Float> Speeds<'_, F> {
         }
     }
 
-    /// True for no sample at all.
+    /// True if there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// The speeds of one block: what the inner loop sees of [`Speeds`], so that a common speed is
-/// one number to it.
+/// Speeds of one block, as seen by the inner loop; a common speed is a single number.
 pub(crate) trait Course<F> {
     /// Speed of each lane at a sample.
     fn at(&self, sample: usize) -> impl Fn(usize) -> F + Copy;
 }
 
-/// Every lane alike.
+/// The same speed in every lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Alike<'a, F>(pub(crate) &'a [F]);
 
@@ -52,7 +51,7 @@ impl<F: Float> Course<F> for Alike<'_, F> {
     }
 }
 
-/// Each lane its own; lanes without a set rest.
+/// A separate speed in each lane; lanes without a set are at rest.
 #[derive(Clone, Copy)]
 pub(crate) struct Own<'a, F> {
     pub(crate) rows: &'a [F],

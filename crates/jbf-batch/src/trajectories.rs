@@ -6,7 +6,7 @@ use jbf_core::driver::{self, Along, Cost, Excitation, Sample, Start};
 use jbf_core::law::journal::Journal;
 use jbf_core::Error;
 
-/// [`jbf_core::driver::follow_side_by_side`] on these instructions.
+/// Calls [`jbf_core::driver::follow_side_by_side`] with the given instruction set.
 ///
 /// # Errors
 /// As [`jbf_core::driver::trajectory`].

@@ -1,10 +1,11 @@
-//! A plain C interface of `jbf-core`, for firmware in C: `include/jbf.h` says what to call.
+//! C interface of `jbf-core`, for firmware in C; `include/jbf.h` documents its functions.
 //!
 //! Every law has its own functions in single and in double precision, so that a linker keeps only
-//! what is called. Models and states live where C puts them; nothing is allocated, and a step cannot
-//! panic. `jbf export MODEL --c model.h` writes the calls that build a fitted model.
+//! those that are called. The C program provides the memory of models and states. Nothing is
+//! allocated, and a step cannot panic. `jbf export MODEL --c model.h` writes the calls that build a
+//! fitted model.
 #![cfg_attr(not(feature = "std"), no_std)]
-// What a pointer must point at is said once, in the header.
+// The requirements on pointers are stated once, in the header.
 #![allow(clippy::missing_safety_doc)]
 
 mod model;
@@ -16,7 +17,7 @@ use core::ffi::c_char;
 use core::mem::{align_of, size_of};
 use jbf_core::{chain::State, law, Chain};
 
-/// Nothing in a step gets here; a constructor neither.
+/// Never reached from a step or a constructor.
 #[cfg(not(feature = "std"))]
 #[panic_handler]
 fn panic(_info: &core::panic::PanicInfo<'_>) -> ! {
@@ -25,14 +26,14 @@ fn panic(_info: &core::panic::PanicInfo<'_>) -> ! {
     }
 }
 
-/// Name, kind, and the 64-bit words that the header gives a model and a state.
+/// Name, number type, and the sizes of a model and a state in the header, in 64-bit words.
 pub type Size = (&'static str, &'static str, usize, usize);
 
 macro_rules! laws {
     ($($module:ident::$Type:ident, $kind:ident,
        $init:ident $effect:ident $start:ident $step:ident $predict:ident,
        $model_words:literal, $state_words:literal;)*) => {
-        /// Every pair of a law and a kind of number, as the header declares them.
+        /// All pairs of a law and a number type, as declared in the header.
         pub const SIZES: &[Size] =
             &[$((stringify!($module), stringify!($kind), $model_words, $state_words),)*];
         $(
@@ -47,7 +48,7 @@ macro_rules! laws {
                 assert!(align_of::<Model>() <= 8 && align_of::<Changes>() <= 8);
             };
 
-            /// Build the law; see `jbf.h`.
+            /// Builds the law; see `jbf.h`.
             #[no_mangle]
             pub unsafe extern "C" fn $init(
                 model: *mut Chain<$kind, law::$module::$Type<$kind>>,
@@ -61,7 +62,7 @@ macro_rules! laws {
                 model::init(model, bearing, load_n, (parameters, count), clock, error)
             }
 
-            /// Add an effect; see `jbf.h`.
+            /// Adds an effect; see `jbf.h`.
             #[no_mangle]
             pub unsafe extern "C" fn $effect(
                 model: *mut Chain<$kind, law::$module::$Type<$kind>>,
@@ -73,7 +74,7 @@ macro_rules! laws {
                 model::effect(model, name, (parameters, count), error)
             }
 
-            /// The state at the first sample; see `jbf.h`.
+            /// Sets the state at the first sample; see `jbf.h`.
             #[no_mangle]
             pub unsafe extern "C" fn $start(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,
@@ -83,7 +84,7 @@ macro_rules! laws {
                 model::start(model, state, motion)
             }
 
-            /// One step; see `jbf.h`.
+            /// Advances one step; see `jbf.h`.
             #[no_mangle]
             pub unsafe extern "C" fn $step(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,
@@ -94,7 +95,7 @@ macro_rules! laws {
                 model::step(model, state, motion, dt_s)
             }
 
-            /// A whole record; see `jbf.h`.
+            /// Predicts a whole record; see `jbf.h`.
             #[no_mangle]
             pub unsafe extern "C" fn $predict(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,
@@ -108,7 +109,7 @@ macro_rules! laws {
     };
 }
 
-// The words are those of `include/jbf.h`; a test compares.
+// The sizes are those of `include/jbf.h`; a test compares them.
 laws! {
     journal::Journal, f32,
         jbf_journal_f32_init jbf_journal_f32_effect jbf_journal_f32_start jbf_journal_f32_step jbf_journal_f32_predict,

@@ -1,5 +1,7 @@
-//! What the functions of every law share. Pointers have been checked for null by then; that they
-//! point at what the header says is the caller's to see to.
+//! Functions shared by all laws.
+//!
+//! Null pointers are handled here. The caller must ensure that pointers satisfy the requirements of
+//! the header.
 
 use crate::types::{clock, CBearing, CError, CMotion, CRecord, NAME, NULL, OK, PARAMETER};
 use core::ffi::{c_char, CStr};
@@ -10,10 +12,10 @@ use jbf_core::law::{Law, Named};
 use jbf_core::run::{predict, Record};
 use jbf_core::{Bearing, Chain, Motion, ParameterError, Real};
 
-/// Most parameters that a law or an effect has.
+/// Largest number of parameters of a law or an effect.
 const MOST: usize = 16;
 
-/// Report a parameter that breaks its rule.
+/// Reports a parameter that violates its rule.
 unsafe fn refuse(error: *mut CError, why: ParameterError) -> i32 {
     if !error.is_null() {
         error.write(why.into());
@@ -21,7 +23,7 @@ unsafe fn refuse(error: *mut CError, why: ParameterError) -> i32 {
     PARAMETER
 }
 
-/// `n` numbers at `values`, lifted.
+/// Converts `n` numbers at `values` to the number type of the model.
 unsafe fn lifted<T: Real>(values: *const f64, n: usize) -> ([T; MOST], usize) {
     let mut out = [T::ZERO; MOST];
     let given = if values.is_null() || n == 0 {
@@ -35,7 +37,7 @@ unsafe fn lifted<T: Real>(values: *const f64, n: usize) -> ([T; MOST], usize) {
     (out, given.len().min(MOST))
 }
 
-/// Build a law at `model`; `bearing` may be null for a law in newtons.
+/// Builds a law at `model`; `bearing` may be null for a law in newtons.
 pub unsafe fn init<T: Real, L: Named<T>>(
     model: *mut Chain<T, L>,
     bearing: *const CBearing,
@@ -67,7 +69,7 @@ pub unsafe fn init<T: Real, L: Named<T>>(
     }
 }
 
-/// Add an effect by its name.
+/// Adds an effect by its name.
 pub unsafe fn effect<T: Real, L: Named<T>>(
     model: *mut Chain<T, L>,
     name: *const c_char,
@@ -91,7 +93,7 @@ pub unsafe fn effect<T: Real, L: Named<T>>(
     }
 }
 
-/// The state at the first sample; gives the reading there, N.
+/// Sets the state at the first sample and returns the reading there, N.
 pub unsafe fn start<T: Real, L: Law<T>>(
     model: *const Chain<T, L>,
     state: *mut State<T, L::State>,
@@ -107,7 +109,7 @@ pub unsafe fn start<T: Real, L: Law<T>>(
     reading_n
 }
 
-/// Advance to a motion `dt_s` later; gives the reading there, N.
+/// Advances to a motion `dt_s` later and returns the reading there, N.
 pub unsafe fn step<T: Real, L: Law<T>>(
     model: *const Chain<T, L>,
     state: *mut State<T, L::State>,
@@ -122,7 +124,7 @@ pub unsafe fn step<T: Real, L: Law<T>>(
     model.step(state, &Motion::from(motion), dt_s)
 }
 
-/// Readings (N) along a whole record, as `jbf predict` gives them.
+/// Computes the readings (N) along a whole record, as `jbf predict` does.
 pub unsafe fn whole<T: Real, L: Law<T>>(
     model: *const Chain<T, L>,
     record: *const CRecord,

@@ -1,14 +1,14 @@
-//! What crosses the border, laid out as in `include/jbf.h`.
+//! Types of the C interface, with the memory layout of `include/jbf.h`.
 
 use jbf_core::{Bearing, Clock, Motion, ParameterError, Real};
 
-/// All is well.
+/// Success.
 pub const OK: i32 = 0;
 /// A pointer is null.
 pub const NULL: i32 = -1;
-/// A parameter breaks its rule.
+/// A parameter violates its rule.
 pub const PARAMETER: i32 = -2;
-/// A name is not text, or not known.
+/// A name is not valid text, or is unknown.
 pub const NAME: i32 = -3;
 
 /// A bearing and its lubricant.
@@ -25,7 +25,7 @@ pub struct CBearing {
     pub mass_kg: f64,
     /// Viscosity of the lubricant, Pa s.
     pub viscosity_pa_s: f64,
-    /// Bearings on the shaft.
+    /// Number of bearings on the shaft.
     pub count: u32,
 }
 
@@ -49,13 +49,13 @@ pub struct CMotion<T> {
     pub time_s: T,
     /// Surface speed, m/s.
     pub velocity_m_s: T,
-    /// Its rate of change, m/s^2.
+    /// Rate of change of the surface speed, m/s^2.
     pub acceleration_m_s2: T,
-    /// Shaft angle, rad; on a linear axis the place, m.
+    /// Shaft angle, rad; on a linear axis the position, m.
     pub angle_rad: T,
     /// Load on one bearing, N.
     pub load_n: T,
-    /// Temperature, C; NaN where none is measured.
+    /// Temperature, C; NaN if it is not measured.
     pub temperature_c: T,
 }
 
@@ -74,35 +74,35 @@ impl<T: Real> From<&CMotion<T>> for Motion<T> {
     }
 }
 
-/// A whole recorded run: columns of one length.
+/// A whole recorded run: columns of the same length.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct CRecord {
-    /// Samples.
+    /// Number of samples.
     pub samples: usize,
-    /// Time, s, rising.
+    /// Time, s, ascending.
     pub time_s: *const f64,
     /// Surface speed, m/s.
     pub velocity_m_s: *const f64,
-    /// Its rate of change, m/s^2.
+    /// Rate of change of the surface speed, m/s^2.
     pub acceleration_m_s2: *const f64,
     /// Shaft angle, rad.
     pub angle_rad: *const f64,
     /// Load on one bearing, N.
     pub load_n: *const f64,
-    /// Temperature, C; null where none was recorded.
+    /// Temperature, C; null if it was not recorded.
     pub temperature_c: *const f64,
 }
 
-/// Which parameter, which value, which rule.
+/// Error report: the parameter, its value and the violated rule.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct CError {
-    /// Name, cut to fit, ended by a zero.
+    /// Name, truncated to fit, zero-terminated.
     pub name: [u8; 32],
-    /// Rule, cut to fit, ended by a zero.
+    /// Rule, truncated to fit, zero-terminated.
     pub rule: [u8; 96],
-    /// The value that was given.
+    /// Given value.
     pub value: f64,
 }
 
@@ -125,7 +125,7 @@ impl From<ParameterError> for CError {
     }
 }
 
-/// The clock of that number.
+/// Returns the clock with this number.
 pub fn clock(number: i32) -> Option<Clock> {
     match number {
         0 => Some(Clock::Journal),

@@ -11,25 +11,27 @@ const FEWEST: usize = 3;
 /// Smallest intensity, so that its logarithm exists.
 const LEAST: f64 = 1e-300;
 
-/// What was recorded of a motion, at n instants, with errors that are to be estimated.
+/// Recorded motion at n instants, with errors that are to be estimated.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
     /// Instants, s, not decreasing; shape (n,).
     pub time: &'a [f64],
     /// Positions, m or rad; NaN for a missing reading.
     pub position: &'a [f64],
-    /// Relative standard errors of the positions: factors of the one in [`ReadingErrors`].
+    /// Relative standard errors of the positions: factors of the standard error in
+    /// [`ReadingErrors`].
     pub position_shape: &'a [f64],
-    /// Smallest variance that a position can have, of an encoder's step.
+    /// Smallest variance of a position, from the step of an encoder.
     pub position_floor: f64,
     /// Velocities, m/s or rad/s; NaN for a missing reading.
     pub velocity: &'a [f64],
     /// Relative standard errors of the velocities.
     pub velocity_shape: &'a [f64],
-    /// Smallest variance that a velocity can have.
+    /// Smallest variance of a velocity.
     pub velocity_floor: f64,
-    /// Relative standard error up to which a velocity is assigned, not read: it does not count in
-    /// the variance of the velocities.
+    /// Relative standard error up to which a velocity is assigned, not read.
+    ///
+    /// Assigned velocities are not used in the estimate of the variance of the velocities.
     pub assigned: f64,
 }
 
@@ -40,20 +42,20 @@ pub struct ReadingErrors {
     pub position_variance: f64,
     /// Variance of the velocities, (m/s)^2.
     pub velocity_variance: f64,
-    /// Variance of the instants, s^2: adds `v^2 stamp_variance` to the position's variance.
+    /// Variance of the instants, s^2; adds `v^2 stamp_variance` to the variance of the position.
     pub stamp_variance: f64,
     /// Intensity of the noise, (m/s^N)^2 s.
     pub intensity: f64,
-    /// How late the velocities are, s.
+    /// Time delay of the velocities, s.
     pub velocity_delay: f64,
 }
 
-/// How many passes [`estimate`] makes, at most.
+/// Largest numbers of passes of [`estimate`].
 #[derive(Clone, Copy, Debug)]
 pub struct Passes {
-    /// With the factors as they are given, for a start.
+    /// Initial passes with the given factors.
     pub normal: usize,
-    /// With the t distribution.
+    /// Passes with the t distribution.
     pub robust: usize,
 }
 
@@ -98,11 +100,11 @@ impl Record<'_> {
         }
     }
 
-    /// Call `using` with the readings and the intensity of each step.
+    /// Calls `using` with the readings and the intensity of each step.
     ///
     /// # Arguments
     /// * `corners`: factor of the intensity in each of the n - 1 steps.
-    /// * `speed`: a velocity at each instant, for the effect of the stamps' errors.
+    /// * `speed`: a velocity at each instant, for the effect of the errors of the time stamps.
     pub fn with<T>(
         &self,
         errors: &ReadingErrors,
@@ -117,20 +119,20 @@ impl Record<'_> {
     }
 }
 
-/// Estimate the errors of the readings, and the factor of the intensity in each step, from starting
+/// Estimates the errors of the readings and the factor of the intensity in each step, from start
 /// values.
 ///
 /// The noise that drives the motion follows a t distribution: a normal one whose intensity `q c[k]`
-/// in step k has an inverse gamma factor `c[k]`. EM maximises the likelihood over q and the variances
-/// of the readings.
+/// in step k has an inverse gamma factor `c[k]`. EM maximises the likelihood over q and the
+/// variances of the readings.
 ///
 /// # Arguments
-/// * `corners`: factors to start from, n - 1.
-/// * `fixed`: the errors are known; only the factors are estimated.
+/// * `corners`: start values of the factors, n - 1.
+/// * `fixed`: if true, the errors are known and only the factors are estimated.
 ///
 /// # Sources
-/// Shumway & Stoffer (1982) (EM for state-space models); Lange, Little & Taylor (1989) (EM for the t
-/// distribution).
+/// Shumway & Stoffer (1982) (EM for state-space models); Lange, Little & Taylor (1989) (EM for the
+/// t distribution).
 #[must_use]
 pub fn estimate<const N: usize>(
     record: &Record,
@@ -168,11 +170,11 @@ pub fn estimate<const N: usize>(
     (errors, corners)
 }
 
-/// Variational lower bound of the log likelihood, marginal over the factors of all steps.
+/// Variational lower bound of the log-likelihood, marginal over the factors of all steps.
 ///
-/// With `w = 1 / c` it is `log p(y | E w) + sum(N / 2 (E log w - log E w) - KL)`, where KL is the
-/// Kullback-Leibler divergence of the posterior of w, a gamma distribution, from its prior: a bound
-/// at a fixed point of EM, and close to one before.
+/// With `w = 1 / c` it is `log p(y | E w) + sum(N / 2 (E log w - log E w) - KL)`. KL is the
+/// Kullback-Leibler divergence of the posterior of w, a gamma distribution, from its prior. It is a
+/// bound at a fixed point of EM, and close to one before.
 ///
 /// # Sources
 /// Bishop, *Pattern Recognition and Machine Learning* (2006), section 10.1.
@@ -226,7 +228,7 @@ fn gamma_of_half(n: u32) -> (f64, f64) {
     (ln_gamma, digamma)
 }
 
-/// What a maximisation needs of the posterior. Passes use the memory of the first.
+/// Posterior expectations for a maximisation; later passes reuse the memory of the first.
 struct Expectations<const N: usize> {
     forward: Forward<N>,
     variances: Variances,
@@ -287,7 +289,7 @@ impl<const N: usize> Expectations<N> {
         let steps = self.disturbance.iter().zip(corners);
         let intensity = mean(steps.map(|(square, corner)| square / corner)) / N as f64;
         found.intensity = intensity.max(LEAST);
-        // The expected squares of the two errors that make up each misfit of the position.
+        // Expected squares of the two errors that contribute to each residual of the position.
         let (mut weights, mut of_position, mut of_stamp) = (0.0, 0.0, 0.0);
         for (k, y) in record.position.iter().enumerate() {
             if y.is_finite() {
@@ -319,7 +321,7 @@ impl<const N: usize> Expectations<N> {
     }
 }
 
-/// Mean of the values that are finite; NaN without any.
+/// Mean of the finite values; NaN if there are none.
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values
         .filter(|x| x.is_finite())

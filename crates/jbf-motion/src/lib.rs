@@ -7,19 +7,18 @@
 //! x[k+1] = F(h) x[k] + w[k],   w[k] ~ N(0, q[k] Q(h)),   h = t[k+1] - t[k] >= 0
 //! ```
 //!
-//! Of order 3 the jerk is noise: accelerations jump where q is large. Of order 4 the snap is noise:
-//! the acceleration is smooth.
+//! With order 3 the jerk is noise: accelerations jump where q is large. With order 4 the snap is
+//! noise: the acceleration is smooth.
 //!
-//! [`estimate`] finds the variances of the readings and the intensity of each step by
+//! [`estimate`] estimates the variances of the readings and the intensity of each step by
 //! expectation-maximisation. [`smooth`] returns the posterior mean and covariance of the state at
-//! each sample, the log likelihood of the readings and the squared disturbance of each step.
-//! [`whiten`] turns residuals that contain a linear function of the motion's errors into independent
-//! ones.
+//! each sample, the log-likelihood of the readings and the squared disturbance of each step.
+//! [`whiten`] turns residuals that contain a linear function of the motion's errors into
+//! independent ones.
 //!
 //! Sources: Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*
-//! (2001), section 6.2 (order 3); Rauch, Tung & Striebel (1965) (smoother); de Jong (1989),
-//! Durbin & Koopman, *Time Series Analysis by State Space Methods* (2012), section 4.5
-//! (disturbances).
+//! (2001), section 6.2 (order 3); Rauch, Tung & Striebel (1965) (smoother); de Jong (1989), Durbin
+//! & Koopman, *Time Series Analysis by State Space Methods* (2012), section 4.5 (disturbances).
 
 mod estimation;
 mod model;

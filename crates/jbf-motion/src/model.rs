@@ -1,19 +1,20 @@
-//! Transition and process noise of a motion of which one derivative is white noise.
+//! Transition and process noise of a motion with one derivative that is white noise.
 
 use nalgebra::{SMatrix, SVector};
 
 /// A state: the position and its first N - 1 derivatives.
 pub(crate) type State<const N: usize> = SVector<f64, N>;
-/// A covariance or a transition of states.
+/// Covariance or transition matrix of states.
 pub(crate) type Square<const N: usize> = SMatrix<f64, N, N>;
 
-/// How a state moves over a step.
+/// Transition of a state over a step.
 pub(crate) struct Transition<const N: usize> {
     /// Length of the step.
     pub h: f64,
-    /// `h^i / i!`: the transition is `F[i][j] = powers[j - i]`, with zeros below the diagonal.
+    /// Terms `h^i / i!`: the transition is `F[i][j] = powers[j - i]`, with zeros below the
+    /// diagonal.
     powers: [f64; N],
-    /// Covariance of the disturbance, with noise of unit intensity.
+    /// Covariance of the disturbance for noise of unit intensity.
     pub noise: Square<N>,
 }
 
@@ -30,22 +31,22 @@ impl<const N: usize> Transition<N> {
         Self { h, powers, noise }
     }
 
-    /// `F`.
+    /// Transition matrix `F`.
     pub(crate) fn matrix(&self) -> Square<N> {
         Square::from_fn(|i, j| if j < i { 0.0 } else { self.powers[j - i] })
     }
 
-    /// `F M F'` of a symmetric M.
+    /// Product `F M F'` for a symmetric M.
     pub(crate) fn carried(&self, m: &Square<N>) -> Square<N> {
         symmetric(&self.columns(&self.columns(m).transpose()))
     }
 
-    /// `F' M F` of a symmetric M.
+    /// Product `F' M F` for a symmetric M.
     pub(crate) fn carried_back(&self, m: &Square<N>) -> Square<N> {
         symmetric(&self.columns_back(&self.columns_back(m).transpose()))
     }
 
-    /// `M F'`.
+    /// Product `M F'`.
     fn columns(&self, m: &Square<N>) -> Square<N> {
         let mut moved = *m;
         for i in 0..N {
@@ -58,7 +59,7 @@ impl<const N: usize> Transition<N> {
         moved
     }
 
-    /// `M F`.
+    /// Product `M F`.
     fn columns_back(&self, m: &Square<N>) -> Square<N> {
         let mut moved = *m;
         for i in 0..N {
@@ -72,12 +73,12 @@ impl<const N: usize> Transition<N> {
     }
 }
 
-/// The symmetric part of a matrix: rounding makes a covariance slightly asymmetric.
+/// Symmetric part of a matrix: rounding makes a covariance slightly asymmetric.
 pub(crate) fn symmetric<const N: usize>(m: &Square<N>) -> Square<N> {
     (m + m.transpose()) * 0.5
 }
 
-/// How one scalar measurement `y = row x + e`, `e ~ N(0, variance)`, updates a state estimate.
+/// Update of a state estimate by one scalar measurement `y = row x + e`, `e ~ N(0, variance)`.
 pub(crate) struct Update<const N: usize> {
     /// Variance of the innovation `y - row mean`.
     pub variance: f64,
@@ -95,14 +96,14 @@ impl<const N: usize> Update<N> {
         }
     }
 
-    /// The covariance after the measurement, in Joseph's form: it stays positive semidefinite.
+    /// Covariance after the measurement, in Joseph's form, which stays positive semidefinite.
     pub(crate) fn posterior(
         &self,
         row: &State<N>,
         variance: f64,
         covariance: &Square<N>,
     ) -> Square<N> {
-        // (I - K row') C (I - K row')' + K K' variance, by changes of rank one.
+        // (I - K row') C (I - K row')' + K K' variance, by rank-one updates.
         let half = covariance - self.gain * (covariance * row).transpose();
         let own = self.gain * variance - half * row;
         symmetric(&(half + own * self.gain.transpose()))

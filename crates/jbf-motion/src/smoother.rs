@@ -2,50 +2,53 @@
 
 use crate::model::{symmetric, Square, State, Transition, Update};
 
-/// What was recorded of a motion, at n instants. A reading with an infinite variance is missing.
+/// Recorded motion at n instants; a reading with an infinite variance is missing.
 #[derive(Clone, Copy, Debug)]
 pub struct Readings<'a> {
     /// Instants, s, not decreasing; shape (n,).
     pub time: &'a [f64],
     /// Positions, m or rad.
     pub position: &'a [f64],
-    /// Their error variances.
+    /// Error variances of the positions.
     pub position_variance: &'a [f64],
     /// Velocities, m/s or rad/s.
     pub velocity: &'a [f64],
-    /// Their error variances.
+    /// Error variances of the velocities.
     pub velocity_variance: &'a [f64],
-    /// How late the velocities are, s: each is that of so long before its instant.
+    /// Time delay of the velocities, s: each reading is the velocity at this time before its
+    /// instant.
     pub velocity_delay: f64,
 }
 
-/// The posterior of a motion of order N; in SI units, or radians in place of metres.
+/// Posterior of a motion of order N, in SI units, or with radians in place of metres.
 #[derive(Clone, Debug, Default)]
 pub struct Smoothed<const N: usize> {
     /// Position, velocity, acceleration and further derivatives at each instant.
     pub mean: Vec<[f64; N]>,
-    /// Their covariance, by rows.
+    /// Covariance of the states, by rows.
     pub covariance: Vec<[[f64; N]; N]>,
     /// Gains of the posterior as a Markov chain backward in time, n - 1 matrices by rows:
     /// `E[x[k] | x[k+1]] = mean[k] + gain[k] (x[k+1] - mean[k+1])`.
     pub gain: Vec<[[f64; N]; N]>,
     /// Expected square `E[w' Q(h)^-1 w]` of the disturbance of each step for noise of unit
-    /// intensity; N q where the readings do not tell. NaN where the step is zero.
+    /// intensity.
+    ///
+    /// It is N q where the readings contain no information, and NaN where the step is zero.
     pub disturbance: Vec<f64>,
-    /// Logarithm of the likelihood of the readings.
+    /// Log-likelihood of the readings.
     pub log_likelihood: f64,
 }
 
-/// Smooth a motion of order N: its N-th derivative is white noise.
+/// Smooths a motion of order N, whose N-th derivative is white noise.
 ///
 /// # Arguments
 /// * `intensity`: of the noise in each of the n - 1 steps, (m/s^N)^2 s.
 ///
-/// Slices of other lengths are read as far as the shortest.
+/// Slices of different lengths are read up to the shortest.
 ///
 /// # Algorithm
-/// Readings of one instant are processed one after the other. Inside, time is counted in median
-/// steps, so that the components of the state are of similar size.
+/// Readings at one instant are processed one after the other. Internally, time is measured in
+/// median steps, so that the components of the state are of similar size.
 pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothed<N> {
     let mut forward = Forward::default();
     forward.pass(readings, intensity);
@@ -67,8 +70,8 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
         out.disturbance[k] = disturbance;
         let (own, own_spread) = forward.filtered[k];
         let f = step.matrix();
-        // Next to nothing is known at the start of an exact record: its covariance is singular to
-        // working precision there, and without a gain stays that of the filter.
+        // At the start of an exact record almost nothing is known. Its covariance is singular to
+        // working precision there and, without a gain, remains that of the filter.
         let gain = match forward.predicted[k + 1].cholesky() {
             Some(factor) => factor.solve(&(f * own_spread)).transpose(),
             None => Square::zeros(),
@@ -89,7 +92,7 @@ pub fn smooth<const N: usize>(readings: &Readings, intensity: &[f64]) -> Smoothe
     out
 }
 
-/// Logarithm of the likelihood of the readings, as [`smooth`] returns it, by the filter alone.
+/// Log-likelihood of the readings, as returned by [`smooth`], by the filter alone.
 pub fn log_likelihood<const N: usize>(readings: &Readings, intensity: &[f64]) -> f64 {
     filter::<N>(readings, intensity, |_, _, _| ()).log_likelihood
 }
@@ -97,7 +100,8 @@ pub fn log_likelihood<const N: usize>(readings: &Readings, intensity: &[f64]) ->
 type Estimate<const N: usize> = (State<N>, Square<N>);
 type Updates<const N: usize> = [Option<(Update<N>, f64)>; 2];
 
-/// The filter's states, kept for the way back. A second pass uses the memory of the first.
+/// States of the filter, stored for the backward pass; a second pass reuses the memory of the
+/// first.
 #[derive(Default)]
 pub(crate) struct Forward<const N: usize> {
     pub time: TimeScale,
@@ -109,7 +113,7 @@ pub(crate) struct Forward<const N: usize> {
     updates: Vec<Updates<N>>,
 }
 
-/// The readings after an instant, as seen from its state x: `E[x | all] = m + P state` and
+/// Information in the readings after an instant about its state x: `E[x | all] = m + P state` and
 /// `cov[x | all] = P - P square P`, where m and P are the filter's mean and covariance.
 pub(crate) struct Adjoint<const N: usize> {
     pub state: State<N>,
@@ -117,7 +121,7 @@ pub(crate) struct Adjoint<const N: usize> {
 }
 
 impl<const N: usize> Adjoint<N> {
-    /// The adjoint at the last instant, which no reading follows.
+    /// Adjoint at the last instant, after which there is no reading.
     pub(crate) fn last() -> Self {
         Self {
             state: State::zeros(),
@@ -127,7 +131,7 @@ impl<const N: usize> Adjoint<N> {
 }
 
 impl<const N: usize> Forward<N> {
-    /// Filter the readings.
+    /// Filters the readings.
     pub(crate) fn pass(&mut self, readings: &Readings, intensity: &[f64]) {
         self.filtered.clear();
         self.predicted.clear();
@@ -140,8 +144,10 @@ impl<const N: usize> Forward<N> {
         (self.time, self.log_likelihood) = (passed.time, passed.log_likelihood);
     }
 
-    /// Call `visit` for each step from the last one to the first, with its index, transition,
-    /// adjoint at its start and expected squared disturbance ([`Smoothed::disturbance`]).
+    /// Calls `visit` for each step from the last to the first.
+    ///
+    /// Its arguments are the index, the transition, the adjoint at the start of the step, and the
+    /// expected squared disturbance ([`Smoothed::disturbance`]).
     pub(crate) fn backward(
         &self,
         readings: &Readings,
@@ -184,9 +190,9 @@ impl<const N: usize> Forward<N> {
 /// Time in units of the median step.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct TimeScale {
-    /// The median step, s.
+    /// Median step, s.
     pub unit: f64,
-    /// Factor of the noise's intensity.
+    /// Factor of the intensity of the noise.
     pub intensity: f64,
 }
 
@@ -203,7 +209,7 @@ impl TimeScale {
         [position, late_velocity(readings.velocity_delay / self.unit)]
     }
 
-    /// Set `step` to the transition from instant k to k + 1.
+    /// Sets `step` to the transition from instant k to k + 1.
     fn step<const N: usize>(&self, readings: &Readings, k: usize, step: &mut Transition<N>) {
         let h = (readings.time[k + 1] - readings.time[k]).max(0.0) / self.unit;
         if h != step.h {
@@ -212,14 +218,15 @@ impl TimeScale {
     }
 }
 
-/// What the filter returns besides its states.
+/// Output of the filter other than its states.
 struct FilterOutput {
     time: TimeScale,
     log_likelihood: f64,
 }
 
-/// Kalman filter; calls `visit` at each instant with the predicted state, the updates by the
-/// readings and the filtered state.
+/// Kalman filter that calls `visit` at each instant.
+///
+/// Its arguments are the predicted state, the updates by the readings and the filtered state.
 fn filter<const N: usize>(
     readings: &Readings,
     intensity: &[f64],
@@ -271,7 +278,7 @@ fn filter<const N: usize>(
             }
         }
         if both[1].is_some() {
-            // The velocity was scaled: its density is per (m/s) again.
+            // The velocity was scaled: converts its density back to per (m/s).
             log_likelihood += unit.ln();
         }
         visit(before, both, (mean, covariance));
@@ -282,7 +289,7 @@ fn filter<const N: usize>(
     }
 }
 
-/// The velocity of so long ago, as a linear function of the state.
+/// Velocity at `delay` before the instant, as a linear function of the state.
 fn late_velocity<const N: usize>(delay: f64) -> State<N> {
     let mut row = State::zeros();
     let mut term = 1.0;
@@ -308,8 +315,10 @@ fn store<const N: usize>(
     }
 }
 
-/// Weakly informative initial state: position near the first reading (zero without any), velocity
-/// up to the largest one on record, and further derivatives up to that velocity in one step.
+/// Weakly informative initial state.
+///
+/// The position is near the first reading (zero if there is none) and the velocity up to the
+/// largest one recorded. Further derivatives are up to that velocity per step.
 fn initial_state<const N: usize>(readings: &Readings, n: usize, unit: f64) -> Estimate<N> {
     let seen =
         |k: &usize| readings.position_variance[*k].is_finite() && readings.position[*k].is_finite();
@@ -340,7 +349,7 @@ fn initial_state<const N: usize>(readings: &Readings, n: usize, unit: f64) -> Es
     (mean, Square::from_diagonal(&variance))
 }
 
-/// The median of the positive steps, s; 1 without any.
+/// Median of the positive steps, s; 1 if there are none.
 fn median_step(time: &[f64]) -> f64 {
     let mut steps: Vec<f64> = time
         .windows(2)

@@ -1,21 +1,22 @@
-//! Residuals that contain errors of the motion, made independent.
+//! Whitening of residuals that contain errors of the motion.
 
 use crate::model::{symmetric, Square, State, Update};
 
-/// Whiten columns of residuals `r[k] = e[k] + s[k] (x[k] - mean[k])` in place, with independent
+/// Whitens columns of residuals `r[k] = e[k] + s[k] (x[k] - mean[k])` in place, with independent
 /// `e[k] ~ N(0, variance[k])` and x the motion of a posterior.
 ///
 /// # Arguments
 /// * `posterior`, `gain`: covariances and gains of the motion, see [`crate::Smoothed`].
-/// * `sensitivity`: s, derivatives of the prediction by position, velocity and acceleration, (n, 3).
-/// * `variance`: of e, (n,); a sample with an infinite one does not count and becomes zero.
-/// * `columns`: n rows of `width` values, for instance the residual and its derivatives by
-///   parameters; each column is filtered in the same way.
+/// * `sensitivity`: s, derivatives of the prediction with respect to position, velocity and
+///   acceleration, (n, 3).
+/// * `variance`: of e, (n,); a sample with an infinite variance is excluded and set to zero.
+/// * `columns`: n rows of `width` values, for instance the residual and its derivatives with
+///   respect to parameters; each column is filtered in the same way.
 ///
-/// Returns the logarithm of the determinant of the covariance of the samples that count.
+/// Returns the logarithm of the determinant of the covariance of the included samples.
 ///
 /// # Algorithm
-/// The posterior is a Markov chain backward in time; a Kalman filter along it, from the last sample
+/// The posterior is a Markov chain backward in time. A Kalman filter along it, from the last sample
 /// to the first, has independent innovations.
 pub fn whiten<const N: usize>(
     posterior: &[[[f64; N]; N]],
@@ -33,7 +34,7 @@ pub fn whiten<const N: usize>(
     if n == 0 || width == 0 || columns.len() < n * width {
         return 0.0;
     }
-    // States in units of their standard errors: they differ by many powers of ten.
+    // States in units of their standard errors, which differ by many powers of ten.
     let scale: Vec<State<N>> = (0..n)
         .map(|k| {
             State::<N>::from_fn(|i, _| posterior[k][i][i])
@@ -48,7 +49,7 @@ pub fn whiten<const N: usize>(
     for k in (0..n).rev() {
         if k + 1 < n {
             let back = Square::<N>::from_fn(|i, j| gain[k][i][j] * scale[k + 1][j] / scale[k][i]);
-            // Covariance of x[k] given x[k+1], plus what is not known of x[k+1].
+            // Covariance of x[k] given x[k+1], plus the contribution of the uncertainty of x[k+1].
             covariance =
                 symmetric(&(scaled(k) + back * (covariance - scaled(k + 1)) * back.transpose()));
             for mean in &mut means {

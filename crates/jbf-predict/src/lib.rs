@@ -1,5 +1,5 @@
-//! Friction readings along records, and their derivatives by the parameters, for laws and effects that
-//! are chosen by name while a program runs.
+//! Friction readings along records, and their derivatives with respect to the parameters, for laws
+//! and effects that are selected by name at run time.
 //!
 //! ```
 //! use jbf_core::{law, record::Record, Clock};

@@ -1,4 +1,4 @@
-//! What is predicted: a law and effects by their names.
+//! Prediction model: a law and effects, selected by name.
 
 use crate::run::Run;
 use jbf_batch::Baseline;
@@ -8,41 +8,42 @@ use jbf_core::record::Record;
 use jbf_core::spec::{Spec, Using};
 use jbf_core::{law, Bearing, Clock, ParameterError, Real};
 
-/// A friction law with effects. The parameters come with each call: the law's first, then those of each
-/// effect.
+/// A friction law with effects.
+///
+/// The parameters are passed with each call: those of the law first, then those of each effect.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a> {
-    /// The law's page in the catalogue.
+    /// Description of the law in the catalogue.
     pub law: &'a law::Info,
-    /// The bearing; a law in newtons needs none.
+    /// Bearing; a law in newtons needs none.
     pub bearing: Option<&'a Bearing>,
     /// Load on one bearing, N, for a law that needs it.
     pub load_n: Option<f64>,
-    /// The clock of a law with a film.
+    /// Clock of a law with a film.
     pub clock: Clock,
-    /// The effects' pages in the catalogue, each of which goes with the law.
+    /// Descriptions of the effects in the catalogue, all of which apply to the law.
     pub effects: &'a [&'a Info],
-    /// The longest inner step, s.
+    /// Longest inner step, s.
     pub max_step_s: f64,
 }
 
-/// The path of a film along a record, computed beforehand ([`jbf_core::film_path`]).
+/// Precomputed path of a film along a record ([`jbf_core::film_path`]).
 #[derive(Clone, Copy, Debug)]
 pub struct FilmPath<'a> {
-    /// The places of the film, one a step.
+    /// States of the film, one per step.
     pub places: &'a [Place],
-    /// For each sample that a step leads to the number of that step.
+    /// Index of the step that leads to each sample, for samples with a step.
     pub ends: &'a [u32],
 }
 
 impl Model<'_> {
-    /// Build the chain with one set of parameter values and hand it to `then`.
+    /// Builds the chain with one set of parameter values and passes it to `then`.
     ///
     /// # Errors
-    /// Names the first parameter that breaks its rule.
+    /// Names the first parameter that violates its rule.
     ///
     /// # Panics
-    /// Where there are fewer values than parameters.
+    /// If there are fewer values than parameters.
     pub fn with_chain<T: Real, U: Using<T>>(
         &self,
         parameters: &[T],
@@ -64,10 +65,10 @@ impl Model<'_> {
         spec.chain(effects, then)
     }
 
-    /// Friction readings along a record, N, one a sample.
+    /// Computes the friction readings along a record, N, one per sample.
     ///
     /// # Errors
-    /// Names the first parameter that breaks its rule.
+    /// Names the first parameter that violates its rule.
     pub fn readings(
         &self,
         parameters: &[f64],
@@ -79,7 +80,7 @@ impl Model<'_> {
             record,
             max_step_s: self.max_step_s,
             path: path.map(|path| (path, parameters)),
-            // One number at a time gains nothing from wider registers.
+            // A scalar computation gains nothing from wider registers.
             instructions: Baseline,
             sink: &mut |i, reading| readings[i] = reading,
         };

@@ -1,12 +1,13 @@
-//! The effects of the catalogue, each stage compiled as a function of its own.
+//! Effects of the catalogue, with each stage compiled as a separate function.
 //!
-//! A chain that holds [`Effects`] itself inlines the code of all effects into the time loop of its law: for
-//! nine laws, four kinds of numbers and two instruction sets some fifty times. Here that code is compiled
-//! once for each kind of numbers and each instruction set. A step pays one call for each stage that has an
-//! effect, and nothing for a stage that has none.
+//! A chain that holds [`Effects`] itself inlines the code of all effects into the time loop of its
+//! law. For nine laws, four number types and two instruction sets that is about fifty times. Here
+//! that code is compiled once per number type and instruction set. A step costs one call per stage
+//! that has an effect, and nothing for a stage without effects.
 //!
-//! Arguments passed by reference are forced into memory. Therefore the effects' states are outside the
-//! chain's state, and a stage copies values in and out: what the time loop works with stays in registers.
+//! Arguments passed by reference are forced into memory. Therefore the states of the effects are
+//! outside the state of the chain, and a stage copies values in and out. The variables of the time
+//! loop then stay in registers.
 
 use core::cell::RefCell;
 use jbf_batch::InstructionSet;
@@ -16,8 +17,10 @@ use jbf_core::law::Scales;
 use jbf_core::motion::{JournalMotion, Motion};
 use jbf_core::Real;
 
-/// [`Effects`] whose stages are called as functions compiled for the instruction set `I`, for one run of
-/// one chain at a time: copies share one cell of states. The results have the same bits.
+/// [`Effects`] whose stages are called as functions compiled for the instruction set `I`.
+///
+/// It serves one run of one chain at a time: copies share one cell of states. The results are
+/// identical bit for bit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outlined<'a, T: Real, I> {
     effects: &'a Effects<T>,
@@ -27,7 +30,7 @@ pub(crate) struct Outlined<'a, T: Real, I> {
 }
 
 impl<'a, T: Real, I> Outlined<'a, T, I> {
-    /// These effects, with their states, on these instructions.
+    /// Creates the set from effects, their states and an instruction set.
     pub(crate) fn new(
         effects: &'a Effects<T>,
         states: &'a RefCell<States<T>>,
@@ -43,7 +46,7 @@ impl<'a, T: Real, I> Outlined<'a, T, I> {
 }
 
 impl<T: Real, I: InstructionSet> Outlined<'_, T, I> {
-    /// A stage as a function of its own, its body inlined into that function whatever its size.
+    /// Calls a stage as a separate function, into which its body is always inlined.
     #[inline(always)]
     fn call<R>(&self, stage: impl FnOnce(&Effects<T>, &mut States<T>) -> R) -> R {
         let (effects, states) = (self.effects, self.states);

@@ -1,4 +1,4 @@
-//! Derivatives of the readings: some parameters in each pass, side by side in the registers.
+//! Derivatives of the readings, for a group of parameters per pass, in parallel in the registers.
 
 use crate::model::{FilmPath, Model};
 use crate::run::Run;
@@ -6,14 +6,14 @@ use jbf_batch::{Baseline, InstructionSet, Simd};
 use jbf_core::record::Record;
 use jbf_core::{Dual, ParameterError, Real};
 
-/// Parameters in the shortest pass, usually a law's own.
+/// Number of parameters in the shortest pass, usually those of a law.
 const FEW: usize = 4;
-/// Parameters in the usual pass, which costs a quarter more than the shortest.
+/// Number of parameters in the usual pass, which costs a quarter more than the shortest.
 const MANY: usize = 8;
-/// Parameters in the longest pass, which costs three quarters of two usual ones.
+/// Number of parameters in the longest pass, which costs three quarters of two usual ones.
 const MOST: usize = 12;
 
-/// The parameters of each pass over a record, for the machine that this runs on.
+/// Parameters of each pass over a record, for the present machine.
 pub fn parameter_passes(which: &[usize]) -> Vec<&[usize]> {
     match which.len() {
         0 => vec![&[]],
@@ -22,20 +22,22 @@ pub fn parameter_passes(which: &[usize]) -> Vec<&[usize]> {
     }
 }
 
-/// True on a processor without AVX2: only passes of eight are compiled for it.
+/// True on a processor without AVX2, for which only passes of eight are compiled.
 fn only_passes_of_eight(simd: Simd) -> bool {
     cfg!(all(feature = "wide", target_arch = "x86_64")) && matches!(simd, Simd::Baseline)
 }
 
 impl Model<'_> {
-    /// Readings (N) along a record, and row by row their derivatives with respect to the parameters
-    /// `which`, one of the [`parameter_passes`].
+    /// Computes the readings (N) along a record and their derivatives with respect to the
+    /// parameters `which`, row by row.
+    ///
+    /// `which` is one of the [`parameter_passes`].
     ///
     /// # Errors
-    /// Names the first parameter that breaks its rule.
+    /// Names the first parameter that violates its rule.
     ///
     /// # Panics
-    /// Where `which` has more parameters than a pass.
+    /// If `which` has more parameters than a pass.
     pub fn derivatives(
         &self,
         parameters: &[f64],
@@ -51,10 +53,10 @@ impl Model<'_> {
             path,
         };
         match Simd::best() {
-            // Wider registers than AVX2's gain nothing: a derivative of a chain is short arithmetic
-            // between loads and stores.
+            // Registers wider than those of AVX2 gain nothing: a derivative of a chain is short
+            // arithmetic between loads and stores.
             #[cfg(all(feature = "wide", target_arch = "x86_64"))]
-            // Its subset, AVX2.
+            // Uses its subset AVX2.
             Simd::Avx512(v4) => pass.of_any_width(*v4),
             #[cfg(all(feature = "wide", target_arch = "x86_64"))]
             Simd::Avx2(v3) => pass.of_any_width(v3),

@@ -1,4 +1,4 @@
-//! One chain, of whatever law, along a record.
+//! Run of one chain, with any law, along a record.
 
 use crate::model::FilmPath;
 use crate::outlined::Outlined;
@@ -12,18 +12,18 @@ use jbf_core::spec::Using;
 use jbf_core::{Chain, Motion, Real};
 use std::cell::RefCell;
 
-/// Runs a chain along a record and hands every reading (N) to `sink` with the number of its sample.
+/// Runs a chain along a record and passes every reading (N) to `sink` with the index of its sample.
 pub struct Run<'a, T, I> {
     pub record: &'a Record<'a>,
     pub max_step_s: f64,
-    /// The path of the film, and the law's parameters.
+    /// Path of the film, and the parameters of the law.
     pub path: Option<(FilmPath<'a>, &'a [T])>,
     pub instructions: I,
     pub sink: &'a mut dyn FnMut(usize, T),
 }
 
 impl<T: Real, I: InstructionSet> Run<'_, T, I> {
-    /// The time loop with the code of all effects in it: the fastest, and the slowest to compile.
+    /// Runs the time loop with the code of all effects inlined: fastest to run, slowest to compile.
     fn inlined<L: Law<T>, E: EffectSet<T>>(self, chain: &Chain<T, L, E>, steps: Steps) {
         self.instructions.call(
             #[inline(always)]
@@ -31,10 +31,10 @@ impl<T: Real, I: InstructionSet> Run<'_, T, I> {
         );
     }
 
-    /// The time loop with calls of the effects' stages, whose code all laws share.
+    /// Runs the time loop with calls of the effects' stages, whose code all laws share.
     fn with_calls<L: Law<T>>(self, chain: Chain<T, L>) {
         let Chain { law, effects, rig } = chain;
-        // A value until the chain's start replaces it.
+        // Placeholder until the start of the chain replaces it.
         let states = RefCell::new(effects.start(&Motion::at_rest(T::ONE), &rig));
         let effects = Outlined::new(&effects, &states, self.instructions);
         self.inlined(&Chain { law, effects, rig }, Steps::Every);
@@ -45,14 +45,14 @@ impl<T: Real, I: InstructionSet> Using<T> for Run<'_, T, I> {
     type Output = ();
 
     fn with<L: Named<T>>(self, chain: Chain<T, L>) {
-        // The constant skips compiling the path for laws without a film.
+        // The constant avoids compiling the path for laws without a film.
         if const { L::FILM_PARAMETERS.is_none() } {
             return self.with_calls(chain);
         }
         let (Some((path, p)), Some([first, second])) = (self.path, L::FILM_PARAMETERS) else {
             return self.with_calls(chain);
         };
-        // The hot path of a bearing's diagnosis, therefore inlined.
+        // Hot path in the diagnosis of a bearing, therefore inlined.
         let law = OnPath::new(chain.law, [p[first], p[second]], path.places);
         let (law, steps) = if chain.effects.remembers() {
             (law, Steps::Every)

@@ -1,4 +1,4 @@
-//! Many parameter sets of the journal law side by side.
+//! Parallel evaluation of many parameter sets of the journal law.
 
 use crate::pool::on_pool;
 use jbf_batch::{Batch, Float, Method, Speeds};
@@ -14,7 +14,7 @@ fn wrong(error: impl ToString) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// What every set shares; a set is a row of `f_m, U_tr_m_s, K0, gamma, load_n`.
+/// Properties shared by all sets; a set is a row of `f_m, U_tr_m_s, K0, gamma, load_n`.
 #[pyclass(frozen, module = "jbf._core")]
 pub struct BatchRig {
     bearing: Bearing,
@@ -57,7 +57,7 @@ impl BatchRig {
         })
     }
 
-    /// Friction coefficients into `out`, row by row, in double precision.
+    /// Computes friction coefficients into `out`, row by row, in double precision.
     fn friction_f64(
         &self,
         py: Python<'_>,
@@ -70,7 +70,7 @@ impl BatchRig {
         self.friction(py, &sets, &speeds, each, dt_s, out)
     }
 
-    /// The same in single precision.
+    /// Computes friction coefficients into `out`, row by row, in single precision.
     fn friction_f32(
         &self,
         py: Python<'_>,
@@ -83,7 +83,7 @@ impl BatchRig {
         self.friction(py, &sets, &speeds, each, dt_s, out)
     }
 
-    /// Sums of squared distances from `data`, one a set, in double precision.
+    /// Sums of squared deviations from `data`, one per set, in double precision.
     fn squares_f64<'py>(
         &self,
         py: Python<'py>,
@@ -96,7 +96,7 @@ impl BatchRig {
         self.squares(py, &sets, &speeds, each, dt_s, &data)
     }
 
-    /// The same in single precision.
+    /// Sums of squared deviations from `data`, one per set, in single precision.
     fn squares_f32<'py>(
         &self,
         py: Python<'py>,

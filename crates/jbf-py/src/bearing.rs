@@ -1,10 +1,10 @@
-//! A bearing as Python hands it over: a dictionary of its sizes.
+//! A bearing passed from Python as a dictionary of its sizes.
 
 use jbf_core::{Bearing, Error};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The sizes of [`Bearing`], by name.
+/// Sizes of [`Bearing`], by name.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Sizes {
@@ -17,7 +17,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// The bearing, checked.
+    /// Returns the bearing, checked.
     pub fn checked(self) -> PyResult<Bearing> {
         Bearing::new()
             .with_radius_m(self.radius_m)
@@ -31,7 +31,7 @@ impl Sizes {
     }
 }
 
-/// The core's error as Python's.
+/// Converts an error of the core to a Python error.
 pub fn refused(error: Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }

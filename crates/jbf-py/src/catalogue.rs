@@ -1,4 +1,4 @@
-//! The catalogue of laws and effects, as dictionaries.
+//! Catalogue of laws and effects, as dictionaries.
 
 use jbf_core::effect::{moves_jumps, peaks, spreads_jumps, type_names, Parameter, CATALOGUE};
 use jbf_core::law;
@@ -26,7 +26,7 @@ fn parameters<'py>(py: Python<'py>, list: &[Parameter]) -> PyResult<Bound<'py, P
     Ok(out)
 }
 
-/// Every effect of the catalogue, in the order of the signal chain.
+/// All effects of the catalogue, in the order of the signal chain.
 #[pyfunction]
 pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let out = PyList::empty(py);
@@ -62,7 +62,7 @@ pub fn effects(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     Ok(out)
 }
 
-/// Every base law with its parameters.
+/// All base laws with their parameters.
 #[pyfunction]
 pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     let out = PyList::empty(py);

@@ -1,4 +1,4 @@
-//! Curves of the bare law: film integrals, transition eccentricity, Stribeck curve.
+//! Curves of the law without effects: film integrals, transition eccentricity, Stribeck curve.
 
 use crate::bearing::{refused, Sizes};
 use jbf_core::film::FilmIntegrals;
@@ -7,7 +7,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// J11, J12, J22 at an eccentricity ratio in [0, 1).
+/// Film integrals J11, J12, J22 at an eccentricity ratio in [0, 1).
 #[pyfunction]
 pub fn film_integrals(eps: f64) -> PyResult<(f64, f64, f64)> {
     if !(0.0..1.0).contains(&eps) {
@@ -19,7 +19,7 @@ pub fn film_integrals(eps: f64) -> PyResult<(f64, f64, f64)> {
     Ok((j.j11, j.j12, j.j22))
 }
 
-/// Transition eccentricity of a load number, equation (3.20).
+/// Transition eccentricity for a load number, equation (3.20).
 #[pyfunction]
 pub fn transition_eccentricity(load_number: f64) -> PyResult<f64> {
     if !(load_number > 0.0 && load_number.is_finite()) {
@@ -44,7 +44,7 @@ pub fn steady_friction<'py>(
     let bearing = bearing.map(Sizes::checked).transpose()?;
     let speeds: Vec<f64> = velocity_m_s.as_array().iter().copied().collect();
     let mut out = vec![0.0; speeds.len()];
-    // The clock sets how fast a film moves, not where it comes to.
+    // The clock affects how fast a film moves, not its steady state.
     let clock = Clock::Journal;
     law::steady_n(
         law,

@@ -1,8 +1,10 @@
-//! The paths that films have gone along one motion, kept: of the thirty effects that stand behind the
-//! film each is tried on the same path, and a search comes back to where it was.
+//! Cache of the paths of films along one motion.
 //!
-//! A path is found by every number that it depends on, to the bit, so that what is kept changes no
-//! answer (python/tests/estimation/test_film_rate.py).
+//! Each of the thirty effects after the film is tried on the same path, and a search returns to
+//! earlier parameters.
+//!
+//! The key of a path contains every number that it depends on, to the bit, so that the cache
+//! changes no result (python/tests/estimation/test_film_rate.py).
 
 use jbf_core::film_path::{FilmStep, Place};
 use jbf_core::{Bearing, Clock};
@@ -10,26 +12,27 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Paths kept along one motion: a search goes between a few places.
+/// Number of cached paths per motion: a search alternates between a few parameter sets.
 const KEPT: usize = 4;
 
-/// Places kept by one process, of 24 bytes each. Beyond them a path is made anew each time.
+/// Number of states cached by one process, of 24 bytes each; beyond it paths are computed each
+/// time.
 const MOST_PLACES: usize = 12_000_000;
 
 static PLACES: AtomicUsize = AtomicUsize::new(0);
 
-/// What the path of a journal's film depends on, beside the motion.
+/// Quantities, other than the motion, on which the path of a journal's film depends.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Film {
     pub bearing: Option<Bearing>,
     pub load_n: Option<f64>,
     pub clock: Clock,
-    /// The film's parameters, and the longest inner step, s, bit by bit.
+    /// Parameters of the film and longest inner step, s, as bit patterns.
     pub bits: [u64; 3],
 }
 
-/// The places of a film, with slopes or without, and of each sample that a step leads to the number
-/// of that step.
+/// States of a film, with or without slopes, and the index of the step that leads to each sample,
+/// for samples with a step.
 pub struct FilmPath {
     pub places: Vec<Place>,
     pub has_slopes: bool,
@@ -37,7 +40,7 @@ pub struct FilmPath {
 }
 
 impl FilmPath {
-    /// The path as a prediction takes it.
+    /// Returns the path in the form of a prediction.
     pub fn kept(&self) -> jbf_predict::FilmPath<'_> {
         jbf_predict::FilmPath {
             places: &self.places,
@@ -46,23 +49,23 @@ impl FilmPath {
     }
 }
 
-/// What a motion asks of a film, and whether all of it is under one load.
+/// Steps of a film that a motion requires, and whether all are under one load.
 pub struct Steps {
     pub every: Vec<FilmStep>,
     pub one_load: bool,
     pub ends: Arc<[u32]>,
 }
 
-/// What is kept along one motion.
+/// Cache along one motion.
 #[derive(Default)]
 struct Kept {
-    /// Paths by their film, the last one used last.
+    /// Paths with their films, the most recently used last.
     paths: VecDeque<(Film, Arc<FilmPath>)>,
-    /// The steps, by the longest of them, s.
+    /// Steps with their greatest length, s.
     steps: Option<(f64, Arc<Steps>)>,
 }
 
-/// The paths and steps along one motion.
+/// Cached paths and steps along one motion.
 #[derive(Default)]
 pub struct FilmPaths(Mutex<Kept>);
 
@@ -71,7 +74,7 @@ impl FilmPaths {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The steps of at most this length, s: those of the last time, or made.
+    /// Returns the steps of at most this length, s, from the cache or from `make`.
     pub fn steps(&self, longest_s: f64, make: impl FnOnce() -> Steps) -> Arc<Steps> {
         if let Some((of, steps)) = &self.lock().steps {
             if *of == longest_s {
@@ -83,7 +86,7 @@ impl FilmPaths {
         made
     }
 
-    /// The path of a film, if it is kept, with its slopes where they are asked for.
+    /// Returns the path of a film if it is cached, with slopes if requested.
     pub fn kept(&self, film: &Film, with_slopes: bool) -> Option<Arc<FilmPath>> {
         let paths = &mut self.lock().paths;
         let at = paths
@@ -95,7 +98,9 @@ impl FilmPaths {
         Some(path)
     }
 
-    /// Keep the path of a film, in place of one without slopes or of the one left longest ago.
+    /// Stores the path of a film.
+    ///
+    /// It replaces a path of the same film, or the least recently used path.
     pub fn keep(&self, film: Film, path: Arc<FilmPath>) {
         let paths = &mut self.lock().paths;
         if let Some(at) = paths.iter().position(|(of, _)| *of == film) {
@@ -107,7 +112,8 @@ impl FilmPaths {
         let count = path.places.len();
         if PLACES.fetch_add(count, Ordering::Relaxed) + count > MOST_PLACES {
             PLACES.fetch_sub(count, Ordering::Relaxed);
-            // Rather this film's than one left long ago, the next time.
+            // Makes room for this film's path the next time, instead of keeping the least recently
+            // used path.
             forget(paths.pop_front());
             return;
         }

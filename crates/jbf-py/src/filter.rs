@@ -1,15 +1,15 @@
-//! A first-order filter along samples: what whitens noise of first order, and what makes it.
+//! First-order filter along samples, which whitens or generates first-order noise.
 
 use numpy::ndarray::{ArrayD, Axis};
 use numpy::{IntoPyArray, PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// `y(t) = now[0] x(t) + now[1] x(t - 1) - before y(t - 1)` along the first axis of values of shape
-/// (n,) or (n, k), from rest.
+/// Computes `y(t) = now[0] x(t) + now[1] x(t - 1) - before y(t - 1)` along the first axis of values
+/// of shape (n,) or (n, k), from rest.
 ///
 /// # Errors
-/// Values of another shape.
+/// If the values have another shape.
 #[pyfunction]
 pub fn first_order_filter<'py>(
     py: Python<'py>,
@@ -32,7 +32,7 @@ pub fn first_order_filter<'py>(
     Ok(y.into_pyarray(py))
 }
 
-/// The same in place, rows of so many values one after the other.
+/// Filters rows of `width` values in place.
 fn filter(now: [f64; 2], before: f64, width: usize, values: &mut [f64]) {
     let mut rest = vec![0.0; width];
     for row in values.chunks_exact_mut(width.max(1)) {

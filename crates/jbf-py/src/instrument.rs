@@ -1,5 +1,5 @@
-//! The instrument alone: what its effects make of a force, and the derivatives by their
-//! parameters.
+//! Instrument alone: the response of its effects to a force, and the derivatives with respect to
+//! their parameters.
 
 use crate::bearing::refused;
 use jbf_core::effect::Effects;
@@ -8,13 +8,14 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Parameters of the instrument, which are few.
+/// Number of parameters per pass; an instrument has few.
 const LANES: usize = 4;
 
-/// Reading (N) of a force (N) at times (s), straight lines between the samples, and its
-/// derivatives with respect to every parameter, shape (n, parameters).
+/// Reading (N) for a force (N) at times (s) that is linear between the samples, and its
+/// derivatives.
 ///
-/// `effects` are pairs of a name and its parameter values.
+/// The derivatives are with respect to every parameter, shape (n, parameters). `effects` are pairs
+/// of a name and its parameter values.
 #[pyfunction]
 #[allow(clippy::type_complexity)]
 pub fn read_force<'py>(
@@ -51,7 +52,7 @@ pub fn read_force<'py>(
     Ok((values.into_pyarray(py), shaped.into_pyarray(py)))
 }
 
-/// The effects, with derivatives by the parameters from number `first` on.
+/// The effects, with derivatives with respect to the parameters from number `first` on.
 fn lifted(
     effects: &[(String, Vec<f64>)],
     first: usize,

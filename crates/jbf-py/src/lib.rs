@@ -1,4 +1,4 @@
-//! Python's door to `jbf-core`: arrays in, arrays out, the interpreter lock released.
+//! Python bindings of `jbf-core`: arrays in, arrays out, with the interpreter lock released.
 //!
 //! One file per Python type; no physics here.
 
@@ -19,7 +19,7 @@ mod trajectory;
 
 use pyo3::prelude::*;
 
-/// Add every class and function to the extension module `jbf._core`.
+/// Adds every class and function to the extension module `jbf._core`.
 ///
 /// # Errors
 /// Those of the interpreter.

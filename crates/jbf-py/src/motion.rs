@@ -1,4 +1,4 @@
-//! The imposed motion of one run, checked once and kept on the Rust side.
+//! Imposed motion of one run, checked once and stored in Rust.
 
 use crate::film_paths::FilmPaths;
 use jbf_core::run::Record;
@@ -6,7 +6,7 @@ use numpy::{PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The imposed motion of one run: arrays of one length. Python may hang attributes on it.
+/// Imposed motion of one run: arrays of the same length; Python may set attributes on it.
 #[pyclass(frozen, dict, module = "jbf._core")]
 pub struct Motion {
     time_s: Vec<f64>,
@@ -19,7 +19,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// The paths that films have gone along it.
+    /// Cached paths of films along this motion.
     pub fn film_paths(&self) -> &FilmPaths {
         &self.paths
     }

@@ -1,8 +1,8 @@
-//! The threads that work is shared among.
+//! Thread pool of the process.
 //!
-//! A process that was forked off another (Python's default for worker processes on Linux) has none of
-//! its parent's threads, but rayon's own pool believes that they live, and waits for them for ever.
-//! So each process makes its pool when it first needs one.
+//! A forked process (Python's default for worker processes on Linux) has none of its parent's
+//! threads. rayon's global pool assumes that they exist and waits for them forever. Each process
+//! therefore creates its own pool when it first needs one.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::process;
@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// This process's pool; none where threads cannot be made.
+/// Pool of this process; `None` if threads cannot be created.
 fn pool() -> Option<Arc<ThreadPool>> {
     let mut kept = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     match kept.take() {
@@ -18,7 +18,7 @@ fn pool() -> Option<Arc<ThreadPool>> {
             *kept = Some((owner, Arc::clone(&pool)));
             return Some(pool);
         }
-        // To drop the parent's pool would be to wait for its threads.
+        // Dropping the parent's pool would wait for its threads.
         Some((_, pool)) => std::mem::forget(pool),
         None => {}
     }
@@ -27,7 +27,7 @@ fn pool() -> Option<Arc<ThreadPool>> {
     Some(pool)
 }
 
-/// Do `work`, whose parallel parts run on this process's threads.
+/// Runs `work` with its parallel parts on the threads of this process.
 pub fn on_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         Some(pool) => pool.install(work),

@@ -1,4 +1,4 @@
-//! The smoother of a recorded motion, and residuals whitened for its errors.
+//! Smoother of a recorded motion, and whitening of residuals for its errors.
 
 use jbf_motion::{
     estimate, log_likelihood, lower_bound, smooth, Passes, ReadingErrors, Readings, Record,
@@ -24,7 +24,7 @@ pub struct MotionReadings {
     assigned: f64,
 }
 
-/// The attributes of `jbf.records.motion.readings.ReadingErrors`.
+/// Attributes of `jbf.records.motion.readings.ReadingErrors`.
 #[derive(FromPyObject)]
 pub struct Errors {
     position_variance: f64,
@@ -35,7 +35,7 @@ pub struct Errors {
     velocity_delay_s: f64,
 }
 
-/// Variances of position, velocity and stamps, and intensity.
+/// Variances of position, velocity and time stamps, the intensity, and the factors.
 type Estimated<'py> = (f64, f64, f64, f64, Bound<'py, PyArray1<f64>>);
 
 impl Errors {
@@ -50,7 +50,7 @@ impl Errors {
     }
 }
 
-/// Call a function that is generic over the order of the motion.
+/// Calls a function that is generic over the order of the motion.
 macro_rules! of_order {
     ($order:expr, $function:ident, $($argument:expr),*) => {
         match $order {
@@ -75,7 +75,7 @@ impl MotionReadings {
         }
     }
 
-    /// The arrays as vectors, if they have n - 1 and n values.
+    /// Returns the arrays as vectors, if they have n - 1 and n values.
     fn steps_and_samples(
         &self,
         corners: &PyReadonlyArray1<'_, f64>,
@@ -93,7 +93,7 @@ impl MotionReadings {
 
 #[pymethods]
 impl MotionReadings {
-    /// Readings from arrays of n values: see `jbf_motion::Record`.
+    /// Creates readings from arrays of n values; see `jbf_motion::Record`.
     ///
     /// # Errors
     /// If the lengths differ.
@@ -136,10 +136,10 @@ impl MotionReadings {
         Ok(read)
     }
 
-    /// Logarithm of the likelihood of the readings: see `jbf_motion::log_likelihood`.
+    /// Log-likelihood of the readings; see `jbf_motion::log_likelihood`.
     ///
     /// # Errors
-    /// Arrays of other lengths, or an order that is neither 3 nor 4.
+    /// If the arrays have other lengths, or the order is neither 3 nor 4.
     fn log_likelihood(
         &self,
         py: Python<'_>,
@@ -156,10 +156,10 @@ impl MotionReadings {
         })
     }
 
-    /// Lower bound of the likelihood marginal over the factors: see `jbf_motion::lower_bound`.
+    /// Lower bound of the log-likelihood, marginal over the factors; see `jbf_motion::lower_bound`.
     ///
     /// # Errors
-    /// As of `log_likelihood`.
+    /// As for `log_likelihood`.
     fn lower_bound(
         &self,
         py: Python<'_>,
@@ -181,10 +181,10 @@ impl MotionReadings {
         })
     }
 
-    /// The posterior of the motion: see `jbf_motion::smooth`.
+    /// Posterior of the motion; see `jbf_motion::smooth`.
     ///
     /// # Errors
-    /// As of `log_likelihood`.
+    /// As for `log_likelihood`.
     fn smoothed(
         &self,
         py: Python<'_>,
@@ -207,13 +207,13 @@ impl MotionReadings {
             .with(&errors.of_readings(), &corners, &speed, using)
     }
 
-    /// Errors of the readings and factors of the intensity from starting values: see
+    /// Estimates the errors of the readings and the factors of the intensity from start values; see
     /// `jbf_motion::estimate`.
     ///
-    /// Returns the variances of position, velocity and stamps, the intensity and the factors.
+    /// Returns the variances of position, velocity and time stamps, the intensity and the factors.
     ///
     /// # Errors
-    /// As of `log_likelihood`.
+    /// As for `log_likelihood`.
     fn estimated<'py>(
         &self,
         py: Python<'py>,
@@ -253,12 +253,12 @@ impl MotionReadings {
     }
 }
 
-/// The posterior of a motion of order N at n instants.
+/// Posterior of a motion of order N at n instants.
 #[pyclass(module = "jbf._core", frozen, get_all)]
 pub struct SmoothedMotion {
     /// Position and its first N - 1 derivatives at each instant, (n, N).
     mean: Py<PyArray2<f64>>,
-    /// Their covariance at each instant, (n, N, N).
+    /// Covariance of the states at each instant, (n, N, N).
     covariance: Py<PyArray3<f64>>,
     /// Gains of the posterior as a Markov chain backward in time, (n - 1, N, N).
     gain: Py<PyArray3<f64>>,
@@ -280,12 +280,12 @@ fn matrices<const N: usize>(py: Python<'_>, rows: &[[[f64; N]; N]]) -> Py<PyArra
         .unbind()
 }
 
-/// Whiten columns of residuals that contain errors of the motion: see `jbf_motion::whiten`.
+/// Whitens columns of residuals that contain errors of the motion; see `jbf_motion::whiten`.
 ///
 /// Returns the columns, (n, m), and the logarithm of the determinant of their covariance.
 ///
 /// # Errors
-/// Arrays of other shapes.
+/// If the arrays have other shapes.
 #[pyfunction]
 pub fn whiten_motion_errors<'py>(
     py: Python<'py>,
@@ -322,7 +322,7 @@ pub fn whiten_motion_errors<'py>(
     Ok((whitened.into_pyarray(py), log_determinant))
 }
 
-/// The errors of a motion and their effect on n residuals.
+/// Errors of a motion and their effect on n residuals.
 struct Chain<'a> {
     posterior: ArrayView3<'a, f64>,
     gain: ArrayView3<'a, f64>,
@@ -331,7 +331,7 @@ struct Chain<'a> {
 }
 
 impl Chain<'_> {
-    /// Whether the arrays have the shapes for a motion of an order.
+    /// Returns whether the arrays have the shapes for a motion of this order.
     fn fits(&self, order: usize) -> bool {
         let n = self.variance.len();
         self.posterior.dim() == (n, order, order)

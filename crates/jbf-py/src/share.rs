@@ -1,13 +1,14 @@
-//! Work of unlike sizes on all cores: the longest first, so that no core ends long after the rest.
+//! Distribution of work of different sizes to all cores, the longest first, so that all cores
+//! finish at about the same time.
 
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// `work` on every job, answers in the order of `jobs`.
+/// Applies `work` to every job and returns the results in the order of `jobs`.
 ///
 /// # Errors
-/// The first of the errors, in the order of `jobs`.
+/// The first error, in the order of `jobs`.
 pub fn longest_first<J: Sync, R: Send, E: Send>(
     jobs: &[J],
     size: impl Fn(&J) -> usize,

@@ -1,4 +1,4 @@
-//! Trajectories to a tolerance: many runs at once, each its own thread's work.
+//! Trajectories to a tolerance: many runs in parallel, distributed to threads.
 
 mod lanes;
 
@@ -13,24 +13,24 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-/// An imposed speed: `(amplitude, omega, bias)` of a sine, or the times and speeds of a record.
+/// Imposed speed: `(amplitude, omega, bias)` of a sine, or the times and speeds of a record.
 #[derive(FromPyObject)]
 pub enum Imposed {
     Sine((f64, f64, f64)),
     Record((Vec<f64>, Vec<f64>)),
 }
 
-/// One run: where its samples are, and its motion.
+/// One run: its sample times and its motion.
 struct Run {
     time_s: Vec<f64>,
     imposed: Imposed,
 }
 
-/// A number whose derivatives are wanted, if it has any.
+/// A number type, with derivatives if it has any.
 trait Number: Real + Send + Sync {
     fn slopes(&self) -> &[f64];
 
-    /// All runs of a film without inertia.
+    /// Integrates all runs of a film without inertia.
     fn reduced(
         film: &Journal<Self>,
         runs: &[Run],
@@ -62,7 +62,7 @@ impl<const N: usize> Number for Dual<N> {
     }
 }
 
-/// What one run gives.
+/// Result of one run.
 struct Result1 {
     coefficient: Vec<f64>,
     x: Vec<f64>,
@@ -72,8 +72,8 @@ struct Result1 {
     cost: Cost,
 }
 
-/// Friction coefficient, eps cos(phi), eps sin(phi), steps, and derivatives by f_m, U_tr, K0 and
-/// gamma where they were wanted.
+/// Friction coefficient, eps cos(phi), eps sin(phi), number of steps, and, if requested,
+/// derivatives with respect to f_m, U_tr, K0 and gamma.
 type Columns<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
@@ -133,7 +133,7 @@ fn all<T: Number, F: Film<T, N> + Sync, const N: usize>(
         .collect()
 }
 
-/// The law's parameters and what else a run needs.
+/// Settings of all runs, except the parameters of the law.
 struct Asked {
     bearing: Bearing,
     load_n: f64,
@@ -166,8 +166,10 @@ impl Asked {
     }
 }
 
-/// Follow each of `runs`, `(sample times, motion)`, to about `tolerance` in friction; with
-/// `derivatives` also those of the friction by f_m, U_tr, K0 and gamma, exact of the steps taken.
+/// Integrates each of `runs`, `(sample times, motion)`, to about `tolerance` in friction.
+///
+/// With `derivatives`, also returns those of the friction with respect to f_m, U_tr, K0 and gamma,
+/// exact for the steps taken.
 #[pyfunction]
 #[pyo3(signature = (runs, *, model, clock, tolerance, start_time_s, start_eps, start_phi_rad, f_m,
                     u_tr_m_s, k0, gamma, radius_m, length_m, clearance_m, mass_kg, count,
@@ -257,7 +259,7 @@ pub fn trajectories<'py>(
         .collect()
 }
 
-/// The law has so many parameters.
+/// Number of parameters of the law.
 const LANES: usize = 4;
 
 fn named<T>([f_m, u_tr_m_s, k0, gamma]: [T; LANES]) -> Parameters<T> {

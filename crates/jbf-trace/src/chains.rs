@@ -1,4 +1,4 @@
-//! Laws by name, effects by name, and all effects that go with a law.
+//! Fingerprints of laws by name, effects by name, and laws with all effects that apply to them.
 
 use crate::hash::Hash;
 use crate::motion::{motions, STEP_S};
@@ -7,10 +7,10 @@ use jbf_core::law::{self, Named};
 use jbf_core::spec::{Spec, Using};
 use jbf_core::{Bearing, Chain, Clock, Real};
 
-/// No page has more parameters.
+/// Largest number of parameters of a law or an effect.
 const MOST: usize = 16;
 
-/// Values at which a page's fits start, as many as it has.
+/// Start values of a fit of a law or an effect.
 struct Starts<T> {
     values: [T; MOST],
     count: usize,
@@ -33,7 +33,7 @@ impl<T> AsRef<[T]> for Starts<T> {
     }
 }
 
-/// Every reading of a chain along the motion.
+/// Hashes every reading of a chain along the motion.
 struct Along;
 
 impl<T: Real> Using<T> for Along {
@@ -54,8 +54,9 @@ impl<T: Real> Using<T> for Along {
     }
 }
 
-/// A law along the motion, an effect added where `wanted`. What cannot be built shows as the hash
-/// of nothing.
+/// Runs a law along the motion, with the effects for which `wanted` is true.
+///
+/// If the chain cannot be built, the result is the hash of no values.
 fn along<T: Real>(page: &law::Info, wanted: impl Fn(&effect::Info) -> bool) -> Hash {
     let effects = effect::CATALOGUE
         .iter()
@@ -74,14 +75,15 @@ fn along<T: Real>(page: &law::Info, wanted: impl Fn(&effect::Info) -> bool) -> H
 
 type Take<'a> = &'a mut dyn FnMut(&'static str, &'static str, Hash);
 
-/// Every law without effects.
+/// Fingerprints every law without effects.
 pub(crate) fn laws<T: Real>(take: Take<'_>) {
     for page in law::CATALOGUE {
         take("law", page.name, along::<T>(page, |_| false));
     }
 }
 
-/// Every effect round the first law that it goes with, and beside it what it needs to show.
+/// Fingerprints every effect with the first law that it applies to, and with the effects that it
+/// requires.
 pub(crate) fn effects<T: Real>(take: Take<'_>) {
     for info in effect::CATALOGUE {
         let mut laws = law::CATALOGUE.iter();
@@ -99,7 +101,7 @@ pub(crate) fn effects<T: Real>(take: Take<'_>) {
     }
 }
 
-/// Every law with all effects that go with it.
+/// Fingerprints every law with all effects that apply to it.
 pub(crate) fn together<T: Real>(take: Take<'_>) {
     for page in law::CATALOGUE {
         take("chain", page.name, along::<T>(page, |_| true));

@@ -1,4 +1,4 @@
-//! Trajectories to a tolerance.
+//! Fingerprints of trajectories to a tolerance.
 
 use crate::hash::Hash;
 use jbf_core::driver::{follow, Film, Sample, Sampled, Sine, Start};
@@ -6,7 +6,7 @@ use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock, Real};
 
-/// Samples of a trajectory.
+/// Number of samples of a trajectory.
 const SAMPLES: usize = 64;
 
 fn hashed<T: Real, F: Film<T, N>, const N: usize>(film: &F, tolerance: f64) -> [Hash; 2] {
@@ -26,7 +26,7 @@ fn hashed<T: Real, F: Film<T, N>, const N: usize>(film: &F, tolerance: f64) -> [
     hashes
 }
 
-/// Both films, along a sine and along a record.
+/// Fingerprints both films, along a sine and along a record.
 pub(crate) fn drivers<T: Real>(take: &mut dyn FnMut(&'static str, &'static str, Hash)) {
     let p = Parameters::TABLE_4_2;
     let parameters = Parameters {

@@ -1,9 +1,11 @@
-//! Fingerprints of everything that `jbf-core` steps: laws, steppers, effects, whole chains, the
-//! driver, control loops, in single and double precision. A target computes right if its fingerprints are those
-//! of [`TABLE`], to the last bit of every step.
+//! Fingerprints of all computations of `jbf-core` that take steps: laws, steppers, effects, whole
+//! chains, the driver, control loops, in single and double precision.
 //!
-//! `no_std`, no allocation, nothing of the platform's: a microcontroller runs the same code and
-//! compares with the same table. [`check`] is all that it has to call:
+//! A target computes correctly if its fingerprints equal those of [`TABLE`], to the last bit of
+//! every step.
+//!
+//! The crate is `no_std`, does not allocate and uses nothing of the platform. A microcontroller
+//! runs the same code and compares with the same table. [`check`] is the only function to call:
 //!
 //! ```
 //! let found = jbf_trace::check(|trace, expected| {
@@ -14,7 +16,7 @@
 //! assert_eq!(found.different, 0);
 //! ```
 //!
-//! After a change that is meant to change numbers, `make bits-table` writes the table anew.
+//! After an intended change of results, `make bits-table` rewrites the table.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -34,31 +36,31 @@ pub use table::TABLE;
 
 use jbf_core::Real;
 
-/// The fingerprint of one run.
+/// Fingerprint of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trace {
-    /// What kind of thing ran: `law`, `stepper`, `effect`, `chain`, `driver` or `loop`.
+    /// Group of the run: `law`, `stepper`, `effect`, `chain`, `driver` or `loop`.
     pub group: &'static str,
-    /// Its name.
+    /// Name of the run.
     pub name: &'static str,
-    /// `f32` or `f64`.
+    /// Number type, `f32` or `f64`.
     pub kind: &'static str,
     /// Hash of the bits of every step.
     pub hash: u64,
 }
 
-/// How many fingerprints agree with [`TABLE`].
+/// Result of the comparison with [`TABLE`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Found {
-    /// Those of the table.
+    /// Number of fingerprints equal to those of the table.
     pub same: u32,
-    /// Not those of the table.
+    /// Number of fingerprints different from those of the table.
     pub different: u32,
-    /// Not in the table: newer than it.
+    /// Number of fingerprints that the table does not contain because they are newer.
     pub unknown: u32,
 }
 
-/// All fingerprints in one kind of number, handed to `visit` as they are computed.
+/// Computes all fingerprints in one number type and passes each to `visit`.
 pub fn traces<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     steps::<T>(kind, visit);
     drivers::drivers::<T>(&mut |group, name, hash: Hash| {
@@ -71,7 +73,8 @@ pub fn traces<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     });
 }
 
-/// Those of everything that a control loop may step: all but the driver, which is for analysis.
+/// Computes the fingerprints of everything that a control loop may step: all except the driver,
+/// which is for analysis.
 pub fn steps<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     let mut named = |group, name, hash: Hash| {
         visit(&Trace {
@@ -88,7 +91,7 @@ pub fn steps<T: Real>(kind: &'static str, visit: &mut dyn FnMut(&Trace)) {
     loops::loops::<T>(&mut named);
 }
 
-/// All fingerprints, each beside what the table has for it.
+/// Computes all fingerprints and passes each to `visit` with the value of the table.
 pub fn check(mut visit: impl FnMut(&Trace, Option<u64>)) -> Found {
     let mut found = Found::default();
     let mut one = |trace: &Trace| {

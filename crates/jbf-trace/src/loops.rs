@@ -1,5 +1,7 @@
-//! Every observer and compensator in a loop that could fly: encoder, velocity observer, control law,
-//! compensator, limit. What is fingerprinted here is what the benchmarks and the firmware step.
+//! Loops with every observer and compensator: encoder, velocity observer, control law, compensator,
+//! limit.
+//!
+//! The benchmarks and the firmware step the same loops.
 
 use crate::hash::Hash;
 use crate::shaft::{asked, Shaft, COUNTS_PER_RAD, DRIVE, LOOP_STEPS, LOOP_STEP_S};
@@ -18,12 +20,12 @@ use jbf_core::observer::{CoulombObserver, VelocityObserver};
 use jbf_core::{Bearing, Chain, Clock, ParameterError, Real};
 
 const LOAD_N: f64 = 104.0;
-/// Entries of a look-up table, cells of a lap.
+/// Number of entries of a look-up table, and of cells of a lap.
 const ENTRIES: usize = 64;
 
-/// Someone who wants to see a loop.
+/// Operation on a loop with any compensator.
 pub trait LoopVisitor<T: Real> {
-    /// One loop, ready to start; `position` where its references are angles.
+    /// Visits one loop, ready to start; `position` is true if its references are angles.
     fn visit<C: Compensator<T>>(
         &mut self,
         name: &'static str,
@@ -32,7 +34,7 @@ pub trait LoopVisitor<T: Real> {
     );
 }
 
-/// A compensator in the thesis's loop.
+/// Creates the thesis's loop with a compensator.
 pub fn around<T: Real, C: Compensator<T>>(
     compensator: C,
     position: bool,
@@ -54,12 +56,12 @@ pub fn around<T: Real, C: Compensator<T>>(
     )
 }
 
-/// The velocity observer of Appendix E.
+/// Creates the velocity observer of Appendix E.
 pub fn velocity_observer<T: Real>() -> Result<VelocityObserver<T>, ParameterError> {
     VelocityObserver::fed_forward(100.0, DRIVE.damping_1_s, DRIVE.input_rad_s2_v, LOOP_STEP_S)
 }
 
-/// The Coulomb friction observer.
+/// Creates the Coulomb friction observer.
 pub fn coulomb_observer<T: Real>(
     gain: f64,
     exponent: f64,
@@ -67,7 +69,7 @@ pub fn coulomb_observer<T: Real>(
     CoulombObserver::new(gain, exponent, DRIVE.input_rad_s2_v, 5.0, LOOP_STEP_S)
 }
 
-/// Compensation by it.
+/// Creates a compensator with the Coulomb friction observer.
 pub fn coulomb<T: Real>(gain: f64, exponent: f64) -> Result<Coulomb<T>, ParameterError> {
     Ok(Coulomb::new(coulomb_observer(gain, exponent)?, &DRIVE))
 }
@@ -81,7 +83,7 @@ fn parameters<T: Real>() -> Parameters<T> {
     }
 }
 
-/// The reduced model, fitted to the thesis's loop.
+/// Creates the reduced model, fitted to the thesis's loop.
 pub fn reduced<T: Real>() -> Result<Bare<T, Journal<T>>, ParameterError> {
     Ok(bare(Journal::new(
         &Bearing::THESIS,
@@ -91,7 +93,7 @@ pub fn reduced<T: Real>() -> Result<Bare<T, Journal<T>>, ParameterError> {
     )?))
 }
 
-/// The full model, inertia included.
+/// Creates the full model, including inertia.
 pub fn full<T: Real>() -> Result<Bare<T, JournalFull<T>>, ParameterError> {
     Ok(bare(JournalFull::new(
         &Bearing::THESIS,
@@ -105,7 +107,7 @@ fn bare<T: Real, L>(law: L) -> Bare<T, L> {
     Bare::new(law, Bearing::THESIS.radius_m, DRIVE.volts_per_n, LOAD_N)
 }
 
-/// The reduced model with a contact that bends.
+/// Creates the reduced model with an elastic contact.
 pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>, Bending<T>>, ParameterError> {
     let stiffness_1_m = T::of(0.26 * COUNTS_PER_RAD / 0.0127);
     let effects = Bending::new(&[stiffness_1_m])?;
@@ -113,10 +115,10 @@ pub fn chained<T: Real>() -> Result<Whole<T, Journal<T>, Bending<T>>, ParameterE
     Ok(Whole::new(chain, DRIVE.volts_per_n, LOAD_N))
 }
 
-/// The effects of [`chained`].
+/// Effects of [`chained`].
 pub type Bending<T> = AsBristle<Presliding<T>>;
 
-/// A model corrected by an observer, with the settings that `jbf control tune` gives.
+/// Creates a model corrected by an observer, with the settings that `jbf control tune` computes.
 pub fn observed<T: Real, M: Carried<T>>(
     model: M,
     position: bool,
@@ -137,7 +139,7 @@ pub fn observed<T: Real, M: Carried<T>>(
     Observed::new(model, &settings)
 }
 
-/// The thesis's learning compensator.
+/// Creates the learning compensator of the thesis.
 pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, ParameterError> {
     let p = Parameters {
         f_m: T::of(0.26),
@@ -160,18 +162,19 @@ pub fn learning<T: Real>(position: bool) -> Result<Learning<T>, ParameterError> 
     Learning::new(law, &settings)
 }
 
-/// A look-up table against speed.
+/// Creates a look-up table against speed.
 pub fn table<T: Real>() -> Result<Table<T, ENTRIES>, ParameterError> {
     let level = |i: usize| T::of(0.7 - 0.4 * i as f64 / (i as f64 + 8.0));
     Table::new(core::array::from_fn(level), Axis::Speed, 0.5, 0.01)
 }
 
-/// Learning from lap to lap.
+/// Creates a compensator that learns from lap to lap.
 pub fn repetitive<T: Real>() -> Result<Repetitive<T, ENTRIES>, ParameterError> {
     Repetitive::new(500, 0.6, 0.1, 0.02, 3.0, LOOP_STEP_S)
 }
 
-/// Every loop, in velocity control; those that mean something else by a position, in that too.
+/// Visits every loop in velocity control, and those that differ for positions in position control
+/// too.
 pub fn each<T: Real>(visit: &mut impl LoopVisitor<T>) -> Result<(), ParameterError> {
     macro_rules! on {
         ($($name:literal, $position:literal: $compensator:expr;)*) => {
@@ -195,7 +198,7 @@ pub fn each<T: Real>(visit: &mut impl LoopVisitor<T>) -> Result<(), ParameterErr
     Ok(())
 }
 
-/// Fingerprint of a loop round the shaft, and of what it says of itself.
+/// Fingerprint of a loop with the shaft, including the loop's status.
 pub fn run<T: Real, C: Compensator<T>>(
     controller: &Controller<T, C>,
     position: bool,
@@ -217,8 +220,8 @@ pub fn run<T: Real, C: Compensator<T>>(
     hash
 }
 
-/// Every fifth step of the excitation: a hard road for a loop, and a short one for a target
-/// that has to emulate double precision.
+/// Every fifth step of the excitation is used: demanding for a loop, and short for a target that
+/// must emulate double precision.
 const STRIDE: u32 = 5;
 
 struct Take<'a>(&'a mut dyn FnMut(&'static str, &'static str, Hash));
@@ -234,10 +237,10 @@ impl<T: Real> LoopVisitor<T> for Take<'_> {
     }
 }
 
-/// Every loop, fingerprinted.
+/// Fingerprints every loop.
 pub(crate) fn loops<T: Real>(take: &mut dyn FnMut(&'static str, &'static str, Hash)) {
     if each::<T>(&mut Take(take)).is_err() {
-        // The hash of nothing: a test looks for it.
+        // The hash of no values, which a test looks for.
         take("loop", "refused", Hash::default());
     }
 }

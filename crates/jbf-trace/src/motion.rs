@@ -1,6 +1,7 @@
-//! One motion for all: two sines with many reversals, contact and full film, a rest, and a load
-//! that jumps; the temperature
-//! rises. Of sums, products and `jbf-core`'s own sine alone.
+//! Common motion of all fingerprints.
+//!
+//! It consists of two sines with many reversals, contact and full film, a rest, a load that jumps,
+//! and a rising temperature. It uses only sums, products and the sine of `jbf-core`.
 
 use jbf_core::{Bearing, Motion, Real};
 
@@ -12,17 +13,17 @@ const STEPS: u32 = 600;
 /// Amplitude (m/s), frequency (rad/s), phase (rad).
 const WAVES: [[f64; 3]; 2] = [[0.08, 3.0, 0.0], [0.04, 7.1, 1.0]];
 
-/// At rest between these samples.
+/// Range of samples at rest.
 const REST: core::ops::Range<u32> = 240..280;
 
-/// The load (N) jumps at this sample.
+/// Sample at which the load jumps, and the loads (N) before and after it.
 const JUMP: (u32, f64, f64) = (400, 104.0, 150.0);
 
-/// Temperature at first, C, and how fast it rises, C/s.
+/// Initial temperature, C, and its rate of rise, C/s.
 const FIRST_C: f64 = 28.0;
 const RISE_C_S: f64 = 1.5;
 
-/// The motion, sample by sample.
+/// Iterates over the samples of the motion.
 pub fn motions<T: Real>() -> impl Iterator<Item = Motion<T>> {
     let mut angle_rad = 0.0_f64;
     let mut before_m_s = 0.0_f64;

@@ -1,57 +1,60 @@
-//! A shaft to close a loop round, and what is asked of the loop: sixteen seconds with all that makes
-//! a step dear or a result wrong.
+//! Simulated shaft for a closed loop, and the references of the loop.
+//!
+//! The references are sixteen seconds with all conditions that make a step costly or a result
+//! wrong.
 //!
 //! ```text
 //! v' = -a v + b (u - F),   F holds up to a level that jumps with the load
 //! ```
 //!
-//! A step is implicit in F, so that the shaft sticks. It is as light as can be: a microcontroller
-//! has to run it between the steps of the loop that it tests.
+//! A step is implicit in F, so that the shaft sticks. It is as small as possible, because a
+//! microcontroller must run it between the steps of the loop that it tests.
 
 use jbf_core::encoder::THESIS_COUNTS_PER_RAD;
 use jbf_core::plant::Drive;
 use jbf_core::reference::{Reference, Target, Wave};
 use jbf_core::Real;
 
-/// Step of the loop, s.
+/// Time step of the loop, s.
 pub const LOOP_STEP_S: f64 = 0.002;
 
-/// Steps of the whole excitation.
+/// Number of steps of the whole excitation.
 pub const LOOP_STEPS: u32 = 8000;
 
-/// Steps of one part of it.
+/// Number of steps of one part of the excitation.
 const PART: u32 = 1000;
 
-/// The thesis's drive, with the friction scale that these loops' friction was fitted with.
+/// Drive of the thesis, with the friction scale to which the friction of these loops was fitted.
 pub const DRIVE: Drive = Drive::THESIS.with_volts_per_n(0.02827);
-/// Counts of the encoder in a radian; its counter has 16 bits.
+/// Counts per radian of the encoder; its counter has 16 bits.
 pub const COUNTS_PER_RAD: f64 = THESIS_COUNTS_PER_RAD;
 
-/// Friction holds up to this, V, under the load of the thesis.
+/// Holding level of friction, V, under the load of the thesis.
 const LEVEL_V: f64 = 0.7;
 
-/// Reference of each part for velocity control, rad/s, and what the load is of its usual.
+/// Velocity reference of each part, rad/s, and its load relative to the usual load.
 const PARTS: [(Wave, f64, f64, f64); 8] = [
     (Wave::Sine, 10.0, 2.0, 1.0),
     (Wave::Triangle, 4.0, 4.0, 1.0),
-    // Beyond what the voltage can do.
+    // Beyond the limit of the voltage.
     (Wave::Square, 60.0, 9.0, 1.0),
-    // Crawling.
+    // Creep.
     (Wave::Sine, 0.05, 3.0, 1.0),
-    // The load jumps up, and down below its usual.
+    // The load jumps up, and down below its usual value.
     (Wave::Sine, 6.0, 7.0, 2.0),
     (Wave::Sine, 6.0, 7.0, 0.4),
-    // The encoder's cable breaks for a while, then its counter jumps.
+    // The cable of the encoder breaks for a while, then its counter jumps.
     (Wave::Sine, 10.0, 2.0, 1.0),
     (Wave::Triangle, 8.0, 20.0, 1.0),
 ];
 
-/// Steps with a dead encoder, and the step at which its counter jumps.
+/// Range of steps with a dead encoder, and the step at which its counter jumps.
 const DEAD: core::ops::Range<u32> = 6200..6500;
 const JUMP: u32 = 6800;
 
-/// What is asked of the loop at a step: the target, and the friction's level, V. A position
-/// reference is the same wave, a tenth as large.
+/// Target of the loop at a step, and the friction level, V.
+///
+/// A position reference is the same wave, a tenth as large.
 pub fn asked<T: Real>(step: u32, position: bool) -> (Target<T>, T) {
     let part = (step / PART % PARTS.len() as u32) as usize;
     let (wave, size, frequency_rad_s, load) = PARTS[part];
@@ -90,7 +93,7 @@ impl<T: Real> Default for Shaft<T> {
 }
 
 impl<T: Real> Shaft<T> {
-    /// What the encoder's counter shows at a step.
+    /// Value of the encoder's counter at a step.
     pub fn counter(&mut self, step: u32) -> u32 {
         if !DEAD.contains(&step) {
             let counts = self.angle_rad * T::of(COUNTS_PER_RAD);
@@ -100,7 +103,7 @@ impl<T: Real> Shaft<T> {
         self.counter
     }
 
-    /// One step under a voltage, against friction of a level, V.
+    /// Advances one step under a voltage, against friction of a level, V.
     pub fn push(&mut self, volts: T, level_v: T) {
         let before = self.speed_rad_s;
         let free = self.keep * before + self.gain * volts;

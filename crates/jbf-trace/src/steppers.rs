@@ -1,4 +1,4 @@
-//! Every stepper on the films that it is for.
+//! Fingerprints of every stepper on the films that it is meant for.
 
 use crate::hash::Hash;
 use crate::motion::{motions, STEP_S};
@@ -8,7 +8,10 @@ use jbf_core::law::Law;
 use jbf_core::stepper::{Euler, Rk4, Rodas3, Rodas5P};
 use jbf_core::{Bearing, Clock, Motion, Real};
 
-/// |U| at the start, middle and end of each step, and a closure that steps; its answer is hashed.
+/// Hashes the results of `step` along the motion.
+///
+/// Its arguments are the motion, |U| at the start, middle and end of the step, and the length of
+/// the step.
 fn along<T: Real>(mut step: impl FnMut(&Motion<T>, [T; 3], T) -> [T; 2]) -> Hash {
     let mut hash = Hash::default();
     let mut before = T::ZERO;
@@ -34,7 +37,7 @@ fn parameters<T: Real>() -> Parameters<T> {
     }
 }
 
-/// Every stepper.
+/// Fingerprints every stepper.
 pub(crate) fn steppers<T: Real>(take: &mut dyn FnMut(&'static str, &'static str, Hash)) {
     let bearing = Bearing::THESIS;
     let (Ok(law), Ok(full)) = (

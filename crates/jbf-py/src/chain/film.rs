@@ -1,8 +1,8 @@
-//! The paths of the film along motions, where chains that differ behind the film can share them.
+//! Paths of the film along motions, which chains that differ only after the film share.
 //!
-//! Their derivatives by the film's two parameters are finite differences of paths that run side by side.
-//! The relative error of a derivative is about 1e-6, negligible for searches and standard errors; three
-//! lanes of one register cost a fifth of dual numbers.
+//! Their derivatives with respect to the two parameters of the film are finite differences of paths
+//! that are computed in parallel. The relative error of a derivative is about 1e-6, negligible for
+//! searches and standard errors. Three lanes of one register cost a fifth of dual numbers.
 
 use super::Chain;
 use crate::film_paths::{Film, FilmPath, Steps};
@@ -20,13 +20,15 @@ use std::sync::Arc;
 /// Relative perturbation of a film parameter; a power of two is exact.
 const APART: f64 = 1.0 / 1_048_576.0;
 
-/// The film's parameters on the journal law's page.
+/// Indices of the parameters of the film in the description of the journal law.
 const BY: Option<[usize; 2]> = <Journal<f64> as Law<f64>>::FILM_PARAMETERS;
 
 type Path = Option<Arc<FilmPath>>;
 
 impl Chain {
-    /// The path of this chain's film along each motion. There is none where
+    /// Returns the path of this chain's film along each motion.
+    ///
+    /// There is no path if
     ///
     /// - the law has no film path,
     /// - an effect before the film changes it,
@@ -99,7 +101,7 @@ impl Chain {
         Ok(paths)
     }
 
-    /// The law, and where slopes are asked for its neighbour in each film parameter.
+    /// Returns the law and, with `with_slopes`, its perturbation in each film parameter.
     fn laws(
         &self,
         p: &[f64],
@@ -125,7 +127,9 @@ impl Chain {
     }
 }
 
-/// Places out of the film's own lane and those of its neighbours, which stand so far `apart`.
+/// Combines the film's own lane and the perturbed lanes into states with slopes.
+///
+/// `apart` holds the perturbations of the parameters.
 fn joined(lanes: &[Vec<f64>], apart: [f64; 2]) -> Vec<Place> {
     let own = lanes[0].iter().copied().enumerate();
     own.map(|(k, film)| {
@@ -141,7 +145,7 @@ fn joined(lanes: &[Vec<f64>], apart: [f64; 2]) -> Vec<Place> {
     .collect()
 }
 
-/// What a motion asks of a film.
+/// Steps of a film that a motion requires.
 fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
     let every = RefCell::new(Vec::with_capacity(motion.len() * 9 / 8));
     let asks = jbf_core::Chain::round(FilmSteps::new(|s| every.borrow_mut().push(s)), (), None);
@@ -149,9 +153,9 @@ fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
     let mut before = 0;
     run::predict(&asks, &motion.record(), inner_s, |i, _| {
         let made = every.borrow().len();
-        // Samples at one instant have no step between them, and no end.
+        // Samples at the same instant have no step between them, and no end.
         if i > 0 && made > before {
-            // A path of more steps than a u32 counts would not fit into memory.
+            // A path with more steps than a u32 can count would not fit into memory.
             ends.push((made - 1) as u32);
         }
         before = made;
@@ -166,7 +170,7 @@ fn steps_of(motion: &Motion, inner_s: f64) -> Steps {
     }
 }
 
-/// The longest inner step along each motion, s.
+/// Longest inner step along each motion, s.
 struct LongestInnerStep<'a> {
     max_step_s: f64,
     motions: &'a [&'a Motion],

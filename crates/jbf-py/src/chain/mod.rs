@@ -19,7 +19,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use runs::{FilmRate, InnerSteps};
 
-/// A friction law with its effects; the parameters come with each call.
+/// A friction law with its effects; the parameters are passed with each call.
 #[pyclass(frozen, module = "jbf._core")]
 pub struct Chain {
     law: &'static law::Info,
@@ -36,7 +36,7 @@ impl Chain {
         self.law.parameters.len() + theirs.sum::<usize>()
     }
 
-    /// The law with its effects.
+    /// Law and effects as a prediction model.
     fn model(&self) -> Model<'_> {
         Model {
             law: self.law,
@@ -130,7 +130,7 @@ impl Chain {
         own.chain(theirs).collect()
     }
 
-    /// Friction readings, N, one array a run.
+    /// Friction readings, N, one array per run.
     fn predict<'py>(
         &self,
         py: Python<'py>,
@@ -145,8 +145,9 @@ impl Chain {
         Ok(runs.into_iter().map(|v| v.into_pyarray(py)).collect())
     }
 
-    /// Fastest rate of the law's film along any of the motions, 1/s. Beyond
-    /// `FASTEST_FILM_1_S` a prediction does not follow it.
+    /// Fastest rate of the law's film along any of the motions, 1/s.
+    ///
+    /// Beyond `FASTEST_FILM_1_S` a prediction does not resolve the film.
     fn film_rate_1_s(
         &self,
         parameters: PyReadonlyArray1<'_, f64>,
@@ -158,7 +159,7 @@ impl Chain {
         self.model().with_chain(p, film_rate).map_err(refused)
     }
 
-    /// How many inner steps a prediction along all of the motions takes: what it costs.
+    /// Number of inner steps of a prediction along all motions, a measure of its cost.
     fn inner_steps(
         &self,
         parameters: PyReadonlyArray1<'_, f64>,
@@ -173,8 +174,9 @@ impl Chain {
         self.model().with_chain(p, counted).map_err(refused)
     }
 
-    /// Readings (N) and their derivatives with respect to the parameters `which`: for each
-    /// run an array of n values and one of shape (n, len(which)).
+    /// Readings (N) and their derivatives with respect to the parameters `which`.
+    ///
+    /// Returns for each run an array of n values and one of shape (n, len(which)).
     #[allow(clippy::type_complexity)]
     fn jacobian<'py>(
         &self,

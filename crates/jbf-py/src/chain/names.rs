@@ -1,11 +1,11 @@
-//! Laws, clocks and effects by the names that Python uses.
+//! Look-up of laws, clocks and effects by their Python names.
 
 use jbf_core::effect::{Info, CATALOGUE};
 use jbf_core::{law, Clock};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The law of that name.
+/// Returns the law with this name.
 pub fn law(name: &str) -> PyResult<&'static law::Info> {
     law::CATALOGUE
         .iter()
@@ -13,14 +13,14 @@ pub fn law(name: &str) -> PyResult<&'static law::Info> {
         .ok_or_else(|| PyValueError::new_err(format!("law {name:?} is not in the catalogue")))
 }
 
-/// The clock of that name.
+/// Returns the clock with this name.
 pub fn clock(name: &str) -> PyResult<Clock> {
     Clock::from_name(name).ok_or_else(|| {
         PyValueError::new_err(format!("clock {name:?} is neither journal nor thesis"))
     })
 }
 
-/// The effect of that name, if it goes with the law.
+/// Returns the effect with this name, if it applies to the law.
 pub fn effect(name: &str, law: &law::Info) -> PyResult<&'static Info> {
     let info = CATALOGUE
         .iter()

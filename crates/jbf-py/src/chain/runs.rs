@@ -6,7 +6,7 @@ use jbf_core::run;
 use jbf_core::spec::Using;
 use jbf_core::Chain;
 
-/// The fastest rate of the film along any of the motions, 1/s.
+/// Fastest rate of the film along any of the motions, 1/s.
 pub struct FilmRate<'a> {
     pub motions: &'a [&'a Motion],
 }
@@ -23,7 +23,7 @@ impl Using<f64> for FilmRate<'_> {
     }
 }
 
-/// Inner steps along all of the motions.
+/// Number of inner steps along all motions.
 pub struct InnerSteps<'a> {
     pub motions: &'a [&'a Motion],
     pub max_step_s: f64,

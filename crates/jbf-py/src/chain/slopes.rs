@@ -1,5 +1,7 @@
-//! Derivatives of a chain's readings: parameters in groups that one pass carries side by side, and
-//! the passes of all runs on all cores.
+//! Derivatives of the readings of a chain.
+//!
+//! Parameters are processed in groups, one per pass, and the passes of all runs are distributed to
+//! all cores.
 
 use super::Chain;
 use crate::film_paths::FilmPath;
@@ -8,11 +10,11 @@ use crate::share::longest_first;
 use jbf_core::ParameterError;
 use jbf_predict::parameter_passes;
 
-/// Values of a run, and the derivatives of each with respect to some parameters, row by row.
+/// Values of a run, and their derivatives with respect to some parameters, row by row.
 pub type Slice = (Vec<f64>, Vec<f64>);
 
 impl Chain {
-    /// For each motion its readings and their derivatives by the parameters `which`.
+    /// Readings and their derivatives with respect to the parameters `which`, for each motion.
     pub(super) fn all_slopes(
         &self,
         p: &[f64],
@@ -44,7 +46,7 @@ impl Chain {
     }
 }
 
-/// Join blocks of columns into one matrix of `n` rows.
+/// Joins blocks of columns into one matrix of `n` rows.
 fn side_by_side(parts: &[Slice], n: usize, columns: usize) -> Vec<f64> {
     if let [(_, only)] = parts {
         return only.clone();

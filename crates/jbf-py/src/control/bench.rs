@@ -1,4 +1,4 @@
-//! The bench itself: plant, encoder, noise, faults, and the log of a run.
+//! Simulated test bench: plant, encoder, noise, faults, and the log of a run.
 
 use super::plant::{PlantSpec, Shaft};
 use super::running::Stepping;
@@ -10,19 +10,19 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::rand_core::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
-/// What goes wrong, in steps of the loop; a start beyond the run is never.
+/// Faults, in steps of the loop; a fault that starts after the end of the run does not occur.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Faults {
-    /// The counter stands still from the first to before the second step.
+    /// The counter is frozen from the first step until before the second.
     frozen: (usize, usize),
-    /// At this step the counter jumps ...
+    /// Step at which the counter jumps.
     jump_at: usize,
-    /// ... by so many counts.
+    /// Size of the jump in counts.
     jump_counts: i64,
 }
 
-/// Noise from a seed: the same on every machine.
+/// Noise from a seed, identical on every machine.
 pub struct Noise {
     random: Pcg64Mcg,
     input_v: f64,
@@ -50,7 +50,7 @@ impl Noise {
 
 macro_rules! log {
     ($($name:ident),* $(,)?) => {
-        /// One value a step.
+        /// Log of a run, with one value per step.
         #[derive(Default)]
         pub struct Log {
             $($name: Vec<f64>,)*
@@ -78,7 +78,7 @@ log! {
     estimated_friction_v, correction_v, forward_v, output_v, learned_0, learned_1,
 }
 
-/// Run the loop along a reference (value, rate) and a load (N), one sample a step.
+/// Runs the loop along a reference (value, rate) and a load (N), with one sample per step.
 pub fn run(
     shaft: &mut dyn Shaft,
     looped: &mut dyn Stepping,

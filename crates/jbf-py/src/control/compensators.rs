@@ -1,4 +1,4 @@
-//! Every compensator of the core as Python hands it over: a dictionary whose `kind` says which.
+//! All compensators of the core, passed from Python as dictionaries with the key `kind`.
 
 use super::learning::LearningSpec;
 use super::observed::ObservedSpec;
@@ -13,12 +13,12 @@ use jbf_core::Real;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Entries of a look-up table on the bench.
+/// Number of entries of a look-up table on the bench.
 pub const ENTRIES: usize = 64;
-/// Cells of a lap on the bench.
+/// Number of cells of a lap on the bench.
 const CELLS: usize = 256;
 
-/// A compensator, by its `kind`.
+/// A compensator, selected by its `kind`.
 pub enum Spec {
     Nothing,
     Coulomb(CoulombSpec),
@@ -121,7 +121,7 @@ impl RepetitiveSpec {
 }
 
 impl Spec {
-    /// The loop of `settings` round this compensator.
+    /// Builds the loop of `settings` with this compensator.
     pub fn into_loop<T: Real>(self, settings: &LoopSpec) -> PyResult<Box<dyn Stepping>> {
         match self {
             Spec::Nothing => boxed::<T, _>(settings, NoCompensation),

@@ -1,5 +1,5 @@
-//! Numbers that Python asks for and does not keep itself: the thesis's bench, the gains of the
-//! control laws, the flags of a loop.
+//! Constants that Python takes from the core: the thesis's bench, the gains of the control laws,
+//! and the flags of a loop.
 
 use super::compensators::ENTRIES;
 use jbf_core::controller::{BaseLaw, Status};
@@ -22,8 +22,8 @@ pub fn thesis_bearing(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(d)
 }
 
-/// The thesis's drive, encoder and velocity observer, the entries of a table, and the flags of a
-/// loop by name.
+/// Drive, encoder and velocity observer of the thesis, the number of table entries, and the flags
+/// of a loop by name.
 #[pyfunction]
 pub fn control_constants(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let (d, drive, thesis) = (PyDict::new(py), PyDict::new(py), Drive::THESIS);
@@ -44,7 +44,7 @@ pub fn control_constants(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(d)
 }
 
-/// Gains of the thesis's control law on a drive: k1 and k2 of the position law, g and C of the
+/// Gains of the thesis's control law for a drive: k1 and k2 of the position law, or g and C of the
 /// velocity law.
 #[pyfunction]
 pub fn control_gains(position: bool, damping_1_s: f64, input_rad_s2_v: f64) -> (f64, f64) {

@@ -45,7 +45,7 @@ pub fn control_reference<'py>(
     Ok((value.into_pyarray(py), rate.into_pyarray(py)))
 }
 
-/// Run a loop on the bench; every array has one value a step of the loop.
+/// Runs a loop on the bench; every array has one value per step of the loop.
 #[pyfunction]
 #[pyo3(signature = (plant, loop_settings, compensator, reference, rate, load_n, faults, *, precision))]
 #[allow(clippy::too_many_arguments)]

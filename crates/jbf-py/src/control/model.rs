@@ -1,4 +1,4 @@
-//! A friction model as Python hands it over, and the chain that comes of it.
+//! A friction model passed from Python, and the chain that is built from it.
 
 use crate::bearing::{refused, Sizes};
 use jbf_core::spec::Spec;
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 pub use jbf_core::spec::Using;
 
-/// Law, effects and their values, in the order of the catalogue's pages.
+/// Law, effects and their values, in the order of the descriptions in the catalogue.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct ModelSpec {
@@ -21,7 +21,7 @@ pub struct ModelSpec {
 }
 
 impl ModelSpec {
-    /// Build the chain and hand it on.
+    /// Builds the chain and passes it on.
     pub fn chain<T: Real, U: Using<T>>(&self, then: U) -> PyResult<U::Output> {
         let clock = Clock::from_name(&self.clock)
             .ok_or_else(|| PyValueError::new_err("clock is neither journal nor thesis"))?;

@@ -1,4 +1,4 @@
-//! The observed compensator as Python hands it over.
+//! The observer-corrected compensator, as passed from Python.
 
 use super::model::{ModelSpec, Using};
 use super::running::{boxed, Stepping};
@@ -11,7 +11,7 @@ use jbf_core::law::Named;
 use jbf_core::{Chain, Real};
 use pyo3::prelude::*;
 
-/// The model that it carries, its settings, and what an earlier run learned.
+/// Model of the compensator, its settings, and the corrections that an earlier run learned.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct ObservedSpec {
@@ -20,7 +20,7 @@ pub struct ObservedSpec {
     start: (f64, f64),
 }
 
-/// What `jbf control tune` computes for the compensator and its place in the loop.
+/// Settings that `jbf control tune` computes for the compensator and its loop.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct TunedSpec {
@@ -69,7 +69,7 @@ impl<T: Real> Using<T> for Carry<'_, T> {
 }
 
 impl ObservedSpec {
-    /// The loop of `settings` round this compensator.
+    /// Builds the loop of `settings` with this compensator.
     pub fn into_loop<T: Real>(self, settings: &LoopSpec) -> PyResult<Box<dyn Stepping>> {
         self.model.chain(Carry::<T> {
             spec: &self,

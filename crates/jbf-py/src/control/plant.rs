@@ -1,4 +1,4 @@
-//! The bench's plant, of any law, behind one face.
+//! Plant of the bench, with any law, behind one trait.
 
 use super::model::{ModelSpec, Using};
 use crate::bearing::refused;
@@ -7,7 +7,7 @@ use jbf_core::plant::{Drive, Plant, State};
 use jbf_core::Chain;
 use pyo3::prelude::*;
 
-/// Motor and shaft as Python hands them over.
+/// Motor and shaft, as passed from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct DriveSpec {
@@ -18,7 +18,7 @@ pub struct DriveSpec {
 }
 
 impl DriveSpec {
-    /// The core's drive.
+    /// Returns the drive of the core.
     pub fn drive(&self) -> Drive {
         Drive::new(self.damping_1_s, self.input_rad_s2_v)
             .with_volts_per_n(self.volts_per_n)
@@ -26,7 +26,7 @@ impl DriveSpec {
     }
 }
 
-/// The bench as Python hands it over.
+/// The bench, as passed from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct PlantSpec {
@@ -41,11 +41,11 @@ pub struct PlantSpec {
     inner_steps: u32,
 }
 
-/// A plant that is being run.
+/// A running plant.
 pub trait Shaft {
-    /// One step of the loop under an input (V) and a load (N).
+    /// Advances one step of the loop under an input (V) and a load (N).
     fn tick(&mut self, input_v: f64, load_n: f64);
-    /// Angle (rad), speed (rad/s) and friction (V) now.
+    /// Present angle (rad), speed (rad/s) and friction (V).
     fn now(&self) -> [f64; 3];
 }
 
@@ -91,7 +91,7 @@ impl Using<f64> for Build<'_> {
 }
 
 impl PlantSpec {
-    /// The plant, at rest, having stood for the time of the spec.
+    /// Builds the plant, at rest, after a rest of the specified time.
     pub fn build(&self, dt_s: f64, load_n: f64) -> PyResult<Box<dyn Shaft>> {
         let spec = self;
         self.model.chain(Build { spec, dt_s, load_n })?

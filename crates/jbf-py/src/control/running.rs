@@ -1,4 +1,4 @@
-//! A loop of any compensator and any kind of number, behind one face.
+//! A loop with any compensator and any number type, behind one trait.
 
 use super::settings::LoopSpec;
 use jbf_core::compensator::Compensator;
@@ -7,9 +7,9 @@ use jbf_core::reference::Target;
 use jbf_core::Real;
 use pyo3::prelude::*;
 
-/// A loop that is being run.
+/// A running loop.
 pub trait Stepping: Send {
-    /// One step, in double precision outside whatever it is inside.
+    /// Computes one step; the interface is double precision, whatever the internal number type.
     fn step(&mut self, counter: u32, target: Target<f64>) -> Parts<f64>;
 }
 
@@ -33,7 +33,7 @@ where
     }
 }
 
-/// The loop of `settings` round a compensator, at its start.
+/// Creates the loop of `settings` with a compensator, at its start.
 pub fn boxed<T: Real, C>(settings: &LoopSpec, compensator: C) -> PyResult<Box<dyn Stepping>>
 where
     C: Compensator<T> + Send + 'static,

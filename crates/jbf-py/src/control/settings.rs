@@ -1,4 +1,4 @@
-//! The loop round a compensator, as Python hands it over.
+//! Settings of the loop around a compensator, as passed from Python.
 
 use super::plant::DriveSpec;
 use crate::bearing::refused;
@@ -9,24 +9,25 @@ use jbf_core::observer::{velocity, VelocityObserver};
 use jbf_core::{Error, Real};
 use pyo3::prelude::*;
 
-/// The drive that the loop believes in, its encoder, and when to stop believing; the control law
-/// and the velocity observer are the thesis's on that drive.
+/// Assumed drive of the loop, its encoder, and the limits of trust in the encoder.
+///
+/// The control law and the velocity observer are those of the thesis for that drive.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct LoopSpec {
     pub dt_s: f64,
-    /// Position control, else velocity control.
+    /// True for position control, false for velocity control.
     pub position: bool,
     pub drive: DriveSpec,
     counts_per_rad: f64,
     counter_bits: u32,
-    /// None for a loop that only a jump of the counter stops.
+    /// `None` for a loop that only a jump of the counter stops.
     moving_v: Option<f64>,
     patience_s: Option<f64>,
 }
 
 impl LoopSpec {
-    /// The control law.
+    /// Returns the control law.
     pub fn law(&self) -> BaseLaw<f64> {
         let drive = self.drive.drive();
         if self.position {
@@ -36,7 +37,7 @@ impl LoopSpec {
         }
     }
 
-    /// The loop round a compensator.
+    /// Builds the loop with a compensator.
     pub fn round<T: Real, C: Compensator<T>>(&self, compensator: C) -> PyResult<Controller<T, C>> {
         let drive = self.drive.drive();
         let top_speed_rad_s = drive.top_speed_rad_s();
@@ -59,7 +60,8 @@ impl LoopSpec {
         Controller::new(encoder, observer, law, compensator, limits, self.dt_s).map_err(refused)
     }
 
-    /// Appendix E's observer in position control, Appendix D's in velocity control.
+    /// Returns the observer of Appendix E in position control, that of Appendix D in velocity
+    /// control.
     fn observer<T: Real>(&self) -> Result<VelocityObserver<T>, Error> {
         if self.position {
             let drive = self.drive.drive();

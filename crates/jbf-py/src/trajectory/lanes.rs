@@ -1,4 +1,4 @@
-//! Several runs of a film without inertia side by side in the lanes of one thread.
+//! Several runs of a film without inertia in the lanes of one thread.
 
 use super::{one, Imposed, Result1, Run};
 use jbf_batch::{follow_side_by_side, Simd};
@@ -7,21 +7,22 @@ use jbf_core::law::journal::Journal;
 use jbf_core::ParameterError;
 use rayon::prelude::*;
 
-/// Runs that go side by side: of eight the samples, which are handed over one by one, cost what the
-/// wider register saves.
+/// Number of runs in parallel. With eight, the serial output of the samples costs what the wider
+/// register saves.
 const LANES: usize = 4;
 
-/// Fewer are quicker one after the other.
+/// Number of runs below which a serial computation is faster.
 const WORTH: usize = 3;
 
-/// All runs, dealt out to the threads; the bits are those of one after the other.
+/// Distributes all runs to the threads; the result is identical bit for bit to a serial
+/// computation.
 pub fn all_in_lanes(
     film: &Journal<f64>,
     runs: &[Run],
     start: &Start<f64>,
     tolerance: f64,
 ) -> Result<Vec<Result1>, ParameterError> {
-    // Those of one kind together.
+    // Group runs of the same kind.
     let mut order: Vec<usize> = (0..runs.len()).collect();
     order.sort_by_key(|&i| matches!(runs[i].imposed, Imposed::Record(_)));
     let share = runs.len().div_ceil(rayon::current_num_threads());
@@ -46,7 +47,8 @@ pub fn all_in_lanes(
     Ok(found.into_iter().map(|(_, result)| result).collect())
 }
 
-/// Groups of at most so many, neighbours in different ones: what is alike takes as long.
+/// Groups of at most `most` runs, with neighbours in different groups, because similar runs take
+/// similar time.
 fn dealt(runs: &[usize], most: usize) -> Vec<Vec<usize>> {
     let groups = runs.len().div_ceil(most);
     (0..groups)
@@ -58,7 +60,7 @@ fn is_record(run: &Run) -> bool {
     matches!(run.imposed, Imposed::Record(_))
 }
 
-/// Runs of one kind, at most [`LANES`].
+/// Integrates runs of one kind, at most [`LANES`].
 fn together(
     film: &Journal<f64>,
     runs: &[&Run],

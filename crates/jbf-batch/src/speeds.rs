@@ -32,7 +32,8 @@ impl<F: Float> Speeds<'_, F> {
     }
 }
 
-/// Speeds of one block, as seen by the inner loop; a common speed is a single number.
+/// Speeds of one block: the part of [`Speeds`] that the inner loop uses, in which a common speed is
+/// a single number.
 pub(crate) trait Course<F> {
     /// Speed of each lane at a sample.
     fn at(&self, sample: usize) -> impl Fn(usize) -> F + Copy;

@@ -1,7 +1,8 @@
 //! Signal chain: a friction law with effects, advanced one step at a time.
 //!
 //! ```text
-//! commanded motion -> drive -> lubricant -> load -> film (the law) -> contact -> other -> instrument
+//! commanded motion -> drive -> lubricant -> load -> film (the law)
+//!                  -> contact -> other -> instrument
 //! ```
 //!
 //! Each stage takes its input at both ends of the step and returns its output at the end, so the

@@ -8,10 +8,10 @@
 /// Hysteresis loops differ visibly between the two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
-    /// `tbar = t U_tr / R`.
+    /// Time scale `tbar = t U_tr / R`.
     #[default]
     Journal,
-    /// `tbar = t / (1 s)`.
+    /// Time scale `tbar = t / (1 s)`.
     Thesis,
 }
 

@@ -18,16 +18,16 @@ use crate::reference::Target;
 pub enum BaseLaw<T> {
     /// Position control: the angle follows the reference.
     Position {
-        /// `k1`, V/rad.
+        /// Gain `k1` on the angle error, V/rad.
         angle_v_rad: T,
-        /// `k2`, V s/rad.
+        /// Gain `k2` on the speed, V s/rad.
         speed_v_s_rad: T,
     },
     /// Velocity control: the speed follows the reference.
     Velocity {
-        /// `g`, V s/rad.
+        /// Gain `g` on the speed error, V s/rad.
         speed_v_s_rad: T,
-        /// `C`, V s/rad.
+        /// Feedforward gain `C` on the reference speed, V s/rad.
         forward_v_s_rad: T,
     },
 }

@@ -19,7 +19,7 @@ pub enum Error {
         /// Name of the parameter, with its unit (`load_n`).
         name: &'static str,
     },
-    /// Fewer values than parameters.
+    /// The list has fewer values than parameters.
     TooFew {
         /// Name of the list of values.
         name: &'static str,

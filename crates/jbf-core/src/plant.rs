@@ -29,7 +29,7 @@ const MOST_TRIALS: u32 = 24;
 
 /// Absolute tolerance of the speed of a step, rad/s, and its relative tolerance.
 ///
-/// The speed is solved anew at every step, so errors do not accumulate.
+/// The speed is solved again at every step, so errors do not accumulate.
 const NEAR_RAD_S: f64 = 1e-7;
 const NEAR: f64 = 1e-6;
 

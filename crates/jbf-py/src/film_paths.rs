@@ -100,7 +100,7 @@ impl FilmPaths {
 
     /// Stores the path of a film.
     ///
-    /// It replaces a path of the same film, or the least recently used path.
+    /// It replaces a path of the same film or, if the cache is full, the least recently used path.
     pub fn keep(&self, film: Film, path: Arc<FilmPath>) {
         let paths = &mut self.lock().paths;
         if let Some(at) = paths.iter().position(|(of, _)| *of == film) {

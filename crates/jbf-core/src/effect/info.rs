@@ -167,7 +167,7 @@ impl Info {
         self.needs.iter().copied().find(|need| !need.met_by(law))
     }
 
-    /// True if a parameter has an infinite null value.
+    /// True if the value of a parameter is its infinite null.
     ///
     /// The effect is then omitted, which is the only exact form of this limit.
     pub fn absent<T: Real>(&self, values: &[T]) -> bool {

@@ -4,7 +4,7 @@
 //! U_tr -> U_tr (F/F_0)^p,  K0 -> K0 (F/F_0)^q,  F_0 the rig's load
 //! ```
 //!
-//! Cohn (1998) had to fit U_tr and K0 anew at each load. Tables 4.2 and 4.3 (two-way motion) have
+//! Cohn (1998) had to fit U_tr and K0 again at each load. Tables 4.2 and 4.3 (two-way motion) have
 //! 0.06 m/s and 7.5e5 at 104 N, 0.05 m/s and 6.25e5 at 83.5 N, which is p = q = 0.83. Tables 4.4
 //! and 4.5 (one-way) give p = 0, q = 1.50.
 //!

@@ -2,7 +2,8 @@
 //! of the signal chain:
 //!
 //! ```text
-//! commanded motion -> drive -> lubricant -> load -> film (the law) -> contact -> other -> instrument
+//! commanded motion -> drive -> lubricant -> load -> film (the law)
+//!                  -> contact -> other -> instrument
 //! ```
 //!
 //! An effect knows only its own stage. To add an effect, write its file, declare the module below,

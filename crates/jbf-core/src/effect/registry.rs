@@ -16,7 +16,7 @@ pub(crate) trait Shelf<T: Real>: EffectSet<T> {
     /// True if no effect of this stage is set.
     fn is_empty(&self) -> bool;
 
-    /// Sets the effect of that name, or removes it where a parameter has an infinite null.
+    /// Sets the effect of that name, or removes it where a parameter is at its infinite null.
     ///
     /// Returns `None` if this stage has no effect of that name.
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>>;
@@ -148,8 +148,8 @@ macro_rules! signal_chain {
                 OccupiedStages { $($stage: !self.$stage.is_empty(),)* }
             }
 
-            /// Adds (or replaces) the effect of that name, or removes it where a parameter has an
-            /// infinite null.
+            /// Adds (or replaces) the effect of that name, or removes it where a parameter is at
+            /// its infinite null.
             ///
             /// # Errors
             /// Names the parameter that violates its rule, or reports that there is no such effect.

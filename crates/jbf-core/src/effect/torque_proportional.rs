@@ -2,9 +2,8 @@
 //!
 //! `F_t` is the force of other effects of the chain that the transmission carries: a weight
 //! (`gravity`), a mass (`inertia_leak`), a constant load (`sensor_offset`). A recorded load is the
-//! subject of `dry_load_dependence`; a push `k L` adds no friction in this effect, because that
-//! effect contains it. This effect is for a load that is not recorded and that the model estimates
-//! as well.
+//! subject of `dry_load_dependence`; that effect already contains the friction of a push `k L`.
+//! This effect is for a load that is not recorded and that the model estimates as well.
 //!
 //! Gears and screws lose a share `mu_d` of `F_t` where they drive (`F_t v > 0`) and another share
 //! `mu_b` where they are driven back. With half their sum `mu` and half their difference `d`,
@@ -13,8 +12,8 @@
 //! larger weight or mass (for a recorded load it is the `k` of `zero_load_dependence`). It
 //! therefore has no parameter.
 //!
-//! The data determine `mu` divided by `1 + d`. The product of the two efficiencies is `(1 - mu)/(1
-//! + mu)`; from `mu` = 1 on the drive is self-locking.
+//! The data determine `mu` divided by `1 + d`. With this quotient as `mu`, the product of the two
+//! efficiencies is `(1 - mu)/(1 + mu)`; from one on the drive is self-locking.
 //!
 //! Source: Hamon, Gautier & Garrec (2010) for gears and screws; Wolf & Iskandar (2018) for
 //! strain-wave gears.

@@ -10,8 +10,8 @@
 //!   temperature was recorded.
 //!
 //! Source: Bittencourt & Gunnarsson (2012) and Simoni et al. (2019) on robot joints that warm up.
-//! The temperature of one lumped body follows `exp(-t/tau)`, and friction is proportional to it for
-//! small changes.
+//! The temperature of one lumped body follows `exp(-t/tau)`. The change of friction is proportional
+//! to it as long as it is small.
 
 use super::{Contact, Effect, Info, Need, Parameter, Rig, Stage};
 use crate::error::ParameterError;

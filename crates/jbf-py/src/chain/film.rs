@@ -28,12 +28,12 @@ type Path = Option<Arc<FilmPath>>;
 impl Chain {
     /// Returns the path of this chain's film along each motion.
     ///
-    /// There is no path if
+    /// There is no path in any of these cases:
     ///
-    /// - the law has no film path,
-    /// - an effect before the film changes it,
-    /// - the load changes, or
-    /// - a step left the bearing.
+    /// - The law has no film path.
+    /// - An effect before the film changes it.
+    /// - The load changes.
+    /// - A step left the bearing.
     pub(super) fn film_paths(
         &self,
         p: &[f64],

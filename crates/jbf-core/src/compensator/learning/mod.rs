@@ -98,7 +98,7 @@ impl<T: Real> Learning<T> {
 
     /// Starts from the parameters that an earlier run learned, limited to the bounds.
     ///
-    /// Values that are not finite are ignored.
+    /// If any of them is not finite, nothing changes.
     #[must_use]
     pub fn resumed(mut self, learned: Learned<T>) -> Self {
         if learned.k0.is_finite() && learned.gamma.is_finite() {

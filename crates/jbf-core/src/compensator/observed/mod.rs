@@ -14,14 +14,14 @@
 //! would stop the shaft within one step and reverse it. With its slope s (V s/rad) the step is
 //!
 //! ```text
-//! v+ = keep v + gain (u - s v - ...)            keep = exp(-a dt): rings beyond s = (1 + keep)/gain
-//! v+ = keep' v + gain' (u - ...)                keep' = exp(-(a + b s) dt): stable for any s
+//! v+ = keep v + gain (u - s v - ...)     keep = exp(-a dt): rings beyond s = (1 + keep)/gain
+//! v+ = keep' v + gain' (u - ...)         keep' = exp(-(a + b s) dt): stable for any s
 //! ```
 //!
 //! The second form is used where `gain s > keep` and the first would reverse the shaft. It is also
-//! used while the observer is blind and nothing else limits it. Both forms have the same steady
-//! speed. Otherwise, in the first form, the voltage that the loop applies against smooth friction
-//! cancels that friction exactly.
+//! used where `gain s > keep` and the observer is blind, because nothing else then limits it. Both
+//! forms have the same steady speed. Otherwise, in the first form, the voltage that the loop
+//! applies against smooth friction cancels that friction exactly.
 //!
 //! The observer sticks as the plant does, so it learns nothing false at rest. The compensator
 //! outputs F_hat, where `dir` is the direction of the wanted motion if the shaft is slow. It adds
@@ -161,7 +161,7 @@ impl<T: Real, M: Carried<T>> Observed<T, M> {
 
     /// Starts from the corrections that an earlier run learned, limited to their bounds.
     ///
-    /// Values that are not finite are ignored.
+    /// If any of them is not finite, nothing changes.
     #[must_use]
     pub fn resumed(mut self, learned: Learned<T>) -> Self {
         if learned.level_v.is_finite() && learned.rest_v.is_finite() {

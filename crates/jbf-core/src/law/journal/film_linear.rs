@@ -1,8 +1,8 @@
 //! Derivatives of the equations of motion of the film, in the co-rotating frame:
 //!
 //! ```text
-//! slope = vr r + vt t,   d slope/d eps = (vr_e, vt_e),   d slope/d phi = (vr_phi - vt, vt_phi + vr)
-//! J     = Q M Q^T,       M = [ d/d eps, (1/eps) d/d phi ],   Q = [ r, t ]
+//! slope = vr r + vt t, d slope/d eps = (vr_e, vt_e), d slope/d phi = (vr_phi - vt, vt_phi + vr)
+//! J     = Q M Q^T,     M = [ d/d eps, (1/eps) d/d phi ],   Q = [ r, t ]
 //! ```
 
 use super::film_motion::{slope, Asperities, Film};

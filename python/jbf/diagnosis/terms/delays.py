@@ -20,6 +20,7 @@ from jbf.diagnosis.terms.shifts import (
     fit_common_delay,
     fit_delays_by_run,
     fit_delays_by_search,
+    with_mean_delay,
 )
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import drift_step, lateness_step
@@ -88,7 +89,8 @@ def _estimates(model: Model) -> list[Shifted]:
     start = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
     estimates = []
     if lateness_step(problem, solution).chance < policy.deviation_chance:
-        estimates.append(fit_delays_by_run(problem, start))
+        by_run = fit_delays_by_run(problem, start)
+        estimates.append(by_run if _significant(by_run, policy) else with_mean_delay(by_run))
     if not known_delays(problem.campaign):
         # The parameters of the model adapt slowly to a drift.
         if special.chdtrc(1, drift_step(problem, solution).square) < HINT:

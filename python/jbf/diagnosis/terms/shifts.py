@@ -189,6 +189,17 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
     return now if now.solution.rms_n < start.solution.rms_n else start
 
 
+def with_mean_delay(shifted: Shifted) -> Shifted:
+    """Shift all runs by the mean of their delays."""
+    problem, solution = shifted.problem, shifted.solution
+    mean_s = lateness_step(problem, solution).mean_s(shifted.late_s)
+    change_s = mean_s - shifted.late_s
+    known = dict(zip(problem.names, solution.values.tolist(), strict=True))
+    campaign = moved(problem, change_s, 0.0)
+    again, fit = refitted(problem, campaign, problem.effects, known, solution)
+    return Shifted(again, fit, np.full(len(change_s), mean_s), shifted.drift)
+
+
 def _coloured(shifted: Shifted) -> Shifted:
     """Re-estimate the noise of shifted runs from the present residuals."""
     problem, values, samples = shifted.problem, shifted.solution.values, shifted.solution.samples

@@ -1,7 +1,7 @@
 """Make the data that `jbf demo` ships: `python simulator/make_demo_data.py`.
 
-Two campaigns from the independent simulator, one with hidden effects and one with none, each
-with a run of another motion that takes no part in the diagnosis, and the truth.
+Two campaigns from the independent simulator: one with hidden effects, one without. Each also has a
+run with a different motion that the diagnosis does not use, and a file with the true values.
 """
 
 from __future__ import annotations

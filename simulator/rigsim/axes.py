@@ -1,7 +1,7 @@
-"""Drives, slides and joints: dry and viscous friction under a load that changes, and what may be
-beside it. Forces are closed forms of the true motion; the records have counts and noise.
+"""Simulate drives, slides and joints with dry and viscous friction under varying load.
 
-`jbf` is never imported here.
+Effects can be added to the friction. Forces are closed forms of the true motion; the records
+contain encoder counts and noise. `jbf` is never imported here.
 """
 
 from __future__ import annotations
@@ -70,22 +70,25 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "dry_temperature_dependence": {"a": Spread(0.006, 0.015, "1/K", 1.0, signed=True)},
     "viscous_temperature_dependence": {"B": Spread(400.0, 1000.0, "K", 1.0)},
 }
-"""Parameters as drawn at strength 1, some noises large."""
+"""Parameter ranges at strength 1, where the noise can be large."""
 OF_TEMPERATURE = ("dry_temperature_dependence", "viscous_temperature_dependence")
-"""Effects that show where the temperature changes."""
+"""Effects that can be observed only if the temperature changes."""
 
 STEP_S = 0.01
 RUN_S = 40.0
 ARM_M = 1.0
-"""A joint on a radius of one metre: its angle is the path."""
+"""A joint with a radius of one metre, so that its angle (rad) equals the path (m)."""
 COUNTS_PER_M = 2.0e4
 LOADS_N = (60.0, 100.0, 160.0)
 
 
 @dataclass(frozen=True)
 class AxisRun:
-    """A recorded run: time (s), angle (rad) or position (m), speed (m/s), force (N), load (N), and
-    temperature (C) where there is a thermometer."""
+    """A recorded run.
+
+    Time (s), angle (rad) or position (m), speed (m/s), force (N), load (N), and the temperature (C)
+    if there is a thermometer.
+    """
 
     name: str
     time_s: Vector
@@ -97,7 +100,7 @@ class AxisRun:
 
 
 def draw_axis(name: str, rng: np.random.Generator, strength: float = 1.0) -> dict[str, float]:
-    """Random parameters of an effect on an axis."""
+    """Draw random parameters of an effect on an axis."""
     return {key: spread.draw(rng, strength) for key, spread in AXIS_EFFECTS[name].items()}
 
 
@@ -113,10 +116,11 @@ def axis_campaign(
     run_s: float = RUN_S,
     step_s: float = STEP_S,
 ) -> tuple[list[AxisRun], dict[str, object]]:
-    """Runs of one drive, each under one of three loads, and the truth behind them.
+    """Simulate the runs of one drive, each under one of three loads, and return the true values.
 
-    `swing` widens the motion: times 8 it is a joint's, a radian or two to either side. The
-    temperature changes where an effect asks for it, or where its course is given.
+    `swing` scales the motion: with a factor of 8 it is that of a joint, one or two radians to
+    either side. The temperature changes if an effect requires it or if `temperature` gives its
+    course.
     """
     rng = np.random.default_rng([seed, 77])
     hidden = {name: draw_axis(name, rng, strength) for name in effects}
@@ -125,7 +129,7 @@ def axis_campaign(
     if temperature is None and set(effects) & set(OF_TEMPERATURE):
         temperature = "wandering"
     records = []
-    # A stream of its own: a campaign with a thermometer is the one without it.
+    # A separate random stream: the other draws do not depend on the thermometer.
     air = np.random.default_rng([seed, 78])
     for i in range(runs):
         warmth = None if temperature is None else draw_warmth(temperature, i, run_s, air)
@@ -177,7 +181,7 @@ def _force(
     time: Vector,
     celsius: Vector | None,
 ) -> Vector:
-    """What the drive must push with, N."""
+    """Force that the drive must apply, N."""
 
     def of(effect: str, key: str) -> float:
         return hidden.get(effect, {}).get(key, 0.0)
@@ -193,13 +197,13 @@ def _force(
         level = level * (1.0 + of("dry_temperature_dependence", "a") * (celsius - REFERENCE_C))
         b_k = of("viscous_temperature_dependence", "B")
         slope = slope * np.array([thinner(b_k, c) for c in celsius.tolist()])
-    # Springs in a row: the straight line, and the level at which it ends.
+    # Springs in series: the straight line, and the level that limits it.
     slope = 1.0 / (1.0 / slope + of("viscous_thinning", "w") * np.abs(v) / slope)
     hangs = of("gravity", "theta_0")
     weight = of("gravity", "G") * np.sin(path / ARM_M - hangs)
     carried = weight + of("inertia_leak", "m_e") * a
     push = of("zero_load_dependence", "k") * load + of("sensor_offset", "b")
-    # A gear asks for more than it carries where it drives and, driven back, gives less.
+    # A gear requires more than the carried force when it drives, and returns less when driven back.
     lost = of("torque_proportional", "mu") * np.where(carried * v > 0.0, carried, -carried)
     cold = 1.0 + of("warm_up", "a") * np.exp2(-time / (math.log(2.0) * tau_s))
     place = np.ones(len(path))
@@ -210,29 +214,30 @@ def _force(
     sliding = (np.sign(v) * level + slope * v) * cold * place
     found: Vector = sliding + carried + lost + push
     if any(effect in hidden for effect in BENT):
-        # The zero is the amplifier's, after the cell.
+        # The zero offset arises in the amplifier, after the cell.
         zero = of("sensor_offset", "b")
         found = through_cell(found - zero, hidden) + zero
     return found
 
 
 def _peak(hidden: dict[str, dict[str, float]], v: Vector) -> Vector:
-    """What friction at low speed has more in positive motion than in the mean, N."""
+    """Excess of the low-speed friction in positive motion over the mean of both directions, N."""
     own = hidden.get("stribeck_asymmetry", {"c": 0.0, "v_s": 1.0, "n": 1.0})
     found: Vector = own["c"] * np.power(math.e, -((np.abs(v) / own["v_s"]) ** own["n"]))
     return found
 
 
 def _along_the_stroke(hidden: dict[str, dict[str, float]], path: Vector) -> Vector:
-    """The dry level at each place over its mean along the stroke.
+    """Dry friction level at each position relative to its mean along the stroke.
 
-    Waves over the stroke are Chebyshev's polynomials of the cosine of the first one's phase.
+    The waves over the stroke are Chebyshev polynomials of the cosine of the phase of the first
+    wave.
     """
     own = hidden.get("stroke_dependence")
     if own is None:
         return np.ones(len(path))
     share = np.clip((path - own["x_0"]) / own["h"], -1.0, 1.0)
-    # From the upper end down: cos(k t), t from 0 to pi; odd ones change their sign in turn.
+    # From the upper end down: cos(k t), t from 0 to pi; the sign alternates for odd k.
     sizes = [0.0, own["a_1"], -own["a_2"], -own["a_3"], own["a_4"], own["a_5"], -own["a_6"]]
     whole: Vector = 1.0 + np.polynomial.chebyshev.chebval(
         np.cos(0.5 * math.pi * (1.0 - share)), sizes
@@ -241,7 +246,7 @@ def _along_the_stroke(hidden: dict[str, dict[str, float]], path: Vector) -> Vect
 
 
 def _wave(hidden: dict[str, dict[str, float]], effect: str, path: Vector, ahead: float) -> Vector:
-    """A sine over the pitch, `ahead` of it by a share of a period; the phase lags."""
+    """A sine over the pitch, advanced by `ahead` periods; `phase` is a lag."""
     own = hidden.get(effect, {"pitch": 1.0, "phase": 0.0})
     turns = path / own["pitch"] - own["phase"] / (2.0 * math.pi) + ahead
     found: Vector = np.imag(np.exp(2j * math.pi * turns))

@@ -1,4 +1,4 @@
-"""The rig's fixed geometry and the four parameters of its base friction law."""
+"""Fixed geometry of the rig and the four parameters of its base friction law."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whole measurement campaigns: standard motions, a random rig, hidden effects, files."""
+"""Complete measurement campaigns: standard motions, a random rig, hidden effects and files."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from .warmth import Kind, draw_warmth, read_by
 
 @dataclass(frozen=True)
 class Campaign:
-    """A named list of motions, one recorded run each.
+    """A named list of motions with one recorded run each.
 
-    `load_shares` gives a run a load of so many times the rig's, by the name of its motion.
+    `load_shares` maps the name of a motion to the load of its run as a multiple of the rig's load.
     """
 
     name: str
@@ -38,8 +38,10 @@ def _one_way(name: str, duration_s: float, omega: float) -> Motion:
 
 
 def standard(name: str) -> Campaign:
-    """One of the standard campaigns: `full`, `heldout`, `loads`, `one_way`, `short`, `slow`,
-    `steady`."""
+    """Return a standard campaign.
+
+    The names are `full`, `heldout`, `loads`, `one_way`, `short`, `slow` and `steady`.
+    """
     shares: dict[str, float] = {}
     if name == "full":
         moves = [(1.0, 1), (9.1, -1), (26.2, 1), (32.1, 1), (61.2, -1), (72.3, -1), (78.9, 1)]
@@ -62,7 +64,7 @@ def standard(name: str) -> Campaign:
             _one_way("uni_w0.5", 38.0, 0.5),
         ]
     elif name == "one_way":
-        # Nothing turns round: what has the sign of the motion and what has none are alike.
+        # The motion never reverses: terms with and without the sign of the speed are confounded.
         motions = [_one_way("uni_w0.25", 50.3, 0.25), _one_way("uni_w1.0", 25.2, 1.0)]
     elif name == "short":
         motions = [
@@ -103,7 +105,7 @@ def standard(name: str) -> Campaign:
 
 
 def draw_base(seed: int) -> Base:
-    """A random rig around Tables 4.2 to 4.5."""
+    """Draw a random rig around Tables 4.2 to 4.5."""
     rng = stream(seed, "base")
     return Base(
         f_m=float(rng.uniform(0.20, 0.29)),
@@ -133,13 +135,14 @@ def simulate_campaign(
     temperature: Kind | None = None,
     thermometer: str = "fine",
 ) -> tuple[dict[str, Record], dict[str, Any]]:
-    """Records by run name, and the truth behind them.
+    """Simulate records by run name, and return them with the true values.
 
-    `effects` are names (parameters are drawn at `strength`) or name -> parameters. `noise` is
-    the white sd as a share of the nominal peak f_m F, drawn from 1 to 2.5 % if None;
-    `coloured` adds a first-order part half as large with 0.2 s. Rig, effects and noise level
-    depend on `seed` alone, so two campaigns with one seed are of the same rig. The temperature
-    changes, and is recorded, where an effect asks for it or where its course is given.
+    `effects` are names (parameters are drawn at `strength`) or a mapping of names to parameters.
+    `noise` is the white sd as a share of the nominal peak f_m F, drawn from 1 to 2.5 % if None.
+    `coloured` adds a first-order part half as large with a time constant of 0.2 s. Rig, effects and
+    noise level depend on `seed` alone, so two campaigns with one seed describe the same rig. The
+    temperature changes, and is recorded, if an effect requires it or if `temperature` gives its
+    course.
     """
     plan = standard(campaign) if isinstance(campaign, str) else campaign
     base = draw_base(seed)
@@ -195,7 +198,7 @@ def simulate_campaign(
 
 
 def rig_toml(bearing: Bearing, load_n: float) -> str:
-    """The rig's file, as the contract has it."""
+    """Contents of `rig.toml` in the format of the contract."""
     return (
         f"[bearing]\nradius_m = {bearing.radius_m}\nlength_m = {bearing.length_m}\n"
         f"clearance_m = {bearing.clearance_m}\nmass_kg = {bearing.mass_kg}\n"
@@ -214,7 +217,7 @@ def write_campaign(
     campaign: str | Campaign = "full",
     foreign: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Simulate as `simulate_campaign` and write rig.toml and one CSV a run; give the truth."""
+    """Simulate as `simulate_campaign`, write rig.toml and one CSV per run; return the truth."""
     records, truth = simulate_campaign(seed, effects, strength, noise, coloured, campaign, foreign)
     out = Path(folder)
     out.mkdir(parents=True, exist_ok=True)

@@ -1,8 +1,8 @@
-"""The effects by name: their parameters, nulls, and random draws of sensible size.
+"""The effects by name: parameters, null values, and random draws of typical size.
 
-A `Spread` says between which values a parameter is drawn at strength 1 and with which power
-of the strength it scales. At strength 1 an effect's RMS is of the order of the noise, up to a
-few times that, in at least one run of the standard campaign.
+A `Spread` defines the range of a parameter at strength 1 and the power of the strength by which it
+scales. At strength 1 the RMS of an effect is between the noise and a few times the noise in at
+least one run of the standard campaign.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class Spread:
-    """Range of one parameter (log-uniform if positive, uniform from 0), and how it scales."""
+    """Range of one parameter, log-uniform if positive and uniform from 0, and its scaling power."""
 
     low: float
     high: float
@@ -26,7 +26,7 @@ class Spread:
     signed: bool = False
 
     def draw(self, rng: np.random.Generator, strength: float) -> float:
-        """A value at `strength`; either sign if `signed`."""
+        """Draw a value at `strength`, with either sign if `signed`."""
         if self.low > 0.0:
             value = float(np.exp(rng.uniform(math.log(self.low), math.log(self.high))))
         else:
@@ -81,7 +81,7 @@ CATALOGUE: dict[str, dict[str, Spread]] = {
 }
 
 BY_THERMOMETER = ("vogel_viscosity",)
-"""Effects that show where the temperature changes, which is then recorded."""
+"""Effects that can be observed only if the temperature changes, which is then recorded."""
 
 NULLS: dict[str, dict[str, float]] = {
     "drive_compliance": {"k": math.inf},
@@ -115,7 +115,7 @@ NULLS: dict[str, dict[str, float]] = {
 
 
 def draw(name: str, rng: np.random.Generator, strength: float = 1.0) -> dict[str, float]:
-    """Random parameters of effect `name` at `strength` (1 standard; 0.6 to 1.5 sensible)."""
+    """Draw random parameters of effect `name` at `strength` (1 standard; 0.6 to 1.5 sensible)."""
     if name not in CATALOGUE:
         raise ValueError(f"no effect named {name!r}; there are {', '.join(CATALOGUE)}")
     values = {key: spread.draw(rng, strength) for key, spread in CATALOGUE[name].items()}
@@ -126,7 +126,7 @@ def draw(name: str, rng: np.random.Generator, strength: float = 1.0) -> dict[str
 
 
 def check(effects: dict[str, dict[str, float]]) -> dict[str, dict[str, float]]:
-    """`effects` without those at their null; an unknown name or parameter raises."""
+    """Return `effects` without those at their null; raise for an unknown name or parameter."""
     active = {}
     for name, values in effects.items():
         if name not in CATALOGUE:

@@ -1,4 +1,4 @@
-"""The signal chain of one run: state layout, rates and friction, for either kind of drive."""
+"""Signal chain of one run, for either kind of drive: state layout, rates and friction."""
 
 from __future__ import annotations
 
@@ -15,9 +15,8 @@ from .warmth import Warmth
 class Chain:
     """Lubricant, film, contact, other friction and sensor lag of one rig.
 
-    The state holds eps, phi and, where their effects are on, heat beta T (-), bristle
-    deflection (m), lagged friction (N) and the time (s) that a thermometer asks for, in that
-    order.
+    The state holds eps and phi. If their effects are active, heat beta T (-), bristle deflection
+    (m), lagged friction (N) and the time (s) that the temperature requires follow, in that order.
     """
 
     def __init__(
@@ -55,9 +54,9 @@ class Chain:
     def start(self, v: float, acceleration: float, path: Path) -> list[float]:
         """State at the start of a run that begins at surface speed `v` (m/s).
 
-        The film is cold and at the transition, or at `film_start` (eps, phi). A run that begins
-        at rest has its bristle slack; one that begins in motion has it fully bent. The lagged cell
-        has settled.
+        The film is cold and at the transition, or at `film_start` (eps, phi). A run that begins at
+        rest has a relaxed bristle; one that begins in motion has a fully deflected bristle. The
+        lagged cell has settled.
         """
         y = [*(self.film_start or self.film.start()), *([0.0] * (self.size - 2))]
         sign = (v > 0.0) - (v < 0.0)
@@ -81,7 +80,7 @@ class Chain:
     def bearing(
         self, y: Sequence[float], v: float, sign: int, path: Path, held_n: float | None = None
     ) -> float:
-        """Bearing friction (N): bristle, else the `held_n` of a stuck journal, else sliding."""
+        """Bearing friction (N): of the bristle, else `held_n` of a stuck journal, else sliding."""
         if self.bristle_at >= 0:
             return self.load_n * self.contact.sigma * y[self.bristle_at]
         if held_n is not None:
@@ -99,7 +98,7 @@ class Chain:
         path: Path,
         held_n: float | None = None,
     ) -> float:
-        """Force (N) the load cell reports, lag included, offset and drift not."""
+        """Force (N) reported by the load cell, with lag but without offset and drift."""
         if self.lag_at >= 0:
             return y[self.lag_at]
         return self.bearing(y, v, sign, path, held_n) + self.other.force(v, sign, acceleration)
@@ -118,7 +117,7 @@ class Chain:
         ub = self._film_speed(y, speed)
         out = list(self.film.rates(y[0], y[1], ub))
         if self.time_at >= 0:
-            # Thin oil leaves the gap sooner: the squeeze goes with 1/mu.
+            # Thin oil leaves the gap sooner: the squeeze rate is proportional to 1/mu.
             thick = self.lubricant.thickness(y[self.time_at])
             out = [rate / thick for rate in out]
         if self.size == 2:

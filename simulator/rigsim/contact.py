@@ -1,8 +1,8 @@
-"""Effects in the contact: what the asperities and bristles add to the film's friction.
+"""Effects in the contact: contributions of asperities and bristles to the film's friction.
 
-Order: wear-in scales f_m; film friction is added; then Kato's dwell term and the Stribeck
-excess; then direction asymmetry and position ripple multiply that sum. The bristle of
-`presliding`, when present, tends to this unsigned coefficient.
+Order: running-in scales f_m; film friction is added; then Kato's dwell term and the Stribeck
+excess; then direction asymmetry and position ripple multiply that sum. The bristle of `presliding`,
+when present, tends to this unsigned coefficient.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .lubricant import Parameters
 
 @dataclass
 class Path:
-    """What the contact remembers of the motion at one instant."""
+    """History of the motion on which the contact depends, at one instant."""
 
     slid_m: float = 0.0  # distance slid in the run
     since_rest_m: float = 0.0  # distance slid since the last rest
@@ -25,7 +25,7 @@ class Path:
 
 
 class Contact:
-    """Friction coefficient of the contact, unsigned."""
+    """Unsigned friction coefficient of the contact."""
 
     def __init__(self, effects: Parameters, film: Film, f_m: float) -> None:
         self.film = film

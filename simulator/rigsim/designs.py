@@ -1,7 +1,7 @@
-"""Rigs of other designs: geometry, oil, load and friction drawn over what such rigs have.
+"""Rigs of other designs, with geometry, oil, load and friction drawn from realistic ranges.
 
-Effects of the catalogue are sized for the standard rig; here they are scaled to the rig, so that a
-strength of 1 means as much of the friction on a light rig as on a heavy one.
+The effects of the catalogue are sized for the standard rig. Here they are scaled to the rig, so
+that a strength of 1 is the same share of the friction on a light rig as on a heavy one.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .film import Film
 from .lubricant import Parameters
 from .seeds import Rng, log_uniform, stream
 
-USUAL_FORCE_N = 24.0  # f_m F of the rig that the catalogue is sized for
+USUAL_FORCE_N = 24.0  # f_m F of the rig for which the catalogue is sized
 USUAL_RADIUS_M = 0.0127
 COUNTS_PER_TURN = (8192, 10000, 15000, 20000, 36000)
 PUSHES_N = {
@@ -29,12 +29,12 @@ PUSHES_N = {
     "sensor_drift": ("d",),
     "sensor_hysteresis": ("w",),
 }
-"""Parameters in newtons, or newtons for something."""
+"""Parameters in newtons, or in newtons per another unit, by effect."""
 
 
 @dataclass(frozen=True)
 class Design:
-    """A rig, its logger, and the speeds (m/s) and noise (N) that suit them."""
+    """A rig, its logger, and matching speeds (m/s) and noise (N)."""
 
     base: Base
     rate_hz: float
@@ -63,7 +63,7 @@ def _base(rng: Rng) -> Base:
 
 
 def _turns(base: Base) -> bool:
-    """Whether the film of a drawn rig carries at speed and touches at rest."""
+    """Whether the film of a drawn rig carries the load at speed and touches at rest."""
     if not 80.0 < base.load_group < 1500.0:
         return False
     touching = base.transition_eccentricity() + math.sqrt(base.load_group / base.K0)
@@ -71,7 +71,7 @@ def _turns(base: Base) -> bool:
 
 
 def draw_design(seed: int) -> Design:
-    """The rig of a seed."""
+    """Draw the rig of a seed."""
     rng = stream(seed, "design")
     base = _base(rng)
     while not _turns(base):
@@ -86,18 +86,18 @@ def draw_design(seed: int) -> Design:
 
 
 def _heat_w(base: Base) -> float:
-    """About the power of a bearing's friction in a run at 1.5 U_tr (W)."""
+    """Approximate friction power of a bearing in a run at 1.5 U_tr (W)."""
     shear = Film.of(base).shear(base.transition_eccentricity(), 1.5)
     return base.load_n * base.U_tr * (0.05 * base.f_m + shear)
 
 
 def draw_effect(name: str, base: Base, rng: Rng, strength: float = 1.0) -> dict[str, float]:
-    """Random parameters of an effect, scaled to a rig."""
+    """Draw random parameters of an effect, scaled to a rig."""
     values = draw(name, rng, strength)
     share = base.f_m * base.load_n / USUAL_FORCE_N
     for key in PUSHES_N.get(name, ()):
         values[key] *= share
-    if name == "sensor_nonlinearity":  # the same share of the reading at the rig's own force
+    if name == "sensor_nonlinearity":  # the same share of the reading at the force of the rig
         values["c"] /= share**2
     if name == "drive_compliance":  # the drive is sized for the torque; its modes stay
         turned = share * base.bearing.radius_m / USUAL_RADIUS_M
@@ -110,21 +110,23 @@ def draw_effect(name: str, base: Base, rng: Rng, strength: float = 1.0) -> dict[
 def draw_effects(
     names: tuple[str, ...], base: Base, seed: int, strength: float = 1.0
 ) -> Parameters:
-    """Parameters of some effects, those of a name by its own stream."""
+    """Draw the parameters of several effects, each from the random stream of its name."""
     return {n: draw_effect(n, base, stream(seed, "effect", n), strength) for n in names}
 
 
 def draw_film_start(base: Base, speed_m_s: float, rng: Rng) -> tuple[float, float]:
-    """A film (eps, phi) of a run that begins at some speed, not settled at that speed.
+    """Draw the film state (eps, phi) of a run that begins at a speed at which it has not settled.
 
-    It is as at another steady speed, up to three times slower or faster, or as at the transition.
-    A run that begins at rest may find it standing on its asperities, or on its way there.
+    The state is that of another steady speed, up to three times slower or faster, or that of the
+    transition. In a run that begins at rest the shaft is on its asperities or still approaching
+    them.
     """
     film = Film.of(base)
     eps, phi = film.start()
     ub = abs(speed_m_s) / base.U_tr
     if ub < 0.02:
-        # Soft asperities alone would let the shaft through the bush: there the film bears as well.
+        # With soft asperities alone the shaft would pass through the bush; there the film also
+        # carries.
         gap = min(math.sqrt(film.load_group / film.stiffness), 0.9 * (1.0 - film.eps_tr))
         standing = film.eps_tr + gap
         return float(rng.uniform(eps, standing)), phi * float(rng.uniform())

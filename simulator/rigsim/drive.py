@@ -1,8 +1,8 @@
-"""Runs with a compliant drive: the journal hangs on a torsion spring and sticks or slips.
+"""Runs with a compliant drive: the journal is driven by a torsion spring and sticks or slips.
 
-Stick and slip phases are integrated one after another and located by events. A stuck journal
-is shown to the load cell by the drive's twist torque; a sliding one by its own friction. With
-a bristle contact there is no set-valued friction, so the journal is integrated in one phase.
+Stick and slip phases are integrated one after another and located by events. The load cell reports
+the twist torque of the drive for a stuck journal and the friction for a sliding one. With a bristle
+contact there is no set-valued friction, so the journal is integrated in one phase.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .motions import Motion, Piece
 
 Vector = NDArray[np.float64]
 RTOL = 1e-9
-STILL = 1e-9  # m/s; a bristled journal slower than this has no direction
+STILL = 1e-9  # m/s; a journal with a bristle below this speed has direction zero
 NUDGE = 1e-9  # rad/s given to a journal that breaks away
 
 
@@ -44,7 +44,8 @@ class CompliantDrive:
     def run(self, motion: Motion, times: Vector, *, under_way: bool = False) -> Vector:
         """Load cell force (N), before offset and drift, at `times` (s).
 
-        The drive begins untwisted, or, `under_way`, with the twist of the friction at its start.
+        The drive begins without twist or, if `under_way`, with the twist due to its initial
+        friction.
         """
         force = np.zeros(len(times))
         first = motion.pieces[0]
@@ -97,7 +98,7 @@ class CompliantDrive:
         if self.chain.bristle_at >= 0:
             atol[self.chain.bristle_at] = 1e-13
         if self.chain.lag_at >= 0:
-            atol[self.chain.lag_at] = 1e-6  # N; a drag that changes sign makes its rate jump
+            atol[self.chain.lag_at] = 1e-6  # N; its rate jumps when a drag changes sign
         out = solve_ivp(
             lambda t, y: rates(piece, t, y.tolist()),
             (t0, piece.t1),

@@ -1,6 +1,7 @@
-"""Motions as people run them: drawn rates, phases, stops and rests, none of them on a grid.
+"""Realistic motions: drawn rates, phases, stops and rests, without alignment to a sampling grid.
 
-A motion is a little longer than its record at both ends: a late or a leading channel looks there.
+A motion is slightly longer than its record at both ends, because a delayed or leading channel
+samples beyond the record.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ Knots = list[tuple[float, float]]
 class Plan:
     """A run: `length_s` of `motion` from `begins_s` on, recorded under a share of the load.
 
-    One that begins before its motion (below 0 s) finds the rig at rest, as a motion begins. Others
-    find it under way, with a film of unknown history.
+    A run that begins before its motion (below 0 s) starts at rest, as the motion does. Other runs
+    start during the motion, with a film of unknown history.
     """
 
     motion: Motion
@@ -35,14 +36,14 @@ class Plan:
 
 
 def _length(omega: float, rng: Rng) -> float:
-    """Two to four periods, though neither too short nor too long (s)."""
+    """Draw a length of two to four periods, limited to a reasonable range (s)."""
     period = 2.0 * math.pi / omega
     usual = min(max(rng.uniform(2.0, 4.0) * period, 18.0), max(60.0, 1.1 * period))
     return float(usual * rng.uniform(0.95, 1.1))
 
 
 def _phase(rng: Rng) -> float:
-    """Anywhere in a motion; one in four begins from rest."""
+    """Draw a phase anywhere in the motion; one run in four begins at rest."""
     return 0.0 if rng.random() < 0.25 else float(rng.uniform(0.0, 2.0 * math.pi))
 
 
@@ -54,7 +55,7 @@ def two_way(name: str, top: float, omega: float, rng: Rng) -> Plan:
 
 
 def one_way(name: str, top: float, omega: float, rng: Rng) -> Plan:
-    """A sine that never turns round."""
+    """A sine that never changes sign."""
     length, swing = _length(omega, rng), rng.uniform(0.35, 0.47) * top
     sense = 1.0 if rng.random() < 0.5 else -1.0
     tones = [(swing, omega, _phase(rng))]
@@ -63,7 +64,7 @@ def one_way(name: str, top: float, omega: float, rng: Rng) -> Plan:
 
 
 def triangle(name: str, top: float, omega: float, rng: Rng) -> Plan:
-    """Straight flanks, begun anywhere."""
+    """A triangular speed with a random starting phase."""
     length, quarter = _length(omega, rng), 0.5 * math.pi / omega
     end = LEAD_IN_S + length + TAIL_S
     begun = 4.0 * quarter * float(rng.uniform())
@@ -75,7 +76,7 @@ def triangle(name: str, top: float, omega: float, rng: Rng) -> Plan:
 
 
 def _between(knots: Knots, start: float, end: float) -> Knots:
-    """A polyline cut to a stretch of time."""
+    """Cut a polyline to a time interval."""
 
     def at(t: float) -> float:
         for (t0, v0), (t1, v1) in pairwise(knots):
@@ -88,7 +89,7 @@ def _between(knots: Knots, start: float, end: float) -> Knots:
 
 
 def stops(name: str, top: float, _omega: float, rng: Rng) -> Plan:
-    """Stop-and-go: ramps and rests of any length, either sense."""
+    """Stop-and-go: ramps and rests of random length in either direction."""
     knots: Knots = [(0.0, 0.0), (LEAD_IN_S + float(rng.uniform(0.3, 3.0)), 0.0)]
     for _ in range(int(rng.integers(3, 7))):
         ramp, plateau = rng.uniform(0.15, 1.0), rng.uniform(1.0, 5.0)
@@ -103,7 +104,7 @@ def stops(name: str, top: float, _omega: float, rng: Rng) -> Plan:
 
 
 def steady(name: str, top: float, _omega: float, rng: Rng) -> Plan:
-    """Constant speeds one after another, the first already running."""
+    """Constant speeds one after another; the run begins at the first."""
     sense = 1.0 if rng.random() < 0.5 else -1.0
     knots: Knots = [(0.0, sense * log_uniform(rng, 0.03, 1.0) * top)]
     for _ in range(int(rng.integers(3, 7))):
@@ -116,7 +117,7 @@ def steady(name: str, top: float, _omega: float, rng: Rng) -> Plan:
 
 
 def from_rest(name: str, top: float, omega: float, rng: Rng) -> Plan:
-    """A sine through zero that begins there."""
+    """A sine through zero that begins at zero speed."""
     length = _length(omega, rng)
     return Plan(
         multisine(name, length + TAIL_S, [(top * rng.uniform(0.8, 1.0), omega, 0.0)]), length
@@ -124,7 +125,7 @@ def from_rest(name: str, top: float, omega: float, rng: Rng) -> Plan:
 
 
 def tones(name: str, top: float, _omega: float, rng: Rng) -> Plan:
-    """Three sines at once, from rest."""
+    """The sum of three sines, beginning at rest."""
     rates = [0.2 * rng.uniform(0.7, 1.4), 0.7 * rng.uniform(0.7, 1.4), 1.8 * rng.uniform(0.7, 1.4)]
     parts = [
         (share * top, omega, float(rng.choice([0.0, math.pi])))
@@ -152,9 +153,8 @@ def _named(makers: list[tuple[str, Maker, float]], top: float, rng: Rng) -> list
 
 
 def campaign(design: Design, effects: tuple[str, ...], seed: int) -> list[Plan]:
-    """Three to seven runs: a slow and a fast sine and stops, which any effect needs, and others.
-
-    `load_dependence` gets three loads; of the other campaigns a few have several, too.
+    """Draw three to seven runs: a slow sine, a fast sine and stops, which any effect needs, and
+    others. `load_dependence` gets three loads; a few of the other campaigns also have several.
     """
     rng = stream(seed, "excitation")
     makers: list[tuple[str, Maker, float]] = [
@@ -173,9 +173,9 @@ def campaign(design: Design, effects: tuple[str, ...], seed: int) -> list[Plan]:
 
 
 def held_out(design: Design, effects: tuple[str, ...], seed: int) -> list[Plan]:
-    """Other motions for the same rig; one under a load between, where the load is what matters.
+    """Draw other motions for the same rig, one under an intermediate load for `load_dependence`.
 
-    All begin at rest, between two samples: what went before, no model of the rig can predict.
+    All begin at rest, between two samples: no model of the rig can predict an earlier history.
     """
     rng = stream(seed, "held out")
     makers: list[tuple[str, Maker, float]] = [

@@ -23,7 +23,7 @@ class Film:
 
     @classmethod
     def of(cls, base: Base, clock_factor: float = 1.0) -> Film:
-        """Film of `base`, its clock times `clock_factor` (-)."""
+        """Film of `base` with its clock multiplied by `clock_factor` (-)."""
         return cls(
             load_group=base.load_group,
             eps_tr=base.transition_eccentricity(),

@@ -1,7 +1,7 @@
-"""Effects that are in no catalogue, to see whether a diagnosis admits "unexplained".
+"""Effects that are in no catalogue, to test whether a diagnosis reports "unexplained".
 
-Each is drawn once a campaign and alters the noise-free record of every run. `apply` takes the
-record's time (s), angle (rad), speed (m/s) and force (N), and gives the force changed.
+Each is drawn once per campaign and changes the noise-free record of every run. `apply` takes time
+(s), angle (rad), speed (m/s) and force (N) of the record and returns the changed force.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ Rng = np.random.Generator
 
 
 class Foreign(Protocol):
-    """What every foreign effect offers."""
+    """Interface of every foreign effect."""
 
     name: ClassVar[str]
 
     def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
-        """The force (N) with the effect in it; `rng` is the run's own."""
+        """Return the force (N) with the effect added; `rng` is the generator of the run."""
 
 
 @dataclass(frozen=True)
 class Hum:
-    """A tone of fixed frequency, its phase new in each run."""
+    """A tone of fixed frequency with a different phase in each run."""
 
     name: ClassVar[str] = "hum"
     amplitude_n: float
@@ -63,7 +63,7 @@ class Cogging:
 
 @dataclass(frozen=True)
 class LevelStep:
-    """Friction changes by a share at one instant of every run."""
+    """A relative change of the friction at one instant of every run."""
 
     name: ClassVar[str] = "level_step"
     share: float
@@ -81,7 +81,7 @@ class LevelStep:
 
 @dataclass(frozen=True)
 class Bursts:
-    """Decaying spikes at random instants, either sign."""
+    """Decaying spikes at random instants, with either sign."""
 
     name: ClassVar[str] = "bursts"
     height_n: float
@@ -104,7 +104,7 @@ class Bursts:
 
 @dataclass(frozen=True)
 class Chatter:
-    """A slide squeals: a tone while it moves slower than some speed, its phase new each run."""
+    """Squeal of a slide: a tone below a speed limit, with a different phase in each run."""
 
     name: ClassVar[str] = "chatter"
     amplitude_n: float
@@ -125,12 +125,12 @@ class Chatter:
 
 @dataclass(frozen=True)
 class Scratch:
-    """A groove or a burr: more friction at one or two places of a turn, narrow."""
+    """A groove or a burr: additional friction at one or two narrow positions of a turn."""
 
     name: ClassVar[str] = "scratch"
     height_n: float
     place_rad: float
-    second: float  # height of the one at the other place over the first's; 0 where there is none
+    second: float  # height at the second position relative to the first; 0 without a second one
     second_rad: float
     kappa: float
 
@@ -150,7 +150,7 @@ class Scratch:
 
 @dataclass(frozen=True)
 class StrokeScatter:
-    """No stroke is like another: each between two reversals has a level of its own."""
+    """Strokes that differ: the friction level is drawn anew for each stroke between reversals."""
 
     name: ClassVar[str] = "stroke_scatter"
     share: float
@@ -160,7 +160,7 @@ class StrokeScatter:
         return cls(strength * rng.uniform(0.06, 0.12))
 
     def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
-        # What trembles about a rest turns round nowhere.
+        # Small oscillations about a rest do not count as reversals.
         moving = np.flatnonzero(np.abs(speed) > 0.02 * np.max(np.abs(speed)))
         ways = np.sign(speed[moving])
         turned = moving[1:][ways[1:] != ways[:-1]]
@@ -173,7 +173,7 @@ FOREIGN = {f.name: f for f in (Hum, Cogging, LevelStep, Bursts, Chatter, Scratch
 
 
 def draw_foreign(name: str, rng: Rng, strength: float = 1.0) -> Foreign:
-    """A foreign effect of random size; RMS about one to three times the noise at strength 1."""
+    """Draw a foreign effect of random size; RMS one to three times the noise at strength 1."""
     if name not in FOREIGN:
         raise ValueError(f"no foreign effect named {name!r}; there are {', '.join(FOREIGN)}")
     foreign: Foreign = FOREIGN[name].draw(rng, strength)
@@ -181,5 +181,5 @@ def draw_foreign(name: str, rng: Rng, strength: float = 1.0) -> Foreign:
 
 
 def parameters(foreign: Foreign) -> dict[str, float]:
-    """The drawn values, for the truth file."""
+    """Return the drawn values for the truth file."""
     return {key: float(value) for key, value in asdict(foreign).items()}  # type: ignore[call-overload]

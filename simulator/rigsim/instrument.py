@@ -1,8 +1,8 @@
-"""The load cell: what stands before its filter, and after it zero offset and drift.
+"""The load cell: nonlinearity and play before its filter, zero offset and drift after it.
 
-The filter of a cell that reads straight is a chain state. Play in the force path knows the way that
-the force has gone: with it, or a line that bends, the force is taken on a grid finer than the
-samples, goes through the cell, and is filtered and delayed there.
+The filter of a linear cell is a state of the chain. Play in the force path depends on the history
+of the force. With play or a nonlinear characteristic, the force is therefore computed on a grid
+finer than the samples, passed through the cell, and filtered and delayed on that grid.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from .lubricant import Parameters
 from .record import Vector
 
 BENT = ("sensor_hysteresis", "sensor_nonlinearity")
-"""What happens to the force before the filter."""
+"""Effects on the force before the filter."""
 FILTERS = ("sensor_lag", "time_delay")
 FINER = 5
-"""Instants of the finer grid a sample,"""
+"""Instants of the finer grid per sample."""
 BESIDE_S = 1e-6
-"""and how close on either side of one at which the force may jump, s."""
+"""Distance of the grid points on either side of an instant at which the force may jump, s."""
 
 
 def read_out(force: Vector, times: Vector, effects: Parameters) -> Vector:
@@ -29,7 +29,7 @@ def read_out(force: Vector, times: Vector, effects: Parameters) -> Vector:
 
 
 def finer(times: Vector, jumps: Vector) -> Vector:
-    """The instants of the finer grid (s): those of `times`, between them, and beside jumps."""
+    """Instants of the finer grid (s): those of `times`, between them, and next to jumps."""
     where = np.arange(FINER * (len(times) - 1) + 1) / FINER
     between = np.interp(where, np.arange(len(times)), times)
     beside = np.concatenate([between, times, jumps - BESIDE_S, jumps + BESIDE_S])
@@ -37,18 +37,22 @@ def finer(times: Vector, jumps: Vector) -> Vector:
 
 
 def through_cell(force: Vector, effects: Parameters) -> Vector:
-    """The force (N) as the cell bears it: what play keeps back is off, and its line is bent."""
+    """Force (N) in the cell: without the part held back by play, and with the cell's
+    nonlinearity.
+    """
     play = effects.get("sensor_hysteresis", {}).get("w", 0.0)
     cubic = effects.get("sensor_nonlinearity", {}).get("c", 0.0)
     seen = force - _kept_back(force, play) if play > 0.0 else force
-    if cubic < 0.0:  # more force never reads as less
+    if cubic < 0.0:  # the reading never decreases with the force
         turning = float(np.sqrt(-1.0 / (3.0 * cubic)))
         seen = np.clip(seen, -turning, turning)
     return np.polynomial.polynomial.polyval(seen, [0.0, 1.0, 0.0, cubic])
 
 
 def _kept_back(force: Vector, play: float) -> Vector:
-    """What a spring before a slider that slips at `play` bears of a force (N), slack at first."""
+    """Part of a force (N) carried by a spring and a slider that slips at `play`, relaxed at
+    first.
+    """
     borne, out = 0.0, np.zeros(len(force))
     for i, more in enumerate(np.diff(force).tolist(), start=1):
         borne = float(np.clip(borne + more, -play, play))
@@ -57,13 +61,14 @@ def _kept_back(force: Vector, play: float) -> Vector:
 
 
 def filtered(force: Vector, times: Vector, effects: Parameters) -> Vector:
-    """The force (N) through filter and delay, settled at first; lines between the instants."""
+    """Force (N) after filter and delay, settled at first; linear between the instants."""
     tau = effects.get("sensor_lag", {}).get("tau", 0.0)
     if tau > 0.0:
         shown, out = float(force[0]), [float(force[0])]
         for i, step in enumerate(np.diff(times).tolist(), start=1):
             slope = float(force[i] - force[i - 1]) / step
-            # On a line the filter trails by tau times its slope, once what it began with is gone.
+            # On a ramp the filter lags by tau times the slope, once its initial transient has
+            # decayed.
             trailing = shown - float(force[i - 1]) + tau * slope
             shown = float(force[i]) - tau * slope + trailing * float(np.exp(-step / tau))
             out.append(shown)

@@ -1,4 +1,4 @@
-"""Effects on the lubricant: how fast the film believes the journal turns."""
+"""Effects on the lubricant: the effective speed that acts on the film."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ Parameters = dict[str, dict[str, float]]
 
 
 class Lubricant:
-    """Speed seen by the film under `thermal_thinning`, `shear_thinning` and `vogel_viscosity`.
+    """Effective film speed under `thermal_thinning`, `shear_thinning` and `vogel_viscosity`.
 
-    The heat is kept as h = beta T (-), so that only beta q (1/J) and tau (s) matter.
+    The heat is stored as h = beta T (-), so that only beta q (1/J) and tau (s) matter.
     """
 
     def __init__(
@@ -30,7 +30,7 @@ class Lubricant:
         self._scale = 1.0 / transition_speed
 
     def film_speed(self, speed: float, heat: float, time_s: float = 0.0) -> float:
-        """|Ub| (-) for the surface speed |U| (m/s) and heat beta T (-) at a time (s)."""
+        """|Ub| (-) at surface speed |U| (m/s), heat beta T (-) and time (s)."""
         if speed <= 0.0:
             return 0.0
         ub = speed * self._scale
@@ -42,7 +42,7 @@ class Lubricant:
         return ub
 
     def thickness(self, time_s: float) -> float:
-        """Viscosity over that at the reference temperature at a time (s)."""
+        """Viscosity relative to that at the reference temperature, at a time (s)."""
         if self.warmth is None:
             return 1.0
         return thinner(self.b_k, self.warmth.at(time_s))

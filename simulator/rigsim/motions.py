@@ -1,4 +1,4 @@
-"""Commanded motions, cut into pieces on which the speed is smooth and of one sign."""
+"""Commanded motions, divided into pieces with a smooth speed of one sign."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def polyline(name: str, knots: Sequence[tuple[float, float]]) -> Motion:
 
 
 def triangle(name: str, duration_s: float, amplitude: float, omega: float) -> Motion:
-    """Triangular speed, zero at the start, peak `amplitude` (m/s), 2 pi/omega a period."""
+    """Triangular speed, zero at the start, with peak `amplitude` (m/s) and period 2 pi/omega."""
     quarter = 0.5 * math.pi / omega
     heights = (0.0, amplitude, 0.0, -amplitude)
     knots = [(0.0, 0.0)]
@@ -161,7 +161,7 @@ def stop_and_go(
 
 
 def steps(name: str, speeds: Sequence[float], hold_s: float, ramp_s: float = 0.5) -> Motion:
-    """Constant speeds (m/s) held `hold_s` each, joined by ramps, from and back to rest."""
+    """Constant speeds (m/s) held `hold_s` each, joined by ramps, from rest and back to rest."""
     knots = [(0.0, 0.0)]
     for v in speeds:
         knots.append((knots[-1][0] + ramp_s, v))

@@ -14,9 +14,9 @@ from .record import Vector
 class Noise:
     """Noise levels.
 
-    friction_n: sd of the white part (N). coloured_share: sd of the first-order coloured part
-    as a share of the white one (-). correlation_s: its time constant (s). velocity_m_s: sd
-    on speed (m/s), none where the speed is exactly zero. counts_per_rad: encoder (1/rad).
+    friction_n: sd of the white part (N). coloured_share: sd of the first-order coloured part as a
+    share of the white one (-). correlation_s: its time constant (s). velocity_m_s: sd of the speed
+    (m/s), zero where the speed is exactly zero. counts_per_rad: encoder (1/rad).
     """
 
     friction_n: float
@@ -26,7 +26,7 @@ class Noise:
     counts_per_rad: float = 2387.3
 
     def friction(self, clean: Vector, step_s: float, rng: np.random.Generator) -> Vector:
-        """`clean` (N), sampled every `step_s`, with white and coloured noise."""
+        """Return `clean` (N), sampled every `step_s`, with white and coloured noise added."""
         noisy = clean + self.friction_n * rng.standard_normal(len(clean))
         if self.coloured_share > 0.0:
             keep = math.exp(-step_s / self.correlation_s)

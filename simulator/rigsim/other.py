@@ -1,4 +1,4 @@
-"""Friction that is not the bearing's but reaches the load cell all the same."""
+"""Friction that does not arise in the bearing but also reaches the load cell."""
 
 from __future__ import annotations
 

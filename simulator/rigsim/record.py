@@ -1,4 +1,4 @@
-"""One recorded run, and its CSV."""
+"""One recorded run and its CSV file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Record:
-    """Samples of one run: s, rad, m/s, N, N, C; `clean_friction_n` is free of noise."""
+    """Samples of one run: s, rad, m/s, N, N, N, C; `clean_friction_n` is free of noise."""
 
     time_s: Vector
     angle_rad: Vector

@@ -1,4 +1,4 @@
-"""Runs with a rigid drive: the journal turns exactly as commanded."""
+"""Runs with a rigid drive: the journal moves exactly as commanded."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .contact import Path
 from .motions import Motion, Piece
 
 RTOL, ATOL = 1e-9, 1e-11
-TIGHT = 1e-9  # s; instants closer than this count as one
+TIGHT = 1e-9  # s; instants closer than this are treated as one
 
 
 class _Trip:
@@ -33,7 +33,7 @@ class _Trip:
         return Path(done.slid_m + moved, done.since_rest_m + moved, dwell, angle)
 
     def enter(self, piece: Piece) -> None:
-        """Begin `piece`: a rest starts the dwell clock, motion after one stops it."""
+        """Begin `piece`: a rest starts the dwell clock, the following motion stops it."""
         if piece.sign == 0:
             if self.rest_from is None:
                 self.rest_from = piece.t0

@@ -1,4 +1,4 @@
-"""Streams of random numbers by name, so that drawing one thing more moves nothing else."""
+"""Named streams of random numbers, so that an additional draw leaves all others unchanged."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ Rng = np.random.Generator
 
 
 def stream(seed: int, *words: str) -> Rng:
-    """The generator of one use of a seed."""
+    """Return the generator for one use of a seed."""
     return np.random.default_rng([seed, *(zlib.crc32(word.encode()) for word in words)])
 
 
 def log_uniform(rng: Rng, low: float, high: float) -> float:
-    """A number between two positive ones, every decade as likely as another."""
+    """Draw a number between two positive limits, uniformly distributed in its logarithm."""
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))

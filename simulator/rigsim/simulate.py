@@ -1,4 +1,4 @@
-"""One run: from the commanded motion to the recorded samples."""
+"""One run, from the commanded motion to the recorded samples."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def commanded(motion: Motion, times: Vector) -> tuple[Vector, Vector]:
 
 
 def under_load(base: Base, load_n: float, effects: Parameters) -> Base:
-    """The rig `base` under another load; `load_dependence` changes its parameters, too."""
+    """Return the rig `base` under another load; `load_dependence` also changes its parameters."""
     p = effects.get("load_dependence", {"p": 0.0, "q": 0.0})
     share = load_n / base.load_n
     return replace(
@@ -53,10 +53,11 @@ def cell_force(
 ) -> Vector:
     """Exact force (N) on the load cell, before offset and drift, at `times` (s, ascending).
 
-    With a `film_start` the rig is under way: a compliant drive has the twist of its friction.
+    With a `film_start` the run begins in motion, so a compliant drive has the twist of its
+    friction.
     """
     if any(name in effects for name in BENT):
-        # What bends the force stands before the filter and the delay.
+        # Nonlinearity and play act before the filter and the delay.
         plain = {k: v for k, v in effects.items() if k not in (*BENT, *FILTERS)}
         grid = finer(times, np.array([p.t1 for p in motion.pieces]))
         bare = cell_force(base, plain, motion, grid, start_angle_rad, film_start, warmth)
@@ -65,7 +66,7 @@ def cell_force(
     journal = motion
     if "backlash" in effects:
         journal = behind_gap(motion, effects["backlash"]["gap"], radius)
-    # A late record shows at each instant the force of tau before; at first that of the start.
+    # A delayed record shows the force of tau earlier; before tau it shows that of the start.
     seen = np.maximum(times - effects.get("time_delay", {}).get("tau", 0.0), 0.0)
     chain = Chain(base, effects, film_start, warmth)
     if "drive_compliance" in effects:
@@ -89,11 +90,10 @@ def simulate_run(
     rng: np.random.Generator | None = None,
     warmth: Warmth | None = None,
 ) -> Record:
-    """Record `motion` on the rig `base` with `effects` (name -> parameters) and `foreign` ones.
+    """Record `motion` on the rig `base` with `effects` (name -> parameters) and `foreign` effects.
 
-    `load_n` is the load of this run, that of `base` if None. Without `noise` the record is
-    exact; `rng` is needed by noise and some foreign effects. A `warmth` is recorded, without
-    noise.
+    `load_n` is the load of this run, that of `base` if None. Without `noise` the record is exact;
+    `rng` is needed by noise and some foreign effects. A `warmth` is recorded without noise.
     """
     effects = check(effects)
     rng = rng if rng is not None else np.random.default_rng(0)

@@ -1,7 +1,7 @@
-"""`backlash`: the motion that a journal makes behind a gap, cut into pieces of its own.
+"""`backlash`: motion of a journal behind a gap, divided into pieces.
 
-The drive's flanks are `gap_rad` apart. After each turn the journal stands until the drive has
-gone that far; the first motion of a run finds its flank closed.
+The flanks of the drive are `gap_rad` apart. After each reversal the journal rests until the drive
+has crossed the gap. At the first motion of a run the driving flank is in contact.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from .motions import Motion, Piece
 
 
 def behind_gap(motion: Motion, gap_rad: float, radius_m: float) -> Motion:
-    """The journal's motion behind a drive that makes `motion`."""
+    """Return the motion of the journal behind a drive that makes `motion`."""
     gap = gap_rad * radius_m
     pieces: list[Piece] = []
     place: float | None = None  # m from the flank that drives backward, 0 to gap
-    offset = 0.0  # m, drive less journal
+    offset = 0.0  # m, drive minus journal
     for piece in motion.pieces:
         if piece.sign == 0:
             pieces.append(_standing(piece, piece.t0, piece.t1, offset))

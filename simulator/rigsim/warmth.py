@@ -1,4 +1,4 @@
-"""How warm the machine is: a room that cools and warms, a drive that warms as it runs, two days."""
+"""Temperature of the machine: a room that cools and warms, a drive that warms up, several days."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ Vector = npt.NDArray[np.float64]
 Kind = Literal["wandering", "warming", "days"]
 
 REFERENCE_C = 25.0
-"""Temperature at which a rig's own parameters hold, C."""
+"""Temperature at which the parameters of a rig apply, C."""
 OIL_K = 95.0
-"""So far below 0 C, K, the viscosity of a mineral oil would grow without bound."""
+"""Temperature below 0 C, in K, at which the viscosity of a mineral oil would diverge."""
 
 
 @dataclass(frozen=True)
 class Warmth:
-    """Temperature (C) over the time of one run (s): a start, a swing, and an approach to an end."""
+    """Temperature (C) over the time of one run (s): a start, an oscillation and an exponential
+    rise.
+    """
 
     start_c: float
     swing_k: float = 0.0
@@ -30,17 +32,17 @@ class Warmth:
     tau_s: float = 20.0
 
     def at(self, time_s: float) -> float:
-        """The temperature at a time, C."""
+        """Temperature at a time, C."""
         swing = self.swing_k * math.sin(2.0 * math.pi * time_s / self.period_s + self.phase)
         return self.start_c + swing - self.rise_k * math.expm1(-time_s / self.tau_s)
 
     def along(self, times: Vector) -> Vector:
-        """The same at many times."""
+        """Temperatures at several times (s), C."""
         return np.array([self.at(t) for t in times.tolist()])
 
 
 def draw_warmth(kind: Kind, number: int, duration_s: float, rng: np.random.Generator) -> Warmth:
-    """The temperature of run `number` of a campaign."""
+    """Draw the temperature of run `number` of a campaign."""
     if kind == "warming":  # the same in every run: each starts cold
         return Warmth(18.0, rise_k=16.0, tau_s=12.0)
     if kind == "days":
@@ -54,13 +56,13 @@ def draw_warmth(kind: Kind, number: int, duration_s: float, rng: np.random.Gener
 
 
 def thinner(b_k: float, temperature_c: float) -> float:
-    """Viscosity over that at the reference, by the two distances from where oil sets (Vogel)."""
+    """Viscosity relative to the reference, from both distances to the divergence (Vogel)."""
     here, there = temperature_c + OIL_K, REFERENCE_C + OIL_K
     return float(10.0 ** (b_k / math.log(10.0) * (there - here) / (here * there)))
 
 
 def read_by(thermometer: str, times: Vector, celsius: Vector, rng: np.random.Generator) -> Vector:
-    """What a thermometer writes: `fine` (0.05 K of noise) or `coarse` (degrees, once a second)."""
+    """Return thermometer readings: `fine` (0.05 K noise) or `coarse` (whole degrees, 1 Hz)."""
     if thermometer == "coarse":
         tick = np.searchsorted(times, np.floor(times - times[0]) + times[0] - 1e-9)
         return np.round(celsius[tick])

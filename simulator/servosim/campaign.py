@@ -1,4 +1,4 @@
-"""Campaigns drawn by a seed: a drive, its motions and its logger."""
+"""Campaigns drawn from a seed: a drive, its motions and its logger."""
 
 from __future__ import annotations
 
@@ -21,11 +21,9 @@ RATES_HZ = (100.0, 200.0, 250.0, 500.0, 1000.0)
 
 @dataclass(frozen=True)
 class Drawn:
-    """What a seed draws.
+    """The quantities drawn from a seed.
 
-    Attributes
-    ----------
-    rotary
+    Attributes ---------- rotary
         True: angles and torques. False: positions and forces.
     kind
         Kind of motion of all runs.
@@ -34,7 +32,7 @@ class Drawn:
     tick_s
         Period of the controller, s.
     duration_s
-        Of each run, s.
+        Duration of each run, s.
     """
 
     rotary: bool
@@ -54,13 +52,13 @@ class Campaign:
     records: list[Recorded]
 
     def truth(self) -> dict[str, Any]:
-        """Parameters as numbers and words, for JSON."""
+        """Return the parameters as numbers and strings, for JSON."""
         hidden = {part.name: asdict(part) for part in self.drawn.plant.hidden.parts}
         return {**asdict(self.drawn), "hidden": hidden}
 
 
 def draw(seed: int, hidden: Sequence[str] = ()) -> Drawn:
-    """Draw a drive, a kind of motion and a logger; hidden effects are drawn apart from them."""
+    """Draw a drive, a kind of motion and a logger; hidden effects use a separate random stream."""
     random = np.random.default_rng([seed, 1])
     rotary = bool(random.random() < 0.6)
     kind = KINDS[int(random.integers(len(KINDS)))]
@@ -112,7 +110,7 @@ def draw(seed: int, hidden: Sequence[str] = ()) -> Drawn:
 
 
 def simulate(seed: int, hidden: Sequence[str] = (), runs: int = RUNS) -> Campaign:
-    """The campaign of a seed, with effects of `servosim.hidden` in its drive."""
+    """Simulate the campaign of a seed, with effects of `servosim.hidden` in its drive."""
     drawn = draw(seed, hidden)
     records = []
     for k in range(runs):
@@ -129,7 +127,7 @@ def simulate(seed: int, hidden: Sequence[str] = (), runs: int = RUNS) -> Campaig
 
 
 def write(campaign: Campaign, folder: Path) -> None:
-    """Write `rig.toml` and one CSV a run."""
+    """Write `rig.toml` and one CSV per run."""
     folder.mkdir(parents=True, exist_ok=True)
     rotary = campaign.drawn.rotary
     motion, friction = ("rotary", "torque") if rotary else ("linear", "force")

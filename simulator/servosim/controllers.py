@@ -1,4 +1,4 @@
-"""Closed loops and what they follow: the six kinds of motion."""
+"""Closed loops and their references: the six kinds of motion."""
 
 from __future__ import annotations
 
@@ -17,11 +17,9 @@ KINDS = ("steps", "trapezoids", "point_to_point", "jog", "soft", "hand")
 
 @dataclass(frozen=True)
 class Demand:
-    """What a motion asks for.
+    """Requirements of a motion.
 
-    Attributes
-    ----------
-    top
+    Attributes ---------- top
         Velocity, rad/s or m/s.
     acceleration
         rad/s^2 or m/s^2.
@@ -43,7 +41,7 @@ def control_of(
     start: float,
     random: np.random.Generator,
 ) -> Control:
-    """A controller for one run of a kind."""
+    """Return a controller for one run of the given kind."""
     if kind == "hand":
         return _hand(plant, demand, tick_s, ticks, random)
     position, velocity = _reference(kind, demand, tick_s, ticks, start, random)
@@ -76,7 +74,7 @@ def _reference(
     start: float,
     random: np.random.Generator,
 ) -> tuple[Array, Array]:
-    """Position and velocity asked for at each tick."""
+    """Reference position and velocity at each tick."""
     top, ramp = demand.top, demand.acceleration
     velocity = np.zeros(ticks)
     t, side = int(0.2 / tick_s), 1.0
@@ -116,7 +114,7 @@ def _reference(
 def _hand(
     plant: Plant, demand: Demand, tick_s: float, ticks: int, random: np.random.Generator
 ) -> Control:
-    """A hand that follows a smooth random motion as well as a hand can."""
+    """A human hand that tracks a smooth random motion with limited accuracy."""
     knots = random.normal(0.0, 0.6 * demand.top, int(ticks * tick_s / 0.25) + 3)
     time = np.arange(ticks) * tick_s / 0.25
     k = np.minimum(time.astype(int), len(knots) - 3)
@@ -126,7 +124,7 @@ def _hand(
     gain = plant.inertia * 2.0 * math.pi * 3.0
 
     def control(tick: int, x: float, v: float) -> float:
-        # A hand carries the weight, and overcomes the friction that it feels.
+        # A hand carries the weight and overcomes the friction that it feels.
         carried = plant.gravity * (math.sin(x) if plant.swings else 1.0)
         felt = plant.coulomb * math.tanh(20.0 * asked[tick] / demand.top)
         return carried + felt + plant.viscous * v + gain * (asked[tick] - v)

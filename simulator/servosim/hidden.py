@@ -1,7 +1,7 @@
-"""Effects hidden in a simulated drive: friction and forces that its plain model lacks.
+"""Effects hidden in a simulated drive: friction and forces missing from its plain model.
 
-Sizes are drawn relative to the drive's own friction, speed and stroke. The names of `EFFECTS` are
-those of the library's catalogue; no catalogue contains the others (`UNKNOWN`).
+Sizes are drawn relative to the friction, speed and stroke of the drive. The names in `EFFECTS` are
+those of the library's catalogue; no catalogue contains those in `UNKNOWN`.
 """
 
 from __future__ import annotations
@@ -17,20 +17,18 @@ Rng = np.random.Generator
 
 @dataclass
 class Course:
-    """Where a run has come to.
+    """The current state of a run.
 
-    Attributes
-    ----------
-    time
-        Since its start, s.
+    Attributes ---------- time
+        Since the start of the run, s.
     position, velocity
         rad and rad/s, or m and m/s.
     strokes
-        Reversals so far.
+        Number of reversals so far.
     phase
-        Of a disturbance of the run, rad.
+        Phase of a disturbance in this run, rad.
     scatter
-        Standard normal numbers of the run, one a stroke.
+        Standard normal numbers of the run, one per stroke.
     """
 
     time: float
@@ -43,8 +41,10 @@ class Course:
 
 @dataclass(frozen=True)
 class Scale:
-    """Sizes of the drive that effects are drawn from: Coulomb friction, viscous friction, largest
-    speed and a typical stroke."""
+    """Quantities of the drive that scale the effects.
+
+    Coulomb friction, viscous friction, largest speed and a typical stroke.
+    """
 
     coulomb: float
     viscous: float
@@ -53,25 +53,25 @@ class Scale:
 
 
 class Hidden(Protocol):
-    """What every hidden effect can add; each is evaluated at the start of a piece of the motion."""
+    """Interface of a hidden effect, evaluated at the start of each piece of the motion."""
 
     name: ClassVar[str]
 
     @classmethod
     def draw(cls, scale: Scale, random: Rng) -> Hidden:
-        """An effect of a usual size."""
+        """Draw an effect of typical size."""
 
     def level(self, at: Course) -> float:
-        """Added to the Coulomb level."""
+        """Term added to the Coulomb level."""
 
     def drag(self, at: Course) -> float:
-        """Added to the viscous friction, along the motion."""
+        """Term added to the viscous friction, along the motion."""
 
     def factor(self, at: Course) -> float:
-        """Times all friction."""
+        """Factor on all friction."""
 
     def push(self, at: Course) -> float:
-        """Force that the drive must overcome in either direction."""
+        """Force that the drive must overcome, independent of the direction of motion."""
 
     def lost_share(self) -> float:
         """Share of the transmitted force that is lost."""
@@ -79,7 +79,7 @@ class Hidden(Protocol):
 
 @dataclass(frozen=True)
 class Plain:
-    """An effect that adds nothing: the others replace what they change."""
+    """Base class of an effect that adds nothing; subclasses override what they change."""
 
     def level(self, at: Course) -> float:
         return 0.0
@@ -133,7 +133,7 @@ class ViscousAsymmetry(Plain):
 
 @dataclass(frozen=True)
 class ViscousThinning(Plain):
-    """Viscous friction that grows less than the speed."""
+    """Viscous friction that grows less than proportionally to the speed."""
 
     name: ClassVar[str] = "viscous_thinning"
     viscous: float
@@ -150,7 +150,7 @@ class ViscousThinning(Plain):
 
 @dataclass(frozen=True)
 class TorqueProportional(Plain):
-    """Friction that is a share of the transmitted force."""
+    """Friction proportional to the transmitted force."""
 
     name: ClassVar[str] = "torque_proportional"
     share: float
@@ -218,7 +218,7 @@ class WarmUp(Plain):
 
 @dataclass(frozen=True)
 class Hum(Plain):
-    """A disturbance of one frequency, with another phase in each run."""
+    """A disturbance at one frequency, with a different phase in each run."""
 
     name: ClassVar[str] = "hum"
     amplitude: float
@@ -251,7 +251,7 @@ class LevelStep(Plain):
 
 @dataclass(frozen=True)
 class StrokeScatter(Plain):
-    """A Coulomb level that differs by chance from stroke to stroke."""
+    """A Coulomb level that varies randomly from stroke to stroke."""
 
     name: ClassVar[str] = "stroke_scatter"
     sd: float
@@ -281,7 +281,7 @@ UNKNOWN: dict[str, type[Hidden]] = {kind.name: kind for kind in (Hum, LevelStep,
 
 @dataclass(frozen=True)
 class Together:
-    """Effects of one drive, summed and multiplied."""
+    """All effects of one drive; terms are summed, factors multiplied."""
 
     parts: tuple[Hidden, ...] = field(default=())
 

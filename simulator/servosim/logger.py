@@ -1,4 +1,4 @@
-"""Loggers: clocks, stamps, counts, filtered and differenced velocities, torque channels."""
+"""Loggers: clocks, time stamps, counts, filtered and differenced velocities, torque channels."""
 
 from __future__ import annotations
 
@@ -18,33 +18,32 @@ FORCES = ("command", "sensor", "quantised")
 
 @dataclass(frozen=True)
 class Logger:
-    """How runs are recorded.
+    """Description of how runs are recorded.
 
-    Attributes
-    ----------
-    rate_hz
-        Samples a second.
+    Attributes ---------- rate_hz
+        Sampling rate.
     stamps
-        `even`; `jitter`: samples at uneven instants, truly stamped; `jittered`: an even clock,
-        falsely stamped; `millis`: whole milliseconds of a loop of another period; `arrival`: an
-        even clock, stamped on arrival.
+        `even`; `jitter`: samples at uneven instants with true stamps; `jittered`: an even clock
+        with wrong stamps; `millis`: whole milliseconds of a loop of another period; `arrival`: an even
+        clock, stamped on arrival.
     stamp_share
-        Size of the stamps' error, samples.
+        Size of the stamp error, samples.
     speed
-        `drive`: a filtered difference of counts; `tacho`: with noise; `differenced`: by the logger,
-        of the recorded positions; `none`.
+        `drive`: a filtered difference of counts; `tacho`: with noise; `differenced`: computed by
+        the logger from the recorded positions; `none`.
     filter_s
         Time constant of the drive's filter, s.
     speed_noise
         Standard deviation of the tachometer.
     speed_late, force_late
-        How late velocity and force are read, samples.
+        Delays of the velocity and force readings, samples.
     count
         Step of the encoder, rad or m.
     force
-        `command`: as the controller asks; `sensor`: with noise; `quantised`: in steps, with noise.
+        `command`: the controller's command; `sensor`: with noise; `quantised`: in steps, with
+        noise.
     force_noise, force_step
-        Standard deviation and step of the force's reading.
+        Standard deviation and quantisation step of the force reading.
     """
 
     rate_hz: float
@@ -63,7 +62,7 @@ class Logger:
 
 @dataclass(frozen=True)
 class Recorded:
-    """One recorded run; arrays of shape (n,). `velocity` is None where none was recorded."""
+    """One recorded run; arrays of shape (n,). `velocity` is None if it was not recorded."""
 
     time_s: Array
     position: Array
@@ -76,7 +75,7 @@ class Recorded:
 def record(
     logger: Logger, motion: Trajectory, tick_s: float, random: np.random.Generator
 ) -> Recorded:
-    """Read a trajectory."""
+    """Record a trajectory with a logger."""
     period = 1.0 / logger.rate_hz
     margin = 2.0 * period + 5.0 * logger.filter_s + 0.01
     n = int((motion.time[-1] - 2.0 * margin) / period)
@@ -91,7 +90,7 @@ def record(
     elif logger.stamps == "arrival":
         delays = random.exponential(error, n)
         delays[random.random(n) < 0.005] += 2.0 * period
-        # One message after the other, 10 us apart at least.
+        # Messages arrive one after another, at least 10 us apart.
         order = 1e-5 * np.arange(n)
         stamps = np.maximum.accumulate(even + delays - order) + order
     x, v, a, _ = motion.at(true)

@@ -1,7 +1,7 @@
-"""A drive with inertia, gravity, viscous and set-valued Coulomb friction, driven tick by tick.
+"""A drive with inertia, gravity, viscous and set-valued Coulomb friction, integrated tick by tick.
 
 Between two ticks of the controller the torque is constant, so the viscous motion is an exponential
-in closed form; a reversal, a stop and a breakaway are events. Gravity and hidden effects are taken
+in closed form. Reversals, stops and breakaways are events. Gravity and hidden effects are evaluated
 at the start of each piece, and a piece is at most one tick long.
 """
 
@@ -18,25 +18,23 @@ from servosim.hidden import NOTHING, Course, Together
 
 Array = npt.NDArray[np.float64]
 Control = Callable[[int, float, float], float]
-"""The torque of a tick, from its number, position and velocity."""
+"""Function that returns the torque of a tick from its number, position and velocity."""
 
 
 @dataclass(frozen=True)
 class Plant:
-    """Parameters of a drive; SI units, rotary or linear.
+    """Parameters of a drive in SI units, rotary or linear.
 
-    Attributes
-    ----------
-    inertia
+    Attributes ---------- inertia
         kg m^2 or kg.
     coulomb, viscous
         Friction torque, N m, and its slope, N m s/rad (or N, N s/m).
     gravity
-        Amplitude of the weight's torque, N m (or N).
+        Amplitude of the torque due to the weight, N m (or N).
     swings
-        True where the weight acts with the sine of the angle, False where it is constant.
+        Whether the weight acts with the sine of the angle; otherwise it is constant.
     hidden
-        What else resists or pushes.
+        Additional friction and forces.
     """
 
     inertia: float
@@ -49,16 +47,14 @@ class Plant:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """The motion between events: pieces of constant torque without a change of the friction's sign.
+    """The motion between events: pieces of constant torque and constant sign of the friction.
 
-    Attributes
-    ----------
-    time, position, velocity
-        At the start of each piece and, last, at the end, shape (n + 1,).
+    Attributes ---------- time, position, velocity
+        Values at the start of each piece and, last, at the end, shape (n + 1,).
     before, after
         Acceleration at the start and at the end of each piece, shape (n,).
     torque
-        The drive's torque in each piece, shape (n,).
+        Torque of the drive in each piece, shape (n,).
     """
 
     time: Array
@@ -89,7 +85,7 @@ def run(
     start: float,
     random: np.random.Generator | None = None,
 ) -> Trajectory:
-    """Drive a plant from rest at a position; `random` draws what differs from run to run."""
+    """Simulate a plant from rest at a position; `random` draws what varies from run to run."""
     m, d, hidden = plant.inertia, plant.viscous, plant.hidden
     random = np.random.default_rng(0) if random is None else random
     at = Course(0.0, start, 0.0, 0, random.uniform(0.0, 2.0 * math.pi), [])
@@ -112,11 +108,12 @@ def run(
                 rows.append((t, x, 0.0, 0.0, 0.0, u))
                 at.time, left = t + left, 0.0
                 continue
-            # All friction but that proportional to the speed, which is integrated in closed form.
+            # All friction except the part proportional to speed, which is integrated in closed
+            # form.
             extra = factor * hidden.drag(at)
             slope = factor * d
             net = u - push - sign * f - extra
-            # Losses are a share of what the transmission carries: the weight and the mass.
+            # Losses are a share of the transmitted force: that of the weight and of the mass.
             through = 1.0 + sign * math.copysign(lost, net - slope * v)
             force, damping = net / through - weight, slope / through
             a0 = (force - damping * v) / m

@@ -18,7 +18,7 @@ def force(motion, **changes):
 
 
 def fixed_step(motion, step, every):
-    """Friction by a semi-implicit step that solves stick or slip exactly each time."""
+    """Friction by a semi-implicit method that resolves stick or slip exactly in each step."""
     film, radius = Film.of(BASE), BASE.bearing.radius_m
     eps, phi = film.start()
     k, c, inertia = DRIVE["k"], DRIVE["c"], DRIVE["J"]

@@ -45,7 +45,7 @@ SMALL = {
 def test_effect_vanishes_as_its_parameter_approaches_the_null(name):
     small = SMALL.get(name) or dict.fromkeys(NULLS[name], 1e-9)
     plain = simulate_run(BASE, {}, STOP)
-    moving = plain.velocity_m_s != 0.0  # at rest a bristle holds its force however stiff
+    moving = plain.velocity_m_s != 0.0  # at rest a bristle of any stiffness holds its force
     gap = force({name: drawn(name) | small}, STOP) - plain.friction_n
     assert np.max(np.abs(gap[moving])) < 1e-3
 
@@ -124,7 +124,7 @@ def test_time_delay_shifts_the_record_by_whole_samples():
 
 
 def test_backlash_holds_the_journal_until_the_gap_is_crossed():
-    gap = 0.2  # rad; the drive turns round at pi
+    gap = 0.2  # rad; the drive reverses at pi
     record = simulate_run(BASE, {"backlash": {"gap": gap}}, SWING)
     plain = simulate_run(BASE, {}, SWING)
     t = record.time_s

@@ -21,7 +21,7 @@ SEEDS = range(1, 25)
 
 
 def test_drive_without_gravity_slides_to_a_stop_after_its_kinetic_energy_is_lost() -> None:
-    """With next to no viscous friction a drive of speed v stops after J v^2 / (2 F_c)."""
+    """With almost no viscous friction a drive of speed v stops after J v^2 / (2 F_c)."""
     plant = Plant(0.5, 0.8, 1e-4, 0.0, False)
     push = 2.0
     pushed = 500
@@ -50,7 +50,7 @@ def test_viscous_drive_approaches_its_speed_exponentially() -> None:
 
 
 def moving_samples(campaign: servosim.Campaign) -> tuple[Any, Any]:
-    """Regressors by the true motion, and recorded forces."""
+    """Regressors computed from the true motion, and recorded forces."""
     plant, rows, forces = campaign.drawn.plant, [], []
     for r in campaign.records:
         columns = [np.sign(r.true_velocity), r.true_velocity, r.true_acceleration]
@@ -74,7 +74,7 @@ def test_parameters_follow_from_the_true_motion_where_the_force_is_on_time(seed:
     left = forces - rows @ found
     sd = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows)) * (left @ left) / len(left))
     true = [plant.coulomb, plant.viscous, plant.inertia, plant.gravity][:rank]
-    # Counts of the position, and pieces of constant weight, next to the noise.
+    # Encoder counts and pieces of constant weight add to the noise.
     share = np.abs(rows).max(axis=0) / np.std(forces)
     assert np.all(np.abs(found - true) * share < 4.5 * sd * share + 0.005)
 

@@ -1,4 +1,4 @@
-"""From exact signals to what a logger hands over: artefacts of recordings, at three strengths."""
+"""From exact signals to the logger's record: recording artefacts at three strengths."""
 
 from .campaign import recorded, write_recorded
 from .catalogue import ARTEFACTS, OFF_GRID, ONE_OF

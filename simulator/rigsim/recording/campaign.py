@@ -1,4 +1,4 @@
-"""Campaigns as a logger hands them over, and clean runs of the same rig."""
+"""Campaigns as recorded by a logger, and clean runs of the same rig."""
 
 from __future__ import annotations
 
@@ -46,20 +46,18 @@ def recorded(
     *,
     for_held_out: bool = False,
 ) -> tuple[Runs, dict[str, Any]]:
-    """Records by run name, and the truth behind them.
+    """Simulate records by run name, and return them with the true values.
 
-    Parameters
-    ----------
-    seed
-        Of rig, motions, noise, effects and artefacts, each by its own stream.
+    Parameters ---------- seed
+        Seed of rig, motions, noise, effects and artefacts, each with its own random stream.
     effects
         Names from the catalogue of effects; their parameters are drawn at `strength`.
     artefacts
-        What the recording does: names of `ARTEFACTS`, or `off_grid` for nothing.
+        Recording artefacts: names of `ARTEFACTS`, or `off_grid` for no artefact.
     artefact_strength
         `mild`, `usual` or `severe`.
     for_held_out
-        Other motions, recorded cleanly.
+        Whether to simulate other motions, recorded without artefacts.
     """
     design = draw_design(seed)
     names = tuple(effects)
@@ -98,7 +96,7 @@ def recorded(
 
 
 def _peak(runs: Sequence[Signals]) -> float:
-    """The force that a campaign hardly ever exceeds, N."""
+    """Force that a campaign rarely exceeds (99.5 % quantile), N."""
     coarse = [s.force(np.arange(0.0, s.motion.duration_s - s.begins_s, 0.05)) for s in runs]
     return float(np.quantile(np.abs(np.concatenate(coarse)), 0.995))
 
@@ -125,7 +123,7 @@ def _logged(
 
 
 def _gap(signals: Signals, bare: Signals, record: Record) -> float:
-    """RMS of what an effect does to a run, N: how well it can be seen at all."""
+    """RMS of the change that an effect causes in a run, N; it limits the effect's visibility."""
     times = record.time_s
     return float(np.sqrt(np.mean((signals.force(times) - bare.force(times)) ** 2)))
 
@@ -138,7 +136,7 @@ def write_recorded(
     artefacts: Sequence[str] = (OFF_GRID,),
     artefact_strength: str = "usual",
 ) -> dict[str, Any]:
-    """Write a campaign and its held-out runs; the truth goes beside the first's folder."""
+    """Write a campaign and its held-out runs, and the truth file next to the first folder."""
     records, truth = recorded(seed, effects, artefacts, artefact_strength)
     others, _ = recorded(seed, effects, for_held_out=True)
     design = draw_design(seed)

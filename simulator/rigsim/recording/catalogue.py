@@ -1,4 +1,4 @@
-"""The artefacts by name, in the order in which a signal meets them."""
+"""The artefacts by name, in the order in which they act on a signal."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _IN_ORDER = (
     *CLOCKS,
     *CELL,
     *NOISES,
-    *CONVERTER_FAULTS,  # a spike is clipped and rounded like the rest
+    *CONVERTER_FAULTS,  # a spike is clipped and rounded like the other samples
     *CONVERTER,
     *SPEEDS,
     *LATER_FAULTS,
     *LOAD,
 )
 OFF_GRID = "off_grid"
-"""Nothing more than that starts and stops fall between samples, as in all recordings here."""
+"""No artefact except that starts and stops fall between samples, as in all recordings here."""
 
 ARTEFACTS: dict[str, Artefact] = {
     a.name: a for a in sorted(_IN_ORDER, key=lambda a: STAGES.index(a.stage))
@@ -32,11 +32,11 @@ ONE_OF = (
     {"coarse_velocity", "backward_velocity", "filtered_velocity"},
     {"slow_force", "drifting_clock"},
 )
-"""Artefacts that cannot be in one recording: there is one speed, and one clock of the force."""
+"""Artefacts that exclude each other: a recording has one speed and one clock of the force."""
 
 
 def chosen(names: tuple[str, ...]) -> list[Artefact]:
-    """Artefacts of some names in their order; raises where one is unknown or excludes another."""
+    """Return the named artefacts in order; raise for unknown or mutually exclusive names."""
     if unknown := set(names) - set(ARTEFACTS) - {OFF_GRID}:
         known = ", ".join([OFF_GRID, *ARTEFACTS])
         raise ValueError(f"no artefact named {', '.join(sorted(unknown))}; there are {known}")

@@ -1,4 +1,4 @@
-"""The cell and its converter: zero and gain by run, an end of the range, steps."""
+"""The cell and its converter: zero and gain per run, limited range, quantisation."""
 
 from __future__ import annotations
 

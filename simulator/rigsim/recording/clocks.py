@@ -1,4 +1,4 @@
-"""When the channels look: lateness, jitter, a clock of its own, a slow one."""
+"""Sampling instants of the channels: delay, jitter, clock drift, a slow clock."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _skew(draft: Draft, sizes: Sizes, rng: Rng) -> Sizes:
 
 
 def _jitter(draft: Draft, sizes: Sizes, rng: Rng) -> Sizes:
-    # No logger looks twice in one order and writes in another.
+    # No logger samples in one order and writes in another.
     shaken = np.sort(draft.stamps + sizes["rms_s"] * rng.standard_normal(len(draft.stamps)))
     draft.force_instants = draft.force_instants + (shaken - draft.instants)
     draft.instants = shaken
@@ -45,7 +45,7 @@ def _slow_of(strength: str, rng: Rng) -> Sizes:
 
 
 def _slow(draft: Draft, sizes: Sizes, rng: Rng) -> Sizes:
-    # The force channel's delays were put on the encoder's instants; its own take them over.
+    # The delays of the force channel were set on the encoder's instants; transfer them to its own.
     step = 1.0 / sizes["rate_hz"]
     ticks = np.arange(-rng.uniform() * step, draft.stamps[-1] + 2.0 * step, step)
     late = np.interp(ticks, draft.stamps, draft.stamps - draft.force_instants)

@@ -1,4 +1,4 @@
-"""A record in the making, on its way from the rig through the logger."""
+"""A record under construction, between the rig and the logger's file."""
 
 from __future__ import annotations
 
@@ -29,17 +29,20 @@ STAGES: tuple[Stage, ...] = (
     "load",
     "rows",
 )
-"""The way of a signal: the rig of this run; when each channel looks; the cell's zero and gain; its
-noise; the converter; what the logger makes of it; the encoder; the load; the file's rows."""
+"""Stages of a signal, in order.
+
+The rig of this run; the sampling instants of each channel; the cell's zero and gain; its noise; the
+converter; the transport in the logger; the encoder; the load; the rows of the file.
+"""
 
 Sizes = dict[str, float]
 
 
 @dataclass(frozen=True)
 class Signals:
-    """The exact signals of a run, at any instant; 0 s is the record's first.
+    """The exact signals of a run at any instant; 0 s is the first sample of the record.
 
-    `film_start` is None in a run that begins as its motion does.
+    `film_start` is None in a run that begins when its motion begins.
     """
 
     base: Base
@@ -53,7 +56,7 @@ class Signals:
         return np.clip(times + self.begins_s, 0.0, self.motion.duration_s)
 
     def force(self, times: Vector) -> Vector:
-        """Force (N), offset and drift of the cell in it; `times` (s) ascend."""
+        """Force (N) including offset and drift of the cell; `times` (s) ascend."""
         force = cell_force(
             self.base,
             self.effects,
@@ -76,12 +79,12 @@ class Signals:
 
 @dataclass
 class Draft:
-    """What a run's record is so far.
+    """The current state of a run's record.
 
-    `stamps` are what the file will say, `instants` when the encoder truly looked, `force_instants`
-    when the cell's converter did, `force_stamps` when the logger believes it did (s). The force is
-    on its own instants until the transport puts it onto the stamps. `unit` is noise of unit size,
-    `scale` (N) its size, `extra` (N) what comes to it.
+    `stamps` are the times written to the file, `instants` the true sampling instants of the
+    encoder. `force_instants` are the true ones of the cell's converter, `force_stamps` those
+    assumed by the logger (s). The force stays on its own instants until the transport stage maps it
+    to the stamps. `unit` is noise of unit size, `scale` (N) its size, `extra` (N) additional noise.
     """
 
     signals: Signals
@@ -105,16 +108,16 @@ class Draft:
 
     @property
     def step_s(self) -> float:
-        """Between stamps, s."""
+        """Interval between stamps, s."""
         return float(self.stamps[1] - self.stamps[0])
 
 
 @dataclass(frozen=True)
 class Artefact:
-    """Something that a recording does to a record.
+    """An artefact of the recording.
 
-    `draw` gives its sizes for a campaign from ranges of a strength; `apply` does it to a run and
-    gives the sizes that this run has; both use generators of their own.
+    `draw` returns its sizes for a campaign from the ranges of a strength. `apply` applies it to a
+    run and returns its sizes in this run. Each uses a separate generator.
     """
 
     name: str

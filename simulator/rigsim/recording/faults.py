@@ -1,4 +1,4 @@
-"""What goes wrong now and then: spikes, a force that stands still, a bad position, lost rows."""
+"""Occasional faults: spikes, a force that is held, a wrong position, lost rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One run from the exact signals to the file's columns."""
+"""Convert one run from the exact signals to the columns of the file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def logged(
     seed: int,
     run: str,
 ) -> tuple[Record, list[dict[str, Any]]]:
-    """The record of a run, and what each artefact did to it: kind, channel, run, size."""
+    """Return the record of a run and, for each artefact, its kind, channel, run and size."""
     stamps = np.arange(int(length_s * rate_hz)) / rate_hz
     draft = Draft(signals, stamps, noise_n, peak_n, counts_per_rad)
     done: list[dict[str, Any]] = []
@@ -42,7 +42,7 @@ def logged(
     meet("rig")
     draft.instants = draft.force_instants = draft.force_stamps = stamps
     meet("clock")
-    # A clock that runs slow may set two shaken instants back past each other by rounding.
+    # With a slow clock, rounding may reverse the order of two jittered instants.
     draft.force_instants = np.maximum.accumulate(draft.force_instants)
     draft.clean = draft.signals.force(draft.force_instants)
     draft.force = draft.clean
@@ -70,7 +70,7 @@ def _add_noise(draft: Draft, meet: Callable[[Stage], None], seed: int, run: str)
 
 
 def _onto_stamps(draft: Draft, force: Vector) -> Vector:
-    """A force that was sampled at its own ticks, as straight lines or as the last value known."""
+    """Map a force sampled on its own clock to the stamps, by linear interpolation or hold."""
     if draft.force_stamps is draft.stamps:
         return force
     if not draft.held:
@@ -87,5 +87,5 @@ def _measure_motion(draft: Draft, seed: int, run: str) -> None:
 
 
 def sizes_of(artefacts: Iterable[Artefact], strength: str, seed: int) -> Mapping[str, Sizes]:
-    """Sizes of some artefacts for a campaign."""
+    """Draw the sizes of artefacts for a campaign."""
     return {a.name: a.draw(strength, stream(seed, "artefact", a.name, strength)) for a in artefacts}

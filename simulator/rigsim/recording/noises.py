@@ -1,4 +1,4 @@
-"""Noise unlike white noise of one size."""
+"""Noise that differs from white noise of constant size."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .ranges import fixed, sized
 
 def _heavy_tails(draft: Draft, sizes: Sizes, rng: Rng) -> Sizes:
     freedom = sizes["freedom"]
-    unit = math.sqrt((freedom - 2.0) / freedom)  # the same s.d. as without tails
+    unit = math.sqrt((freedom - 2.0) / freedom)  # same s.d. as without heavy tails
     draft.unit = unit * rng.standard_t(freedom, len(draft.unit))
     return dict(sizes)
 

@@ -1,4 +1,4 @@
-"""Sizes of artefacts: for each a range by strength, drawn once a campaign."""
+"""Sizes of artefacts: a range for each strength, from which a size is drawn once per campaign."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ Range = tuple[float, float]
 
 
 def sized(**ranges: tuple[Range, Range, Range]) -> Callable[[str, Rng], dict[str, float]]:
-    """Sizes by name, each from its (mild, usual, severe) range, small ones as likely as large."""
+    """Make a function that draws sizes by name, log-uniformly from the (mild, usual, severe)
+    ranges.
+    """
 
     def draw(strength: str, rng: Rng) -> dict[str, float]:
         at = STRENGTHS.index(strength)
@@ -21,15 +23,15 @@ def sized(**ranges: tuple[Range, Range, Range]) -> Callable[[str, Rng], dict[str
 
 
 def fixed(value: float) -> Range:
-    """Always the same."""
+    """A range that contains only `value`."""
     return value, value
 
 
 def chance(rng: Rng, share: float) -> bool:
-    """True with a probability."""
+    """Return True with probability `share`."""
     return bool(rng.random() < share)
 
 
 def either(rng: Rng) -> float:
-    """A sign."""
+    """Return +1 or -1 with equal probability."""
     return 1.0 if rng.random() < 0.5 else -1.0

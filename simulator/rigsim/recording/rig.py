@@ -1,4 +1,4 @@
-"""What is not the logger's: a rig that is another from run to run, and a noisy load cell."""
+"""Artefacts outside the logger: a rig that varies from run to run, and a noisy load channel."""
 
 from __future__ import annotations
 

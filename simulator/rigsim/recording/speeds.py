@@ -1,4 +1,4 @@
-"""Speeds that no tachometer measured: differences of encoder counts, and filtered ones."""
+"""Speeds not measured by a tachometer: differences of encoder counts, and filtered speeds."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ from .draft import Artefact, Draft, Sizes
 from .ranges import chance, fixed, sized
 
 FINE_HZ = 1000.0
-COARSE_COUNTS = {"mild": 36000.0, "usual": 10000.0, "severe": 4000.0}  # a turn
+COARSE_COUNTS = {"mild": 36000.0, "usual": 10000.0, "severe": 4000.0}  # counts per turn
 
 
 def _difference(draft: Draft, counts_per_rad: float, before: int, after: int) -> Vector:
-    """Speed (m/s) from whole counts, `before` samples back to `after` samples on; at the ends of a
-    record from what is there. The logger divides by the stamps that it knows."""
+    """Speed (m/s) from whole counts over the interval from `before` samples back to `after` ahead.
+
+    At the ends of a record the interval is shortened. The logger divides by the stamps, not by the
+    true instants.
+    """
     draft.counts_per_rad = counts_per_rad
     angle = np.round(draft.signals.angle(draft.instants) * counts_per_rad) / counts_per_rad
     draft.angle = angle
@@ -57,7 +60,7 @@ def _filtered(draft: Draft, sizes: Sizes, _rng: Rng) -> Sizes:
     speed = draft.signals.speed(fine)
     sections = butter(2, sizes["cut_hz"], fs=FINE_HZ, output="sos")
     smooth, _ = sosfilt(sections, speed, zi=sosfilt_zi(sections) * speed[0])
-    # The noise of the tachometer goes through the filter, too: little of it is left.
+    # The tachometer noise also passes the filter; the small remainder is neglected.
     draft.speed = np.interp(draft.instants, fine, smooth)
     return dict(sizes)
 

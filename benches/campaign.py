@@ -1,8 +1,8 @@
 """One campaign, predicted with its derivatives and fitted: `python benches/campaign.py`.
 
-Six runs (390 s, 50 samples/s) of the project's own simulator with two effects. Times are of the
-wall clock, from Python; `CPU` is what all threads together took, which a busy machine moves less:
-on two free cores the wall clock shows about half of it.
+Six runs (390 s, 50 samples/s) of the project's own simulator with two effects. Times are wall-clock
+times measured in Python. `CPU` is the processor time of all threads together, which a busy machine
+affects less; on two free cores the wall-clock time is about half of it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ FINE_STEP_S, FINEST_STEP_S = 0.002, 0.0005
 
 
 def campaign(seed: int) -> tuple[jbf.Rig, list[jbf.Run]]:
-    """A rig and its six runs: two-way and one-way sines, and stop-and-go."""
+    """Return a rig and its six runs: reversing and unidirectional sines, and stop-and-go."""
     full = {m.name: m for m in rigsim.standard("full").motions}
     motions = (
         rigsim.sine("bi_w0.10", 95.0, 0.127, 0.1),
@@ -42,7 +42,7 @@ def campaign(seed: int) -> tuple[jbf.Rig, list[jbf.Run]]:
 
 
 def timed(work: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Median and least milliseconds of the wall clock, and least of the processor."""
+    """Median and least wall-clock time, and least processor time, in milliseconds."""
     wall, cpu = [], []
     for _ in range(rounds):
         begin, begun = time.perf_counter(), time.process_time()
@@ -53,7 +53,7 @@ def timed(work: Callable[[], object], rounds: int) -> tuple[float, float, float]
 
 
 def row(name: str, times: tuple[float, float, float], share: int | None = None) -> None:
-    """A line of a table; `share`: parameters among which the processor's time is shared."""
+    """Print a table row; `share` is the number of parameters that divides the CPU time."""
     each = "" if share is None else f"{times[2] / share:.2f}"
     print(f"| {name} | {times[0]:.1f} | {times[1]:.1f} | {times[2]:.1f} | {each} |")
 

@@ -1,9 +1,9 @@
 """Processor time of `jbf.control.run` for 100 s of loop at 2 ms (50,000 steps), plant and log too.
 
-`python benches/control_runs.py` prints the middle and the least of several runs by scheme. The
-task is the velocity sine of Table 6.2, the bench the thesis's with its elastic belt; `rigid` has
-none, and `all effects` has every effect of the catalogue that asks for no thermometer, at its
-starting values.
+`python benches/control_runs.py` prints the median and the least of several runs for each scheme.
+The task is the velocity sine of Table 6.2. The benches are the thesis's with its elastic belt, the
+same without a belt (`rigid`), and one with every effect of the catalogue that needs no thermometer,
+at its starting values (`all effects`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ RUNS = 9
 
 
 def burdened() -> Model:
-    """The film with every effect that goes with it, and that a bench without a thermometer has."""
+    """Return the film model with every compatible effect that needs no thermometer."""
     names = [
         name
         for name, page in effects().items()
@@ -33,7 +33,7 @@ def burdened() -> Model:
 
 
 def main() -> None:
-    """One row a scheme, on three benches."""
+    """Print one row per scheme, for three benches."""
     argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0]).parse_args()
     benches = {
         "elastic belt": control.thesis_model(),

@@ -1,11 +1,11 @@
 """Instructions of every step, counted by callgrind and compared with `benches/counts.txt`.
 
-`make counts` fails where a step takes over 5 % more instructions than the baseline says.
-`python benches/counts.py --write` writes the baseline anew: part of a change that is worth it.
+`make counts` fails if a step takes over 5 % more instructions than in the baseline. `python
+benches/counts.py --write` rewrites the baseline, as part of a change that justifies it.
 
-Counts do not depend on how busy the machine is, but on the compiler. Under another rustc than the
-baseline's, the commit that wrote the baseline is built with this rustc too and measured in its
-place; where git does not have that commit, counts are compared with a limit of 20 %.
+Counts do not depend on the load of the machine, but on the compiler. With another rustc than the
+baseline's, the commit that wrote the baseline is built with this rustc and measured instead. If git
+does not have that commit, counts are compared with a limit of 20 %.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ def rustc() -> str:
 
 
 def measured(root: Path, target: Path) -> Counts:
-    """Build `root` into `target` and count: instructions a step by name."""
-    # A user's flags would be other code than the baseline's.
+    """Build `root` into `target` and count the instructions per step, by name."""
+    # Flags set by the user would produce other code than the baseline's.
     own = {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS")}
     build = ["cargo", "build", "--quiet", "--release", "-p", "jbf-benches", "--bin", "counts"]
     subprocess.run([*build, "--target-dir", str(target)], check=True, cwd=root, env=own)
@@ -60,7 +60,7 @@ def measured(root: Path, target: Path) -> Counts:
             found = re.search(r"^summary: (\d+)", text, re.MULTILINE)
             return int(found.group(1)) if found else 0
 
-        # Two marks a name: what lies between them is what counts.
+        # Two marks per name: the instructions between them are counted.
         return {name: part(2 * i + 2) / steps for i, name in enumerate(names)}
 
 
@@ -80,7 +80,7 @@ def write(counts: Counts) -> None:
 
 
 def by_this_compiler(target: Path) -> Counts | None:
-    """The commit that wrote the baseline, measured with this rustc; none without its history."""
+    """Measure the commit that wrote the baseline with this rustc; None without its history."""
     log = ["git", "log", "-1", "--format=%H", "--", str(BASELINE)]
     commit = subprocess.run(log, cwd=ROOT, capture_output=True, text=True).stdout.strip()
     if not commit:
@@ -100,7 +100,7 @@ def by_this_compiler(target: Path) -> Counts | None:
 
 
 def baseline(target: Path) -> tuple[Counts, float]:
-    """What to compare with, and the limit."""
+    """Return the counts to compare with, and the limit."""
     compiler, counts = read()
     if compiler == rustc().strip():
         return counts, LIMIT

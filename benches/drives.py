@@ -1,8 +1,9 @@
 """How often a diagnosis of simulated drives is right: `python benches/drives.py --seeds 4`.
 
-Dry and viscous friction under three loads (`rigsim.axes`, which shares no code with the library),
-with nothing hidden, each effect of drives alone, two of them, something that no catalogue has, or
-a thermometer and what it tells. Six runs are diagnosed, two more of the same drive are predicted.
+Dry and viscous friction under three loads (`rigsim.axes`, which shares no code with the library).
+The campaigns contain no effect, one effect of drives, two effects, an effect that is in no
+catalogue, or a varying temperature with a thermometer. Six runs are diagnosed and two more of the
+same drive are predicted.
 """
 
 from __future__ import annotations
@@ -32,9 +33,9 @@ COMPANY = {
     "cogging_2": ("cogging",),
     "pitch_ripple_2": ("pitch_ripple",),
 }
-"""What must be hidden beside an effect for it to show."""
+"""Effects that must be present for another effect to be observable."""
 SWING = 8.0
-"""A joint whose weight is carried swings so much wider than a slide."""
+"""Factor by which the motion of a joint that carries its weight is wider than that of a slide."""
 WARM: tuple[tuple[tuple[str, ...], Kind], ...] = (
     ((), "wandering"),
     ((), "warming"),
@@ -42,9 +43,9 @@ WARM: tuple[tuple[tuple[str, ...], Kind], ...] = (
     (OF_TEMPERATURE, "wandering"),
     (("warm_up",), "wandering"),
 )
-"""What is hidden where a thermometer is read, and how the temperature goes."""
+"""Hidden effects and course of the temperature in campaigns with a thermometer."""
 PULLEY_M = 0.05
-"""Radius of what turns with a drive, where something foreign asks for an angle."""
+"""Radius of the rotating part of a drive, for foreign effects that require an angle."""
 FITTED, PREDICTED = 6, 2
 NONE_A_ROUND, PAIRS_A_ROUND = 6, 8
 
@@ -62,7 +63,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a diagnosis said of it."""
+    """The result of a diagnosis and its assessment."""
 
     task: Task
     judged: str
@@ -73,7 +74,7 @@ class Answer:
 
 
 def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
-    """The campaigns of some rounds; no two share a seed."""
+    """Generate the campaigns of several rounds; no two share a seed."""
     cold = [name for name in AXIS_EFFECTS if name not in OF_TEMPERATURE]
     singles = [tuple(sorted({name, *COMPANY.get(name, ())})) for name in cold]
     together = [
@@ -96,7 +97,7 @@ def tasks(kinds: list[str], rounds: range) -> Iterator[Task]:
 
 
 def recorded(run: AxisRun, joint: bool) -> jbf.Run:
-    """A run as the library takes it: a joint has an angle, a slide a position."""
+    """Convert a run for the library: a joint has an angle, a slide a position."""
     path = {"angle_rad" if joint else "position_m": run.path}
     made = jbf.Run.from_arrays(
         run.time_s,
@@ -111,12 +112,12 @@ def recorded(run: AxisRun, joint: bool) -> jbf.Run:
 
 
 def rig_of(joint: bool) -> jbf.Rig:
-    """A drive of a joint or of a slide whose torque or force was read."""
+    """The rig of a joint or slide whose torque or force was measured."""
     return jbf.Rig(drive=jbf.Drive("rotary", "torque") if joint else jbf.Drive("linear", "force"))
 
 
 def simulated(task: Task) -> tuple[jbf.Rig, list[jbf.Run], float]:
-    """The rig, its runs, and the noise on them, N or N m."""
+    """Return the rig, its runs, and the noise level, N or N m."""
     joint = "gravity" in task.effects or task.seed % 2 == 0
     swing = SWING if "torque_proportional" in task.effects else 1.0
     records, truth = axis_campaign(
@@ -141,7 +142,7 @@ def simulated(task: Task) -> tuple[jbf.Rig, list[jbf.Run], float]:
 
 
 def answer(task: Task) -> Answer:
-    """Simulate, diagnose, judge."""
+    """Simulate a campaign, diagnose it and assess the result."""
     rig, runs, noise_n = simulated(task)
     begun = time.process_time()
     found = jbf.diagnose(rig, runs[:FITTED], law="coulomb")
@@ -152,7 +153,11 @@ def answer(task: Task) -> Answer:
 
 
 def judged(task: Task, found: jbf.Diagnosis) -> str:
-    """`right`, `tied`, `named falsely`, `unexplained`, `missed`."""
+    """Assess a diagnosis.
+
+    The result is `right`, `tied`, `named falsely`, `unexplained`, `missed`, or `not told` for a
+    foreign effect.
+    """
     if task.foreign:
         return "right" if found.verdict == "unexplained" else "not told"
     named, true = {*found.machine, *found.effects}, set(task.effects)
@@ -167,7 +172,7 @@ def judged(task: Task, found: jbf.Diagnosis) -> str:
 
 
 def table(answers: list[Answer]) -> Iterator[str]:
-    """A row a kind, and every campaign that is not right."""
+    """Generate a row per kind, and a line for every campaign that is not right."""
     columns = ("right", "tied", "named falsely", "unexplained", "missed", "not told")
     head = ("hidden", "campaigns", *columns, "held-out, median", "worst", "CPU s, worst")
     yield f"| {' | '.join(head)} |"
@@ -190,7 +195,7 @@ def table(answers: list[Answer]) -> Iterator[str]:
 
 
 def main() -> int:
-    """Do it."""
+    """Run the study and print its table."""
     parser = argparse.ArgumentParser(prog="drives", description=__doc__.split("\n", 1)[0])
     parser.add_argument("--kinds", default=",".join(KINDS), help=f"of {', '.join(KINDS)}")
     parser.add_argument("--seeds", type=int, default=1, help="rounds of about 30 campaigns; 1")

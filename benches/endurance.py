@@ -1,7 +1,7 @@
 """Whether memory stays flat: `python benches/endurance.py`.
 
-Diagnoses campaign after campaign in one process and prints its resident memory as it goes. Fails
-where the last tenth holds more than `--growth-mib` above the second.
+Diagnoses campaign after campaign in one process and prints its resident memory. Fails if the memory
+after the last tenth exceeds that after the second by more than `--growth-mib`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 
 
 def resident_mib() -> float:
-    """Memory that the process holds now, MiB."""
+    """Resident memory of the process, MiB."""
     status = Path("/proc/self/statm")
     if status.exists():
         return int(status.read_text().split()[1]) * resource.getpagesize() / 2**20
@@ -25,7 +25,7 @@ def resident_mib() -> float:
 
 
 def campaign(seed: int, samples: int) -> list[jbf.Run]:
-    """Two runs of an axis with dry friction, and in every other campaign a zero that is off."""
+    """Two runs of an axis with dry friction; every other campaign has a zero offset."""
     random = np.random.default_rng(seed)
     runs = []
     for name, rate in (("slow", 0.7), ("fast", 2.9)):
@@ -37,7 +37,7 @@ def campaign(seed: int, samples: int) -> list[jbf.Run]:
 
 
 def main() -> int:
-    """Run, print, judge."""
+    """Run the diagnoses, print the memory and check its growth."""
     parser = argparse.ArgumentParser(prog="endurance", description=__doc__.split(":")[0])
     parser.add_argument("--diagnoses", type=int, default=1000)
     parser.add_argument("--samples", type=int, default=800, help="of a run")

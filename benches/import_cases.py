@@ -55,7 +55,7 @@ UNITS: dict[str, tuple[float, str]] = {
     **dict.fromkeys(("s", "sec", "Sek", "seconds"), (1.0, "s")),
     "ms": (1e-3, "s"), "msec": (1e-3, "s"), "us": (1e-6, "s"), "µs": (1e-6, "s"),
     "ns": (1e-9, "s"), "min": (60.0, "s"), "h": (3600.0, "s"),
-    # Shares, and what a rig is described in
+    # Ratios, and units of rig descriptions
     **dict.fromkeys(("%", "pct", "percent", "Prozent"), (1e-2, "")),
     **dict.fromkeys(("permille", "‰"), (1e-3, "")), "-": (1.0, ""),
     "kg m²": (1.0, "kg m^2"), "kg cm^2": (1e-4, "kg m^2"), "Pa s": (1.0, "kg m^-1 s^-1"),
@@ -82,7 +82,7 @@ kilopond = 9.80665 * newton = kp
 thousandth_inch = 0.001 * inch = mil
 percent_ = 0.01 = pct
 """.strip().splitlines()
-"""What pint's registry lacks, or has with another meaning."""
+"""Units that pint's registry lacks or defines with another meaning."""
 PINT_REWRITES = (
     (r"^(1?/min|min-1|min\^-1|min⁻¹)$", "rpm"),
     (r"(?<=[A-Za-z])-(?=[A-Za-z])", "*"),
@@ -143,13 +143,13 @@ DATES: dict[str, int] = {
     "1:05:07 PM": _ns(1970, 1, 1, 13, 5, 7),
     "13:05": _ns(1970, 1, 1, 13, 5),
 }
-"""Stamps and their nanoseconds since 1970, or since midnight."""
+"""Date and time texts, and their nanoseconds since 1970 or since midnight."""
 
 NO_DATES = (
     "2026-02-30", "31.04.2026 10:00", "2026-13-01", "12:00:00 XM", "noon", "10", "1.2", "3.5 N",
     "2026-11-24 13:05:07 CET",
 )  # fmt: skip
-"""Cells that are no date, or one of an unknown zone: to be refused."""
+"""Cells that are not dates, or have an unknown time zone: they must be refused."""
 
 ORDERS: tuple[tuple[list[str], str | None], ...] = (
     (["03/04/2026", "04/04/2026"], None),
@@ -158,17 +158,15 @@ ORDERS: tuple[tuple[list[str], str | None], ...] = (
     (["02/13/2026", "02/01/2026"], "month_first"),
     (["03.04.2026", "04.04.2026"], "day_first"),
 )
-"""Columns, and which comes first; None where a person has to say it."""
+"""Columns, and whether day or month comes first; None if a person must decide."""
 
 
 @dataclass(frozen=True)
 class Text:
-    """A file, and how it is to be read.
+    """A file and its expected interpretation.
 
-    Attributes
-    ----------
-    header
-        The row of the names, the first being 1; 0 where there is none.
+    Attributes ---------- header
+        The row of the names, the first being 1; 0 without such a row.
     """
 
     data: bytes
@@ -202,7 +200,7 @@ def text(
     groups: bool = False,
     blank: str = "",
 ) -> Text:
-    """A file of sixty rows of samples."""
+    """Create a file with sixty rows of samples."""
     mark = delimiter + blank
     names = names[:columns]
 
@@ -243,7 +241,7 @@ _LONG = ("Logger: ACME 3000, v1.2", "Kanal;Faktor;Offset", "1;1,000;0,0", "2;0,2
 
 
 def texts() -> dict[str, Text]:
-    """Files by what is special in them."""
+    """Return files by their special property."""
     date = "24.11.2026 13:05:{second:02d},{tenth}00"
     marks = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blank": " "}
     cases = {f"{word}, decimal point": text(mark) for word, mark in marks.items()}

@@ -1,7 +1,7 @@
 """Compare the parsers of `jbf import` with libraries: units, dates and text dialects.
 
 `python benches/import_libraries.py` prints Markdown tables. A reading is right, refused (an error
-or no answer) or wrong (another value without an error). A library that is not installed is skipped:
+or no result) or wrong (another value without an error). A library that is not installed is skipped:
 `pip install pint python-dateutil clevercsv pandas polars duckdb`.
 """
 
@@ -38,11 +38,11 @@ from import_cases import (
 )  # fmt: skip
 
 Outcome = str | None
-"""Text of a wrong reading; empty where it is right, None where it is refused."""
+"""Text of a wrong reading; empty if it is right, None if it is refused."""
 
 
 def library(name: str) -> Any:
-    """A module; None, with a message, where it is not installed."""
+    """Return a module; None, with a message, if it is not installed."""
     try:
         return importlib.import_module(name)
     except ImportError:
@@ -60,7 +60,7 @@ def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
 
 
 def counted(outcomes: Mapping[str, Outcome]) -> list[object]:
-    """Numbers of right, refused and wrong readings, and the wrong ones."""
+    """Numbers of right, refused and wrong readings, and the wrong readings."""
     wrong = {text: shown for text, shown in outcomes.items() if shown}
     refused = [f"`{text}`" for text, shown in outcomes.items() if shown is None]
     listed = "; ".join(f"`{text}`: {shown}" for text, shown in wrong.items())
@@ -75,7 +75,7 @@ def seconds(work: Callable[[], object]) -> float:
 
 
 def import_seconds(code: str, times: int = 5) -> float:
-    """Median time of a new process that runs the code, less that of one that imports numpy."""
+    """Median time of a new process that runs the code, minus that of one that imports numpy."""
 
     def took(line: str) -> float:
         return seconds(lambda: subprocess.run([sys.executable, "-c", line], check=True))
@@ -118,7 +118,7 @@ def pint_unit(registry: Any, text: str) -> tuple[float, dict[str, int]] | None:
 
 
 def unit_outcome(found: tuple[float, dict[str, int]] | None, wanted: str, size: float) -> Outcome:
-    """Angles and counts may be dimensionless; a size in degrees read as radians is wrong."""
+    """Assess a unit: angles and counts may be dimensionless; degrees read as radians are wrong."""
     if found is None:
         return None
     expected = {b: int(p or 1) for b, _, p in (f.partition("^") for f in wanted.split())}
@@ -131,7 +131,7 @@ def unit_outcome(found: tuple[float, dict[str, int]] | None, wanted: str, size: 
 
 
 def compare_units() -> None:
-    """Readings, time of the import, and rounding."""
+    """Compare readings, import time and rounding."""
     from jbf.units.table import ASK
     from jbf.units.unit import parse_unit
 
@@ -205,7 +205,7 @@ def date_outcome(read: Callable[[str], Any], cell: str, wanted: int | None) -> O
 
 
 def compare_dates(stamps: int) -> None:
-    """Readings of single stamps, the order of day and month of columns, and speed."""
+    """Compare readings of single stamps, the order of day and month of columns, and speed."""
     from jbf.importing.formats.dates import Instants, day_or_month_first
     from jbf.importing.formats.table import BLOCK
 
@@ -259,14 +259,14 @@ Detected = tuple[str, str | None, bool]
 
 
 def detectors() -> dict[str, Callable[[Path, Text], Detected]]:
-    """The detection of each library; texts are decoded for those that take text."""
+    """Return the detection function of each library; input is decoded for those that take text."""
     from jbf.importing.formats.csv_text import TextSource
     from jbf.importing.formats.table import Options
 
     clevercsv, duckdb = library("clevercsv"), library("duckdb")
 
     def header_found(answer: bool, text: Text) -> bool:
-        """Whether a yes or no about the first row is right and sufficient."""
+        """Whether a boolean result about the first row is right and sufficient."""
         return text.header < 2 and answer == (text.header == 1)
 
     def own(path: Path, text: Text) -> Detected:
@@ -299,7 +299,7 @@ def detectors() -> dict[str, Callable[[Path, Text], Detected]]:
 
 
 def compare_texts(megabytes: float) -> None:
-    """Delimiter, decimal mark and names of generated files, and speed."""
+    """Compare delimiter, decimal mark and names of generated files, and speed."""
     cases = texts()
     with tempfile.TemporaryDirectory() as folder:
         paths = {name: Path(folder) / f"{i}.csv" for i, name in enumerate(cases)}
@@ -328,7 +328,7 @@ def compare_texts(megabytes: float) -> None:
 
 
 def compare_speed(folder: Path, megabytes: float) -> None:
-    """Seconds to detect the dialect and to read the body of one file, in turns."""
+    """Time the detection of the dialect and the reading of the body of one file, in turns."""
     from jbf.importing.formats.csv_text import TextSource
     from jbf.importing.formats.table import Options
 
@@ -364,7 +364,7 @@ def compare_speed(folder: Path, megabytes: float) -> None:
         turns: dict[str, list[float]] = {name: [] for name in works}
         for _ in range(3):
             for name, work in works.items():
-                if not (name == "clevercsv" and turns[name]):  # minutes, once
+                if not (name == "clevercsv" and turns[name]):  # takes minutes, run once
                     turns[name].append(seconds(work))
         medians = {name: median(took) for name, took in turns.items()}
         table(

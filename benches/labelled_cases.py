@@ -3,8 +3,8 @@
     .venv/bin/python benches/labelled_cases.py CASES HELDOUT [--only case01,case02]
 
 `CASES/truth.json` has, for each campaign, `effects` (name to parameters), `foreign`, `noise_n`;
-`CASES/NAME` and `HELDOUT/NAME` have `rig.toml` and runs. Held-out RMS leaves out samples slower
-than 5e-4 m/s. Everything goes through the command line, as a user's would.
+`CASES/NAME` and `HELDOUT/NAME` have `rig.toml` and runs. Samples slower than 5e-4 m/s are excluded
+from the held-out RMS. All steps use the command line, as a user would.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SLOWEST_M_S = 5e-4
 
 
 def jbf(*words: str | Path) -> None:
-    """One command; its failure is ours."""
+    """Run one command; raise if it fails."""
     subprocess.run([sys.executable, "-m", "jbf", *map(str, words)], check=True, capture_output=True)
 
 
@@ -48,7 +48,7 @@ def held_out_rms(model: Path, folder: Path, work: Path) -> float:
 
 
 def judge(truth: dict[str, Any], found: dict[str, Any]) -> str:
-    """`right`, `tied`, `wrong`, or `abstained`, against what can be known."""
+    """Assess a diagnosis: `right`, `tied`, `wrong` or `abstained`, against what can be known."""
     hidden = set(truth["effects"])
     named = set(found["effects"])
     if truth["foreign"] or hidden - set(catalogue()):
@@ -63,7 +63,7 @@ def judge(truth: dict[str, Any], found: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Print a row a campaign and the tally."""
+    """Print a row per campaign and the totals."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("cases", type=Path)
     parser.add_argument("heldout", type=Path)

@@ -2,9 +2,9 @@
 
     .venv/bin/python benches/logger_artefacts.py
 
-Takes the demo campaign with nothing hidden (five runs at 50 Hz), treats its force channel as
-loggers and exports do, imports the result as a file, and diagnoses it. Nothing but the recording
-changes, so every row should be `adequate`, or say what the recording did.
+Takes the demo campaign without hidden effects (five runs at 50 Hz), treats its force channel as
+loggers and exports do, imports the result as a file, and diagnoses it. Only the recording changes,
+so every row should be `adequate` or report the recording artefact.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ Columns = dict[str, Array]
 
 
 def as_recorded(run: Columns) -> str:
-    """As it is."""
+    """The unchanged record."""
     return table(run)
 
 
 def late(seconds: float) -> Callable[[Columns], str]:
-    """The force's clock behind the others, and interpolated to them."""
+    """A force that lags the other channels, interpolated to their stamps."""
 
     def treat(run: Columns) -> str:
         time = run["time_s"]
@@ -39,20 +39,20 @@ def late(seconds: float) -> Callable[[Columns], str]:
 
 
 def drawn(run: Columns) -> str:
-    """Logged at 20 Hz, straight lines between."""
+    """A force logged at 20 Hz and interpolated linearly."""
     time, force = slow(run)
     return table(run | {"friction_n": np.interp(run["time_s"], time, force)})
 
 
 def held(run: Columns) -> str:
-    """Logged at 20 Hz, each value held until the next."""
+    """A force logged at 20 Hz, each value held until the next."""
     time, force = slow(run)
     last = np.searchsorted(time, run["time_s"] + 1e-9, side="right") - 1
     return table(run | {"friction_n": force[last]})
 
 
 def own_clock(run: Columns) -> str:
-    """Logged at 20 Hz with stamps of its own: a row at each instant, empty cells elsewhere."""
+    """A force logged at 20 Hz with separate stamps; missing values are empty cells."""
     time, force = slow(run)
     motion = [name for name in run if name != "friction_n"]
     rows = {round(t, 6): [run[name][i] for name in motion] for i, t in enumerate(run["time_s"])}
@@ -67,14 +67,14 @@ def own_clock(run: Columns) -> str:
 
 
 def slow(run: Columns) -> tuple[Array, Array]:
-    """The force at 20 Hz: the reading of the converter at that instant."""
+    """Force at 20 Hz: the sample nearest to each instant."""
     time = np.arange(run["time_s"][0], run["time_s"][-1], 0.05)
     nearest = np.abs(run["time_s"][:, None] - time).argmin(axis=0)
     return run["time_s"][nearest], run["friction_n"][nearest]
 
 
 def table(run: Columns) -> str:
-    """CSV."""
+    """Format the columns as CSV."""
     rows = zip(*run.values(), strict=True)
     return "\n".join([",".join(run), *(",".join(f"{x:.9g}" for x in row) for row in rows)])
 
@@ -120,7 +120,7 @@ def main() -> None:
 
 
 def read(path: Path) -> Columns:
-    """The columns of a run."""
+    """Read the columns of a run."""
     rows = np.genfromtxt(path, delimiter=",", names=True)
     return {name: rows[name] for name in rows.dtype.names}
 

@@ -1,8 +1,9 @@
 """How long, and how large, a diagnosis of a long recording is: `python benches/long_recording.py`.
 
-A simulated slide (`rigsim.axes`, which shares no code with the library) records at 50 Hz, cut into
-runs of five minutes, with one effect hidden or none. Told are the verdict, the names, wall and
-processor time, the largest memory of the process, and the error of another run over the noise.
+A simulated slide (`rigsim.axes`, which shares no code with the library) records at 50 Hz, divided
+into runs of about five minutes, with one hidden effect or none. Prints the verdict, the names, wall
+and processor time, the largest memory of the process, and the ratio of error to noise on another
+run.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ GIB_IN_KIB = 1024.0**2
 
 
 def main() -> int:
-    """Simulate, diagnose, tell; fails where the names are not what was hidden."""
+    """Simulate, diagnose and report; fail if the names differ from the hidden effects."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split(":")[0])
     parser.add_argument("--hours", type=float, default=24.0)
     parser.add_argument("--effect", default="inertia_leak", help="what is hidden, or none")

@@ -1,14 +1,14 @@
 """jbf beside the best peers, in one run: `python benches/peers.py FOLDER`.
 
 FOLDER holds the peers: C kernels (`c/kern.h`, `c/peers.c`, `c/Makefile`) for T1, numbalsoda
-(`solvers.py`, `common.py`) for T2 and T3, `t4.py` for T4. They are not ours to ship: without
-FOLDER, a compiler or a package, the task is skipped and says so. The folder is copied to
+(`solvers.py`, `common.py`) for T2 and T3, `t4.py` for T4. They are not distributed with jbf.
+Without FOLDER, a compiler or a package, the task is skipped with a message. The folder is copied to
 `target/peers` and built there.
 
-Peers and jbf take turns, so that a busy machine is busy for both: read ratios, not times. Before a
-turn is clocked, the machine rests and the row works unclocked for a while: OpenMP's threads (the
-peers') keep a core busy for some milliseconds after their work, in wait for more, which is the next
-row's time; and any thread that sleeps wakes late. `--no-rest` shows what it is like without.
+Peers and jbf take turns, so that the load of the machine affects both: compare ratios, not times.
+Before a timed turn, the machine rests and the row runs untimed for a short period. OpenMP's threads
+(the peers') keep a core busy for some milliseconds after their work, waiting for more, which would
+count as the next row's time; and any sleeping thread wakes late. `--no-rest` omits the rest.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ Timed = dict[str, Callable[[], float]]
 
 
 def table(title: str, unit: str, peer: str, rounds: int, rows: Timed) -> None:
-    """Time `rows` in turn, and print each beside the row `peer`."""
+    """Time `rows` in turn, and print each with its ratio to the row `peer`."""
     times: dict[str, list[float]] = {name: [] for name in rows}
     for _ in range(rounds):
         for name, run in rows.items():
@@ -64,7 +64,7 @@ def table(title: str, unit: str, peer: str, rounds: int, rows: Timed) -> None:
 
 
 def clock(work: Callable[[], object], per: float) -> Callable[[], float]:
-    """Seconds that `work` takes times `per`."""
+    """Return a function that gives the seconds that `work` takes, multiplied by `per`."""
 
     def timed() -> float:
         begin = time.perf_counter()
@@ -87,7 +87,7 @@ def pointer(array: np.ndarray | None) -> ctypes.c_void_p:
 
 
 def peer_sets(sets: dict[str, np.ndarray]) -> np.ndarray:
-    """The peers' table of a parameter set: one row a number, one column a set."""
+    """Parameter table of the peers: one row per quantity, one column per set."""
     bearing, lubricant, load = RIG.bearing, RIG.lubricant, RIG.load
     assert bearing is not None
     assert lubricant is not None
@@ -102,7 +102,7 @@ def peer_sets(sets: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def single(folder: Path, rounds: int) -> None:
-    """T1: one step after the other, from Rust and from C."""
+    """T1: successive steps, from Rust and from C."""
     build = ["cargo", "build", "--release", "--quiet", "-p", "jbf-benches", "--bin", "t1"]
     subprocess.run(build, check=True, cwd=HERE.parent)
     ours = subprocess.Popen(
@@ -174,7 +174,7 @@ def batch(folder: Path, rounds: int) -> None:
 
 
 def solvers(folder: Path, rounds: int, tasks: list[str]) -> None:
-    """T2 and T3: eight motions to an error of the friction, and numbalsoda at its best settings."""
+    """T2 and T3: eight motions to a required friction error, numbalsoda at its best settings."""
     sys.path.insert(0, str(folder))
     os.environ.setdefault("NUMBA_NUM_THREADS", "2")
     os.environ.setdefault("RAYON_NUM_THREADS", "2")
@@ -190,7 +190,7 @@ def solvers(folder: Path, rounds: int, tasks: list[str]) -> None:
 
 
 def references(peers: ModuleType, order: int) -> np.ndarray:
-    """Eccentricities as the peers' own reference has them, kept beside the copy of the peers."""
+    """Eccentricities of the peers' own reference, stored next to the copy of the peers."""
     kept = Path(peers.__file__).with_name(f"reference{order}.npy")
     if not kept.is_file():
         print(f"reference of {order} states: about a minute", file=sys.stderr)
@@ -230,7 +230,7 @@ def trajectories(
         except RuntimeError:
             return np.inf
 
-    # Every setting within reach, the cheapest that passes for each.
+    # Try all settings of a grid and select the cheapest that passes for each solver.
     grid = [(r, r * share) for r in np.logspace(-5, -9, 25) for share in (10.0, 1.0, 0.1, 0.01)]
     errors = {setting: their_error(*setting) for setting in grid}
     seconds = {

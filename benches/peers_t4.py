@@ -1,8 +1,8 @@
 """T4: four parameters fitted to eight runs, 16,000 points, by jbf and by the peers, in turn.
 
 `python benches/peers.py FOLDER --tasks T4`. The peers' own definition of the task (`t4.py`: data,
-start, their ways to fit) is imported from the copy of their folder; chi2 of every row is computed
-here, from its parameters, by one tight integration, so that no solver judges itself.
+start, fit methods) is imported from the copy of their folder. chi2 of every row is computed here
+from its parameters by one accurate integration, so that no solver assesses itself.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ RIG = jbf.Rig.thesis()
 NAMES = ["f_m", "U_tr_m_s", "K0", "gamma"]
 BEST, FIRST = "lmfit, numbalsoda LSODA", "lmfit, solve_ivp LSODA in Python"
 CONVERGED = 0.5
-"""A fit whose chi2 is within so much of the least has converged."""
+"""A fit has converged if its chi2 exceeds the least by less than this."""
 
 Found = tuple[np.ndarray, int]
-"""Parameters, and simulations of all runs that they took."""
+"""Parameters, and the number of simulations of all runs that they required."""
 
 
 @dataclass
 class Row:
-    """One way to fit: how often it is timed, and what it gave."""
+    """One fit method: number of timed rounds, and its results."""
 
     fit: Callable[[], Found]
     rounds: int
@@ -38,7 +38,7 @@ class Row:
 
 
 def fit_task(rounds: int) -> None:
-    """Fit in turn, and print a table; needs the peers' folder on `sys.path`."""
+    """Run the fits in turn and print a table; needs the peers' folder on `sys.path`."""
     try:
         t4 = importlib.import_module("t4")
     except ImportError as error:
@@ -46,7 +46,7 @@ def fit_task(rounds: int) -> None:
         return
     rows = _rows(t4, rounds)
     for row in rows.values():
-        row.fit()  # compiled, loaded, in the cache
+        row.fit()  # compile, load and fill the cache
     for turn in range(max(row.rounds for row in rows.values())):
         for row in rows.values():
             if turn < row.rounds:
@@ -89,8 +89,11 @@ def _rows(t4: ModuleType, rounds: int) -> dict[str, Row]:
 
 
 def _runs(t4: ModuleType) -> list[tuple[np.ndarray, tuple[float, float, float]]]:
-    """The peers' runs. At their first and last sample the speed is a rounding error, whose sign
-    the data's friction has: here these samples stand a ten-millionth of the run on that side."""
+    """Return the peers' runs with shifted first and last samples.
+
+    At these samples the speed is a rounding error, whose sign determines the friction in the data.
+    They are shifted by 1e-7 of the run's duration in the direction of that sign.
+    """
     runs = []
     for times, w in zip(t4.TS, t4.WS, strict=True):
         moved = times.copy()
@@ -101,7 +104,7 @@ def _runs(t4: ModuleType) -> list[tuple[np.ndarray, tuple[float, float, float]]]
 
 
 def _chi2(t4: ModuleType, values: Sequence[float]) -> float:
-    """Of all 16,000 points, by numbalsoda at 1e-11."""
+    """chi2 of all 16,000 points, by numbalsoda at 1e-11."""
     model = t4.Model(t4.numbalsoda_(2, "lsoda"), {"rtol": 1e-11, "atol": 1e-13, "seg": 1})
     return float(np.sum(((model(np.asarray(values)) - t4.DATA) / t4.SIG) ** 2))
 
@@ -135,7 +138,7 @@ def _print(t4: ModuleType, rows: dict[str, Row]) -> None:
 
 
 def _standard_errors(t4: ModuleType) -> np.ndarray:
-    """Of the parameters at the truth, from the exact derivatives."""
+    """Standard errors of the parameters at the true values, from the exact derivatives."""
     runs = _runs(t4)
     done = jbf.trajectories(
         RIG,

@@ -1,10 +1,10 @@
 """Whether effects are found as often as their power says: `python benches/power_kept.py`.
 
-Campaigns of the independent simulator with nothing hidden tell, effect by effect, from which
-strength 80 of 100 campaigns like them would show it (`found_80`), and from which it would be named
-alone (`alone_80`). The fitted model then records the same motions again with the effect at just
-that strength, with noise like theirs, and the campaign is diagnosed whole. `--out F` keeps one JSON
-line a campaign, as `benches/promises.py` reads them; a second call with the same file goes on.
+The diagnosis of simulated campaigns without hidden effects reports two strengths per effect. At
+`found_80`, 80 of 100 similar campaigns would show it; at `alone_80`, it would be named alone. The
+fitted model then simulates the same motions with the effect at that strength and with similar
+noise, and the campaign is diagnosed. `--out F` stores one JSON line per campaign, in the format of
+`benches/promises.py`; a second call with the same file continues.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ PROMISED = 0.80
 
 
 def at_strength(bare: jbf.Model, power: Power, value: float) -> jbf.Model:
-    """The model with the effect as strong as that; what else is a size of it grows alike."""
+    """Return the model with the effect at this strength; its other size parameters scale alike."""
     page = jbf.effects()[power.effect]
     usual = {p.name: (p.starts[0], p.null) for p in page.parameters}
     start, null = usual[power.parameter]
@@ -51,7 +51,7 @@ def at_strength(bare: jbf.Model, power: Power, value: float) -> jbf.Model:
 def with_effect(
     bare: jbf.Model, strong: jbf.Model, runs: list[jbf.Run], draw: int
 ) -> list[jbf.Run]:
-    """The runs recorded again, with what the effect changes."""
+    """Simulate the runs again with noise, and add the change caused by the effect."""
     again = recorded_by(bare, runs, (), draw)
     changes = [
         a - b for a, b in zip(strong.predict_many(runs), bare.predict_many(runs), strict=True)
@@ -63,13 +63,16 @@ def with_effect(
 
 
 def campaign(seed: int, effects: Sequence[str] | None = None) -> Iterator[dict[str, Any]]:
-    """Every effect that this campaign says something of, at both strengths; or some of them."""
+    """Diagnose every effect for which the campaign states a power, at both strengths.
+
+    `effects` limits the effects.
+    """
     rig, runs, _ = simulated(seed, campaign="short", coloured=seed % 2 == 1)
     found = jbf.diagnose(rig, runs)
     if found.effects:
         return
     bare = found.model
-    # Each with noise of its own: of campaigns that share it all are found, or none is.
+    # Separate noise for each: with common noise all or none of the effects would be found.
     draws = itertools.count(1000 * seed)
     for power in found.power:
         for kind, value in (("found", power.found_80), ("alone", power.alone_80)):
@@ -88,7 +91,7 @@ def answer(
     runs: list[jbf.Run],
     draw: int,
 ) -> dict[str, Any]:
-    """What a diagnosis says of it."""
+    """Diagnose the runs with the effect and assess the result."""
     strong = at_strength(bare, power, value)
     again = jbf.diagnose(bare.rig, with_effect(bare, strong, runs, draw))
     could = {other for name in again.effects for other in (name, *again.alternatives[name])}
@@ -109,7 +112,7 @@ def _all(seed: int, effects: Sequence[str] | None) -> list[dict[str, Any]]:
 
 
 def main() -> int:
-    """Run, print a line an effect."""
+    """Run the study and print a line per effect."""
     parser = argparse.ArgumentParser(prog="power_kept", description=__doc__.split(":")[0])
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--seeds", type=int, default=4, help="campaigns with nothing hidden; 4")

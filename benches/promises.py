@@ -1,11 +1,10 @@
 """What is promised of a diagnosis, and what it delivered: `python benches/promises.py FILE...`.
 
 The files are JSON lines of `benches/hidden_effects`, `benches/recorded` and `benches/power_kept.py`
-(`--out`). Each promise
-is told with its nominal rate, how often it was kept, the standard error of that share, an interval
-that holds it in 95 of 100 cases (Clopper & Pearson 1934), and how many campaigns say so; each
-campaign in which it was broken stands below. Prints Markdown; `--least N` fails where a promise
-rests on fewer.
+(`--out`). Each promise is printed with its nominal rate, the observed share, its standard error and
+a 95 % interval (Clopper & Pearson 1934), and the number of campaigns. Each campaign that broke the
+promise is listed below the table. Prints Markdown; `--least N` fails if a promise has fewer
+campaigns.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Promise:
-    """A promise, of which campaigns it speaks, and in which it was kept."""
+    """A promise, the campaigns to which it applies, and the condition under which it is kept."""
 
     words: str
     nominal: str
@@ -40,26 +39,26 @@ class Promise:
 
 
 def recorded(row: Row) -> bool:
-    """Whether a logger had its hands on it."""
+    """Whether the campaign has recording artefacts."""
     return "artefacts" in row
 
 
 def hidden(row: Row) -> set[str]:
-    """What was hidden, of the catalogue."""
+    """The hidden effects of the catalogue."""
     return set(row["effects"] if recorded(row) else filter(None, row["hidden"].split("+")))
 
 
 def false_name(row: Row) -> bool:
-    """A name that was not hidden, not even as an honest alternative."""
+    """Whether a name was given that was not hidden, not even as a valid alternative."""
     true = set() if row["kind"] == "foreign" else hidden(row)
-    # A late force is late, whoever made it so.
+    # A delayed force is a delay, whatever its cause.
     true = true.union(*(FAIR.get(name, set()) for name in row.get("artefacts", ())))
     could = [{name, *row["alternatives"].get(name, ())} for name in row["named"]]
     return any(not names & true for names in could)
 
 
 def right(row: Row) -> bool:
-    """All was named and nothing else, or stands in an honest tie."""
+    """Whether exactly the hidden effects were named, or are contained in a valid tie."""
     return row["judged"] in ("right", "tied")
 
 
@@ -122,8 +121,10 @@ HEAD = (
 
 
 def coverage(rows: Sequence[Row]) -> str:
-    """How many of the parameters' intervals hold the truth, of right answers; those of one campaign
-    go together, so that the error is that of means over campaigns."""
+    """Coverage of the parameter intervals of right results.
+
+    The intervals of one campaign are correlated, so the error is that of means over campaigns.
+    """
     known = [row for row in rows if row.get("intervals")]
     words = "95 % intervals of a right answer's parameters: hold the truth"
     if not known:
@@ -138,7 +139,7 @@ def coverage(rows: Sequence[Row]) -> str:
 
 
 def page(rows: Sequence[Row]) -> Iterator[str]:
-    """The table, and every broken promise."""
+    """Generate the table and every broken promise."""
     yield "| promise | nominal | delivered | standard error | 95 % interval | campaigns |"
     yield "| --- | --- | --- | --- | --- | --- |"
     broken = []
@@ -163,7 +164,7 @@ def page(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def main() -> int:
-    """Read, print."""
+    """Read the files and print the page."""
     parser = argparse.ArgumentParser(prog="promises", description=__doc__.split(":")[0])
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
     parser.add_argument("--note", default="", help="where the files come from: commands, commit")

@@ -1,9 +1,9 @@
 """How long a run's file takes to read, beside numpy's reader of nothing but numbers:
 `python benches/reading.py`.
 
-Pairs of readings in turn, in processor time; told is the median of their ratios. What numpy leaves
-out is most of the work: names and units of columns, quotes, empty cells, rows and columns of what
-is wrong.
+Pairs of readings in turn, in processor time; the result is the median of their ratios. Most of the
+work is what numpy omits: names and units of columns, quotes, empty cells, and the row and column of
+an error.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ HEADER = "time_s,angle_rad,velocity_m_s,friction_n,load_n"
 
 
 def seconds(read: Callable[[], object]) -> float:
-    """Of the processor, for one reading."""
+    """Processor time of one reading, s."""
     begun = time.process_time()
     read()
     return time.process_time() - begun
 
 
 def main() -> int:
-    """Write a run, read it both ways, tell."""
+    """Write a run, read it with both readers and print the times."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split(":")[0])
     parser.add_argument("--rows", type=int, default=6301)
     parser.add_argument("--pairs", type=int, default=101)

@@ -2,8 +2,8 @@
 `python benches/real_records.py FOLDER`.
 
 FOLDER holds `emps/run.csv` (a ball-screw axis; its friction is the whole drive force) and
-`tribometer/run.csv` (reciprocating sliding); columns time_s, position_m, velocity_m_s,
-friction_n. The recordings are not ours to ship: without them this says so and does nothing.
+`tribometer/run.csv` (reciprocating sliding); columns time_s, position_m, velocity_m_s, friction_n.
+The recordings are not distributed with jbf: without them a message is printed and nothing is done.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ import numpy as np
 from jbf.records.motion.imposed import impose
 
 MASS_KG, OFFSET_N = 95.1, -3.2
-"""Of the ball-screw axis, from its publication: taken off by hand until effects do it."""
+"""Values of the ball-screw axis from its publication, subtracted before the fit."""
 
 
 def without_inertia(run: jbf.Run) -> jbf.Run:
-    """The friction of a drive force: less the mass's inertia and the sensor's offset."""
+    """Friction from a drive force: minus the inertial force of the mass and the sensor offset."""
     assert run.friction_n is not None
     acceleration = impose(run, None).acceleration_m_s2
     friction = run.friction_n - MASS_KG * acceleration - OFFSET_N
@@ -45,7 +45,7 @@ def table(title: str, run: jbf.Run) -> None:
 
 
 def diagnosed(title: str, run: jbf.Run) -> None:
-    """What `jbf diagnose --law coulomb` adds, and the error falling."""
+    """Diagnose with the Coulomb law and print the effects added with the error at each step."""
     found = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
     print(f"{title}: diagnosed beside coulomb in {found.elapsed_s:.0f} s: {found.verdict}")
     for step in found.steps:
@@ -54,7 +54,7 @@ def diagnosed(title: str, run: jbf.Run) -> None:
 
 
 def main() -> int:
-    """Do it."""
+    """Run the study on each recording."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("folder", type=Path, nargs="?", help="the recordings")
     folder = parser.parse_args().folder

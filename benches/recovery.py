@@ -1,8 +1,8 @@
 """Do the intervals of a fit cover the truth? `python benches/recovery.py [EFFECT...]`.
 
-For every effect of the catalogue: a few rigs of the project's own simulator, drawn at random, each
-recorded many times with fresh noise; every record is fitted with the right structure, and its 95 %
-intervals are held against the truth. Everything follows from `--seed`.
+For every effect of the catalogue, several rigs of the project's own simulator are drawn at random,
+and each is recorded many times with new noise. Every record is fitted with the right structure, and
+its 95 % intervals are compared with the truth. All random numbers follow from `--seed`.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from rigsim.warmth import REFERENCE_C, draw_warmth
 
 NOISE_SHARE = 0.0175
 WIDTH = 1.959964
-"""Half of a 95 % interval, in standard errors."""
+"""Half-width of a 95 % interval, in standard errors."""
 WANTED = (0.90, 0.98)
 
 
 @dataclass(frozen=True)
 class Truth:
-    """A rig with one effect, and its exact records: name to record."""
+    """A rig with one effect, and its exact records by name."""
 
     base: rigsim.Base
     effects: dict[str, dict[str, float]]
@@ -45,12 +45,12 @@ class Truth:
 
 
 def motions_for(effect: str) -> rigsim.Campaign:
-    """The campaign that shows an effect: several loads where it needs them."""
+    """Return the campaign that shows an effect, with several loads if required."""
     return rigsim.standard("loads" if effect == "load_dependence" else "full")
 
 
 def make_truth(effect: str | None, seed: int, plan: rigsim.Campaign) -> Truth:
-    """A rig drawn at random, with an effect of usual strength, recorded without noise."""
+    """Draw a random rig with an effect of usual strength, and record it without noise."""
     base = draw_base(seed)
     random = np.random.default_rng([seed, zlib.crc32((effect or "").encode())])
     effects = {} if effect is None else {effect: rigsim.draw(effect, random)}
@@ -72,7 +72,7 @@ def make_truth(effect: str | None, seed: int, plan: rigsim.Campaign) -> Truth:
 
 
 def measured(truth: Truth, random: np.random.Generator, coloured: bool) -> list[jbf.Run]:
-    """The records as instruments show them."""
+    """Return the records with measurement noise."""
     base = truth.base
     meter = rigsim.Noise(NOISE_SHARE * base.f_m * base.load_n, 0.5 if coloured else 0.0)
     return runs_of(
@@ -91,13 +91,13 @@ def measured(truth: Truth, random: np.random.Generator, coloured: bool) -> list[
 def errors_of(
     truth: Truth, seed: Iterable[int], coloured: bool, bootstrap: int | None = None
 ) -> dict[str, float]:
-    """Estimate less truth in standard errors, by name; NaN where a fit gives no interval.
+    """Estimate minus truth in standard errors, by name; NaN where a fit gives no interval.
 
-    With `bootstrap` the errors are those of so many fits of simulated records, where the fit
-    itself says that its own are none.
+    With `bootstrap`, standard errors that the fit reports as unreliable are replaced by those of
+    this number of fits to simulated records.
     """
     runs = measured(truth, np.random.default_rng(list(seed)), coloured)
-    # The temperature at which the simulator's own viscosity holds.
+    # The temperature at which the simulator's own viscosity applies.
     stated = {f"{e}.T_0_c": REFERENCE_C for e in truth.effects if e in rigsim.BY_THERMOMETER}
     fitted = jbf.fit(rig_of(truth.base.load_n), runs, list(truth.effects), fixed=stated)
     if bootstrap is not None and fitted.doubtful:
@@ -113,7 +113,7 @@ def repeat(
     coloured: bool,
     bootstrap: int | None = None,
 ) -> list[dict[str, float]]:
-    """All repeats on one rig."""
+    """Errors of all repeats on one rig."""
     truth = make_truth(effect, 1000 * seed + rig, motions_for(effect or ""))
     return [errors_of(truth, (seed, rig, k), coloured, bootstrap) for k in range(repeats)]
 
@@ -127,7 +127,7 @@ def study(
     jobs: int,
     bootstrap: int | None = None,
 ) -> dict[str, list[float]]:
-    """Errors in standard errors, one list a parameter."""
+    """Errors in standard errors, one list per parameter."""
     share = [repeats // rigs + (i < repeats % rigs) for i in range(rigs)]
     work = partial(_one_rig, effect, share, seed, coloured, bootstrap)
     rows: Iterator[list[dict[str, float]]]
@@ -153,10 +153,10 @@ def _one_rig(
 
 @dataclass(frozen=True)
 class Row:
-    """What a parameter's errors amount to.
+    """Summary of a parameter's errors.
 
-    `bias` is their median and `spread` their standard deviation, robust, both in standard errors:
-    right intervals have 0 and 1. `none` counts fits without an interval.
+    `bias` is their median and `spread` a robust standard deviation, both in standard errors;
+    correct intervals have 0 and 1. `none` counts fits without an interval.
     """
 
     covered: float
@@ -167,7 +167,7 @@ class Row:
 
     @classmethod
     def of(cls, errors: list[float]) -> Row:
-        """The row of one parameter's errors."""
+        """Summarise the errors of one parameter."""
         z = np.array(errors)
         known = z[np.isfinite(z)]
         if not len(known):
@@ -187,7 +187,7 @@ HEADER = """| effect | parameter | covered | bias, sigma | spread, sigma | no in
 
 
 def lines(effect: str, errors: dict[str, list[float]]) -> Iterator[str]:
-    """The table's rows of one effect."""
+    """Generate the table rows of one effect."""
     for name, z in errors.items():
         row = Row.of(z)
         mark = "" if WANTED[0] <= row.covered <= WANTED[1] else " (!)"

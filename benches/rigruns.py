@@ -1,4 +1,4 @@
-"""Campaigns of the independent simulator as jbf reads them: the one place where the two meet."""
+"""Campaigns of the independent simulator in jbf's format: the only link between the two."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from rigsim.warmth import REFERENCE_C
 def simulated(
     seed: int, effects: tuple[str, ...] = (), **options: Any
 ) -> tuple[jbf.Rig, list[jbf.Run], dict[str, Any]]:
-    """A simulated campaign: the rig, its runs, and the truth behind them.
+    """Simulate a campaign and return the rig, its runs and the true values.
 
     `options` are those of `rigsim.simulate_campaign`.
     """
     records, truth = rigsim.simulate_campaign(seed, effects, **options)
     rig = rig_of(truth["base"]["load_n"])
     if any(r.temperature_c is not None for r in records.values()):
-        # The viscosity holds at a temperature, and who has a thermometer knows at which.
+        # The viscosity applies at a temperature, which is known if there is a thermometer.
         assert rig.lubricant is not None
         oil = replace(rig.lubricant, temperature_c=REFERENCE_C)
         rig = replace(rig, lubricant=oil)
@@ -36,7 +36,7 @@ def simulated(
 
 
 def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:
-    """Simulated records as runs."""
+    """Convert simulated records to runs."""
     return [
         jbf.Run.from_arrays(
             r.time_s,
@@ -52,14 +52,14 @@ def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:
 
 
 def rig_of(load_n: float) -> jbf.Rig:
-    """The rig of a load that the simulator drew."""
+    """Return the rig for a load drawn by the simulator."""
     return jbf.Rig.thesis("4.2" if load_n == 104.0 else "4.3")
 
 
 def errors_in_sigma(
     found: jbf.Fit, base: Mapping[str, float], effects: Mapping[str, Mapping[str, float]]
 ) -> dict[str, float]:
-    """Estimate less truth in standard errors, by parameter; NaN where a fit gives no interval."""
+    """Estimate minus truth in standard errors, by parameter; NaN where a fit gives no interval."""
     pages = parameters_of("journal", tuple(effects))
     values = {"f_m": base["f_m"], "U_tr_m_s": base["U_tr"], "K0": base["K0"]}
     values["gamma"] = base["gamma"]

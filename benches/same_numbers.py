@@ -1,10 +1,10 @@
 """Do two versions of jbf give the same numbers? Recorded by one, compared by the other.
 
-    python benches/same_numbers.py record before.json      # on the one
-    python benches/same_numbers.py compare before.json     # on the other
+    python benches/same_numbers.py record before.json      # with the first version
+    python benches/same_numbers.py compare before.json     # with the second version
 
-Simulated campaigns of every kind (each effect alone, pairs, nothing, something foreign, ties,
-other laws) are diagnosed, fitted and compared; all numbers and words of the answers must agree,
+Simulated campaigns of every kind (each effect alone, pairs, no effect, a foreign effect, ties,
+other laws) are diagnosed, fitted and compared. All numbers and strings of the results must agree,
 numbers to `--to` relative (1e-9). Record and compare on one machine: processors round differently.
 """
 
@@ -29,11 +29,11 @@ Row = dict[str, Any]
 SEED = 8101
 SLACK = 1e-9
 VOLATILE = ("elapsed_s", "policy")
-"""What an answer says of itself and not of the runs."""
+"""Fields of a result that do not depend on the runs."""
 
 
 def campaigns() -> dict[str, dict[str, Any]]:
-    """Name to what is simulated and how it is diagnosed."""
+    """Return by name what is simulated and how it is diagnosed."""
     found: dict[str, dict[str, Any]] = {}
     for i, name in enumerate(sorted(CATALOGUE)):
         plan = "loads" if name == "load_dependence" else "short"
@@ -52,7 +52,7 @@ def campaigns() -> dict[str, dict[str, Any]]:
 
 
 def answers(name: str, options: dict[str, Any], seed: int) -> Row:
-    """Everything that jbf says of one campaign, as numbers and words."""
+    """Return all results of jbf for one campaign, as numbers and strings."""
     law = options.get("law", "journal")
     rig, runs, _ = simulated(
         seed,
@@ -95,13 +95,13 @@ def answers(name: str, options: dict[str, Any], seed: int) -> Row:
 
 
 def digest(values: np.ndarray) -> list[float]:
-    """A few numbers that tell one array from another."""
+    """Return a few numbers that distinguish one array from another."""
     weights = np.cos(np.arange(len(values)))
     return [float(np.mean(values)), float(np.std(values)), float(values @ weights)]
 
 
 def differences(before: Any, after: Any, slack: float, place: str = "") -> list[str]:
-    """Where two answers differ, one line each."""
+    """Return the differences between two results, one line each."""
     if isinstance(before, dict) and isinstance(after, dict):
         lines = [f"{place}/{k}: only on one side" for k in before.keys() ^ after.keys()]
         for key in before.keys() & after.keys():
@@ -119,7 +119,7 @@ def differences(before: Any, after: Any, slack: float, place: str = "") -> list[
 
 
 def main() -> int:
-    """Record, or compare with a record."""
+    """Record the results, or compare them with a record."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )

@@ -24,15 +24,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 import servosim
 
 RIGHT = 3.0
-"""Standard errors within which a parameter is right."""
+"""Number of standard errors within which a parameter counts as right."""
 CLOSE = 0.03
-"""Relative error that is close, next to that."""
+"""Relative error that counts as close, in addition to that."""
 INTERVAL = 1.96
-"""Standard errors of a 95 % interval."""
+"""Half-width of a 95 % interval, in standard errors."""
 
 
 def runs_of(campaign: servosim.Campaign) -> tuple[jbf.Rig, list[jbf.Run]]:
-    """A simulated campaign as jbf reads it."""
+    """Convert a simulated campaign to jbf's format."""
     with tempfile.TemporaryDirectory() as folder:
         servosim.write(campaign, Path(folder))
         rig = jbf.read_rig(Path(folder) / "rig.toml")
@@ -80,7 +80,7 @@ def study(seed: int) -> dict[str, Any]:
 
 
 def line(row: dict[str, Any]) -> str:
-    """One campaign in a line."""
+    """Format one campaign as a line."""
     head = (
         f"{row['seed']:5d} {'right' if row['right'] else 'WRONG'} {row['kind']:14s} "
         f"{row['rate_hz']:5.0f} Hz {row['stamps']:8s} {row['speed']:11s} {row['force']:9s} "

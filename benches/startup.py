@@ -1,6 +1,6 @@
 """How long `import jbf` and the first words of the command line take, each in a new process.
 
-`python benches/startup.py --times 20`: the quietest and the median turn, and the processor's time.
+`python benches/startup.py --times 20` prints the least and the median time, and the processor time.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ TASKS = {
 
 
 def turn(words: list[str]) -> tuple[float, float]:
-    """Seconds on the wall and of the processor."""
+    """Wall-clock time and processor time of one run, s."""
     before, start = os.times(), time.perf_counter()
     subprocess.run([sys.executable, *words], stdout=subprocess.DEVNULL, check=True)
     wall, after = time.perf_counter() - start, os.times()
@@ -45,7 +45,7 @@ def main() -> None:
     for again in range(times + 1):
         for task, words in TASKS.items():
             took = turn(words)
-            if again:  # the first fills the disk's cache
+            if again:  # the first run fills the disk cache
                 turns[task].append(took)
     for task, took in turns.items():
         walls, spent = [w for w, _ in took], [s for _, s in took]

@@ -1,11 +1,11 @@
 """How fast the workbench draws: `python benches/workbench_drawing.py`.
 
 A recording of a million samples (and a model of it) in a headless browser without a graphics
-processor: from the click to the frame in which all plots of the room "See" are there, and the same
-for a brush in the friction-speed plane. Least, median and worst of `--times`, in milliseconds; with
-`--most 300 100` it fails where even the least of a first draw or of a brush is longer (on a busy
-machine the others are the machine's). Needs Chromium (Debian: `apt-get install chromium`) and `pip
-install playwright`.
+processor. Measures the time from the click to the frame with all plots of the page "See", and the
+time for a brush in the friction-speed plane. Prints least, median and worst of `--times`, in
+milliseconds. With `--most 300 100` it fails if even the least time of a first draw or of a brush is
+longer; the other times depend on the load of the machine. Needs Chromium (Debian: `apt-get install
+chromium`) and `pip install playwright`.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ WAYS = ("first draw", "first draw, with a model", "brush", "brush, with a model"
 
 
 def recording(folder: Path, samples: int) -> None:
-    """A slide under a hidden mass, at a kilohertz."""
+    """Write a recording of a slide with a hidden mass, sampled at 1 kHz."""
     t = 0.001 * np.arange(samples)
     w = 2.0 * np.pi / 7.0
     v = 0.08 * np.sin(w * t) * (1.0 + 0.3 * np.sin(0.01 * t))
@@ -60,7 +60,7 @@ def recording(folder: Path, samples: int) -> None:
 
 
 def drawn(page: Page, act: str) -> float:
-    """Milliseconds from an act in the page to the frame that shows it."""
+    """Milliseconds from an action in the page to the frame that shows it."""
     return float(
         page.evaluate(
             ACT,
@@ -70,7 +70,7 @@ def drawn(page: Page, act: str) -> float:
 
 
 def measured(page: Page, times: int) -> dict[str, list[float]]:
-    """All ways, so many times each."""
+    """Measure all cases, each `times` times."""
     found: dict[str, list[float]] = {way: [] for way in WAYS}
     for model in ("", ", with a model"):
         if model:
@@ -79,7 +79,7 @@ def measured(page: Page, times: int) -> dict[str, list[float]]:
             page.wait_for_selector("[data-key=fit-law]:enabled")
             page.click("[data-key=fit-law]")
             page.wait_for_selector("#models [data-key^=model-]", timeout=600_000)
-            # What else could be missing would be tried now; the processor is to be free.
+            # Cancel the search for further effects, so that the processor is free.
             page.click("[data-key=cancel]")
             page.wait_for_selector("[data-key=cancel]", state="detached", timeout=120_000)
         for _ in range(times):
@@ -97,7 +97,7 @@ def measured(page: Page, times: int) -> dict[str, list[float]]:
 
 
 def main() -> int:
-    """Measure, print."""
+    """Measure and print."""
     parser = argparse.ArgumentParser(prog="workbench_drawing", description=__doc__.split(":")[0])
     parser.add_argument("--samples", type=int, default=1_000_000)
     parser.add_argument("--times", type=int, default=7)

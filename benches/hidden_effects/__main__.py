@@ -3,7 +3,7 @@
     .venv/bin/python benches/hidden_effects [--kinds single,none] [--seeds 2] [--rivals]
 
 Simulates campaigns with the independent simulator (`simulator/rigsim`), diagnoses them, and prints
-tables. `--out F` keeps one JSON line a campaign; a second call with the same file goes on from it.
+tables. `--out F` stores one JSON line per campaign; a second call with the same file continues it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from work import Row, work
 
 
 def main() -> int:
-    """Run what is missing, then print all of it."""
+    """Run the missing campaigns, then print all results."""
     parser = argparse.ArgumentParser(prog="hidden_effects", description=__doc__.split("\n", 1)[0])
     parser.add_argument("--kinds", default=",".join(KINDS), help=f"of {', '.join(KINDS)}")
     parser.add_argument("--seeds", type=int, default=1, help="rounds of each kind")

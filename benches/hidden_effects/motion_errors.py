@@ -1,4 +1,4 @@
-"""Errors of a model on runs, where the sign of the speed is known."""
+"""Prediction errors of a model where the sign of the speed is known."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ SLOWEST_M_S = 5e-4
 
 
 def held_out(model: jbf.Model, runs: list[jbf.Run]) -> dict[str, float]:
-    """RMS and mean absolute error, N."""
+    """Return RMS and mean absolute error over the runs, N."""
     errors = []
     for run in runs:
         assert run.friction_n is not None

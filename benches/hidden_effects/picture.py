@@ -13,7 +13,7 @@ EDGES = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, np.inf)
 
 
 def detection(rows: list[Row], path: Path) -> None:
-    """Share of single effects named, by their RMS over the noise in the run that shows most."""
+    """Plot the share of single effects named, by the largest RMS over noise in a run."""
     single = [row for row in rows if row["kind"] == "single"]
     size = np.array([row["effect_over_noise"] for row in single])
     good = np.array([row["judged"] in ("right", "tied") for row in single])

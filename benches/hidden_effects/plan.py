@@ -1,4 +1,4 @@
-"""Which campaigns are simulated: every one is a kind, a seed and what is hidden in it."""
+"""Plan of the simulated campaigns, each defined by a kind, a seed and its hidden effects."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rigsim import BY_THERMOMETER, CATALOGUE, FOREIGN
 KINDS = ("single", "none", "pair", "foreign", "poor", "tied")
 STRENGTHS = (0.6, 1.0, 1.5)
 SLOW = ("drive_compliance", "sensor_lag", "inertia_leak", "film_memory", "presliding")
-"""What slow sweeps show hardly or not at all."""
+"""Effects that slow sweeps show hardly or not at all."""
 ALIKE = ("coulomb_drag", "sensor_offset", "direction_asymmetry", "quadratic_drag", "time_delay")
-"""What runs that never turn round show, and may not tell apart."""
+"""Effects that runs without reversal show, but may not distinguish."""
 
 
 @dataclass(frozen=True)
@@ -31,30 +31,30 @@ class Task:
 
     @property
     def campaign(self) -> str:
-        """Standard motions of the simulator."""
+        """Name of the simulator's standard campaign."""
         if self.kind == "poor":
             return "slow"
         if self.kind == "tied":
             return "one_way"
-        # What a load changes shows only under several loads.
+        # Load dependence can be observed only under several loads.
         if "load_dependence" in self.effects:
             return "loads"
         return "short" if self.short else "full"
 
     @property
     def hidden(self) -> str:
-        """What is hidden, in one word."""
+        """The hidden effects as one string."""
         return "+".join((*self.effects, *self.foreign)) or "-"
 
     @property
     def key(self) -> str:
-        """A name of its own."""
+        """A unique name."""
         colour = "coloured" if self.coloured else "white"
         return f"{self.kind}/{self.hidden}/{self.strength:g}/{colour}/{self.seed}"
 
 
 def _kind(kind: str, seed: int) -> Iterator[Task]:
-    """One round of a kind: what varies beside the seed goes round with it."""
+    """Generate one round of a kind; strength and noise colour rotate with the seed."""
     coloured = seed % 2 == 1
     strength = STRENGTHS[seed % len(STRENGTHS)]
     names = sorted(set(CATALOGUE) - set(BY_THERMOMETER))
@@ -84,7 +84,7 @@ def _kind(kind: str, seed: int) -> Iterator[Task]:
 def tasks(
     kinds: tuple[str, ...], seeds: int, first_seed: int = 1, *, short: bool = False
 ) -> list[Task]:
-    """All campaigns of some kinds, round after round, so that an early stop is a fair sample."""
+    """Return all campaigns of some kinds by round, so that an early stop is a fair sample."""
     rounds = range(first_seed, first_seed + seeds)
     found = [task for seed in rounds for kind in kinds for task in _kind(kind, seed)]
     return [replace(task, short=short) for task in found]

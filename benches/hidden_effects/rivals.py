@@ -1,4 +1,4 @@
-"""What simpler rules name on the same runs, each at its best."""
+"""Effects named by simpler rules on the same runs, with the best setting of each rule."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Rivals:
         self._fits: dict[frozenset[str], jbf.Fit | None] = {}
 
     def fit(self, effects: Sequence[str]) -> jbf.Fit | None:
-        """A fit, or None where the runs cannot show the effects."""
+        """Return a fit, or None if the runs cannot show the effects."""
         key = frozenset(effects)
         if key not in self._fits:
             try:
@@ -37,18 +37,20 @@ class Rivals:
 
     @cached_property
     def bare(self) -> jbf.Fit:
-        """The law alone."""
+        """Fit of the law alone."""
         found = self.fit(())
         assert found is not None
         return found
 
     def always_adequate(self) -> list[str]:
-        """Nothing is ever missing."""
+        """Report that no effect is missing."""
         return []
 
     def lowest_mae(self) -> list[str]:
-        """The single effect (or none) whose model predicts other runs with the lowest mean
-        absolute error, as whole models are ranked elsewhere."""
+        """Select the single effect, or none, with the lowest mean absolute error on other runs.
+
+        This is how complete models are ranked elsewhere.
+        """
         best: list[str] = []
         lowest = held_out(self.bare.model, self.others)["mae_n"]
         for name in jbf.effects():
@@ -59,8 +61,7 @@ class Rivals:
         return best
 
     def bic(self) -> list[str]:
-        """Effects added one by one while the Bayesian information criterion of a white residual
-        falls."""
+        """Add effects one by one while the BIC of a white residual decreases."""
 
         def score(fit: jbf.Fit) -> float:
             free = len(fit.parameters)
@@ -79,9 +80,9 @@ class Rivals:
         return chosen
 
     def sparse_regression(self) -> list[str]:
-        """Sequentially thresholded least squares (pysindy) of the bare law's residual on the same
-        library: the change that each effect makes at its usual strength. The threshold is the one
-        that predicts other runs best.
+        """Select effects by sequentially thresholded least squares (pysindy) of the bare law's
+        residual. The library is the same: the change caused by each effect at its usual strength.
+        The threshold is the one with the best prediction of other runs.
         """
         from pysindy.optimizers import STLSQ
 

@@ -1,11 +1,11 @@
-"""What an answer is worth against what was hidden."""
+"""Assessment of a diagnosis against the hidden effects."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 
 MOST_ALTERNATIVES = 2
-"""A tie of more names than this beside the one given names nothing."""
+"""A tie with more alternatives than this per name does not count as a result."""
 
 
 def judge(
@@ -17,18 +17,17 @@ def judge(
     foreign: bool = False,
     unseen: Sequence[str] = (),
 ) -> str:
-    """`right`, `tied` (all hidden effects are among the names of honest ties), `abstained` (says
-    that structure remains, or that the effect could hide in these runs, and names nothing false),
-    or `wrong`.
+    """Assess a result as `right`, `tied`, `abstained` or `wrong`.
 
-    Parameters
-    ----------
-    hidden
+    `tied`: all hidden effects are among the names of valid ties. `abstained`: the result reports
+    remaining structure, or that the effect could be hidden in these runs, and names nothing false.
+
+    Parameters ---------- hidden
         Effects of the catalogue in the record.
     foreign
-        Whether something is hidden that no catalogue has.
+        Whether an effect that is in no catalogue is hidden.
     unseen
-        Effects that the answer says could hide in these runs.
+        Effects that the diagnosis reports as not detectable in these runs.
     """
     truth, given = set(hidden), set(named)
     false_name = given - truth
@@ -49,5 +48,5 @@ def judge(
 
 
 def unique_and_false(verdict: str, named: Sequence[str], truth: Collection[str]) -> bool:
-    """Whether one answer alone was given, and it is not the truth."""
+    """Whether a single set of names was given without alternatives and it is false."""
     return verdict == "missing" and bool(set(named) - set(truth))

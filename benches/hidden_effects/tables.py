@@ -1,4 +1,4 @@
-"""The rows of a bench as Markdown tables."""
+"""Results of a study as Markdown tables."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def summary(rows: list[Row]) -> str:
 
 
 def confusion(rows: list[Row]) -> str:
-    """What was said where one thing was hidden."""
+    """Results by hidden effect, for campaigns with at most one hidden effect."""
     said: dict[str, Counter[str]] = {}
     for row in rows:
         if row["kind"] == "pair":
@@ -56,7 +56,7 @@ def confusion(rows: list[Row]) -> str:
 
 
 def rivals(rows: list[Row]) -> str:
-    """Share of right answers of each rule, by kind."""
+    """Share of right results of each rule, by kind."""
     known = [row for row in rows if "rivals" in row]
     if not known:
         return ""
@@ -73,7 +73,7 @@ def rivals(rows: list[Row]) -> str:
 
 
 def next_runs(rows: list[Row]) -> str:
-    """How often the run that was proposed for a tie decides it."""
+    """Share of ties that are resolved by the proposed run."""
     asked = [row["after_next_run"] for row in rows if row.get("after_next_run")]
     if not asked:
         return ""
@@ -86,7 +86,7 @@ def next_runs(rows: list[Row]) -> str:
 
 
 def shares(rows: list[Row], least: float) -> bool:
-    """Whether so large a share of each kind's answers is good; says where not."""
+    """Whether each kind reaches this share of good results; prints the kinds that do not."""
     good = True
     for kind in dict.fromkeys(row["kind"] for row in rows):
         own = [row["judged"] in ("right", "tied") for row in rows if row["kind"] == kind]
@@ -97,6 +97,6 @@ def shares(rows: list[Row], least: float) -> bool:
 
 
 def tables(rows: list[Row]) -> str:
-    """All tables."""
+    """Return all tables as one text."""
     parts = [summary(rows), confusion(rows), rivals(rows), next_runs(rows)]
     return "\n\n".join(["", *(part for part in parts if part)])

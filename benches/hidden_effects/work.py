@@ -1,4 +1,4 @@
-"""One campaign: simulate, diagnose, predict runs of the same rig that were never shown."""
+"""One campaign: simulate, diagnose, and predict further runs of the same rig."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from score import judge
 
 Row = dict[str, Any]
 WIDTH = 1.959964
-"""Half of a 95 % interval, in standard errors."""
+"""Half-width of a 95 % interval, in standard errors."""
 
 
 def simulate(task: Task, campaign: str | Campaign) -> tuple[jbf.Rig, list[jbf.Run], dict[str, Any]]:
-    """Rig and runs of a task, and the truth behind them."""
+    """Simulate the rig and runs of a task, and return them with the true values."""
     return simulated(
         task.seed,
         task.effects,
@@ -38,8 +38,8 @@ def simulate(task: Task, campaign: str | Campaign) -> tuple[jbf.Rig, list[jbf.Ru
 
 
 def after_run(task: Task, run: jbf.Run) -> str:
-    """What is said once another run has been recorded too."""
-    # Every sample: a fast sine has few.
+    """Assess the diagnosis after another run has been added."""
+    # Every sample is used as a knot because a fast sine has few samples.
     knots = zip(run.time_s.tolist(), run.velocity_m_s.tolist(), strict=True)
     first = standard(task.campaign)
     more = Campaign(first.name, (*first.motions, polyline("next", list(knots))), first.load_shares)
@@ -50,7 +50,7 @@ def after_run(task: Task, run: jbf.Run) -> str:
 
 
 def at_random(task: Task, rig: jbf.Rig, runs: list[jbf.Run], like: jbf.Run) -> jbf.Run:
-    """Another motion that the rig can make, as long as the proposed one."""
+    """Return another motion that the rig can make, as long as the proposed one."""
     step_s = float(np.median(np.diff(like.time_s)))
     limits = Limits(duration_s=len(like) * step_s).filled(Prepared.prepare(rig, runs))
     every = list(excitations(limits, step_s))
@@ -59,7 +59,10 @@ def at_random(task: Task, rig: jbf.Rig, runs: list[jbf.Run], like: jbf.Run) -> j
 
 
 def next_runs(task: Task, found: jbf.Diagnosis, rig: jbf.Rig, runs: list[jbf.Run]) -> Row:
-    """What is said after the proposed run, and after one at random; nothing of a tie without."""
+    """Assess the diagnosis after the proposed run and after a random one.
+
+    The result is None if no run was proposed.
+    """
     if found.experiment is None:
         return {"after_next_run": None}
     proposed = found.experiment.run
@@ -70,7 +73,7 @@ def next_runs(task: Task, found: jbf.Diagnosis, rig: jbf.Rig, runs: list[jbf.Run
 
 
 def work(task: Task, with_rivals: bool) -> Row:
-    """Everything that the tables need of one campaign."""
+    """Return all quantities of one campaign that the tables need."""
     rig, runs, truth = simulate(task, task.campaign)
     _, others, _ = simulate(task, "heldout")
     begun = time.monotonic()

@@ -2,11 +2,11 @@
 
     python benches/mutation --room NAME --sample N --seed S --out F.jsonl [--reach REACH.json]
 
-A room is a folder of `python/jbf`. Sites are drawn by lot, at each one of cosmic-ray's operators;
-the tests that reach the line (`reach.py`; unmeasured, those that import the module) run, the
-quickest first, until one fails. Each mutant is
-a line of the record; a mutant that is in it is not tried again (`--again` tries its survivors).
-Unlike those of `faults.py`, which are chosen by hand, nobody chose these.
+`--room` names a package of `python/jbf`. Sites are drawn at random, with one of cosmic-ray's
+operators at each. The tests that reach the line (`reach.py`; without it, those that import the
+module) run, the quickest first, until one fails. Each mutant is a line of the record; a mutant in
+the record is not tried again (`--again` repeats its survivors). In contrast to `faults.py`, the
+mutants are not chosen by hand.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ ROOMS = ("records", "estimation", "comparison", "diagnosis", "reporting", "contr
 
 
 def arguments(given: list[str] | None) -> argparse.Namespace:
-    """What was asked."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(prog="mutation", description=__doc__.split("\n", 1)[0])
     parser.add_argument("--room", action="append", default=[], help=f"of {', '.join(ROOMS)} (all)")
     parser.add_argument("--sample", type=int, default=12, help="mutants of each room")
@@ -52,7 +52,7 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
 
 
 def tried_in(asked: argparse.Namespace, room: str, bench: Bench, done: list[Trial]) -> list[Trial]:
-    """The sample of one room; those in the record are taken from it."""
+    """Test the sample of one package; mutants in the record are taken from it."""
     reach = Reach.read(asked.reach) if asked.reach.is_file() else by_imports(asked.root)
     known = {t.name: t for t in done if (t.room, t.seed) == (room, asked.seed)}
     files = sorted((asked.root / asked.package / room).rglob("*.py"))
@@ -78,7 +78,7 @@ def tried_in(asked: argparse.Namespace, room: str, bench: Bench, done: list[Tria
 
 
 def main(given: list[str] | None = None) -> int:
-    """Try what was asked for; 1 where too few were caught."""
+    """Test the mutants; return 1 if too few were caught."""
     asked = arguments(given)
     done = read(asked.out) if asked.out else []
     trials: list[Trial] = []

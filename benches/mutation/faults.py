@@ -53,14 +53,14 @@ class InsertedFault:
         return text[: text.index(self.old)].count("\n") + 1
 
     def applied(self, source: str) -> str:
-        """The source with the fault; an error where its place is not there once."""
+        """Return the source with the fault; raise if its text does not occur exactly once."""
         if source.count(self.old) != 1:
             raise SystemExit(f"faults.toml: the text of '{self.what}' is not once in {self.file}")
         return source.replace(self.old, self.new)
 
 
 def read_faults(path: Path) -> list[InsertedFault]:
-    """The faults of a table."""
+    """Read the faults of a table."""
     entries = tomlkit.parse(path.read_text("utf-8")).unwrap()["fault"]
     return [InsertedFault(**{**e, "test": tuple(e.get("test", ()))}) for e in entries]
 
@@ -83,7 +83,7 @@ def noticed_by_cargo(copy: TreeCopy, fault: InsertedFault) -> bool:
 
 
 def main() -> int:
-    """Insert what was chosen; 1 where fewer than `--least` were noticed."""
+    """Insert the selected faults; return 1 if fewer than `--least` were noticed."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--only", default="", help="faults whose description contains this")
     parser.add_argument("--least", type=int, default=0, help="fail where fewer are noticed")

@@ -1,7 +1,7 @@
-"""Which test files may reach a module: those of its package, and those that import it.
+"""Test files that may reach a module: those of its package, and those that import it.
 
-Files of the package that share a word with the module's name come first, then the others of the
-package by the number of imports between them and the module, then all other files.
+Files of the package that share a word with the module's name come first. The others of the package
+follow by the number of imports between them and the module, then all other files.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from pathlib import Path
 from reach import ANY, Reach
 
 QUICK_S, SLOW_S = 5.0, 12.0
-"""What a file of tests is taken to take."""
+"""Assumed duration of a test file, s."""
 SLOW = ("campaigns", "golden", "rigruns", "rigsim", "subprocess", "playwright")
-"""Who imports one of these takes longer."""
+"""Test files that import one of these take longer."""
 
 
 def imported(path: Path) -> set[str]:
-    """The modules that a file names, and the names that it takes from them."""
+    """The modules that a file imports, and the names that it takes from them."""
     found = set()
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
@@ -30,7 +30,7 @@ def imported(path: Path) -> set[str]:
 
 
 def by_imports(root: Path) -> Reach:
-    """A reach in files of tests and whole modules."""
+    """Build a `Reach` of test files and complete modules from the imports."""
     package = root / "python" / "jbf"
     modules = {path: _name(path, package.parent) for path in sorted(package.rglob("*.py"))}
     users = {name: imported(path) for path, name in modules.items()}
@@ -57,8 +57,10 @@ def by_imports(root: Path) -> Reach:
 def _order(
     module: Path, far: dict[str, int], seconds: dict[str, float]
 ) -> Callable[[str], tuple[bool, bool, int, float, str]]:
-    """Sort key of test files for a module: those named after it, those of its package that import
-    it or a user of it, then all others by their distance."""
+    """Return a sort key of test files for a module.
+
+    Files named after the module come first, then those of its package, then the others by distance.
+    """
     words = {*module.stem.split("_")}
 
     def order(file: str) -> tuple[bool, bool, int, float, str]:
@@ -76,7 +78,7 @@ def _order(
 
 
 def _steps(name: str, users: dict[str, set[str]]) -> dict[str, int]:
-    """How many imports lie between a module and each that it reaches, itself included."""
+    """Number of imports between a module and each module that uses it, itself included."""
     steps, new = {name: 0}, {name}
     while new:
         new = {user for user, names in users.items() if user not in steps and names & new}
@@ -85,8 +87,7 @@ def _steps(name: str, users: dict[str, set[str]]) -> dict[str, int]:
 
 
 def _alike(module: Path, tests: list[str]) -> list[str]:
-    """Of a module that is opened late, by its name: tests that share a word with it, else those of
-    the command line."""
+    """Select tests for a lazily imported module by name, else those of the command line."""
     words = {*module.stem.split("_")}
     return [t for t in tests if words & {*Path(t).stem.split("_")}] or [
         t for t in tests if Path(t).parent.name == "cli"

@@ -1,4 +1,4 @@
-"""A command with a limit of processor time: how busy the machine is changes nothing."""
+"""Run a command with a limit of processor time, independent of the load of the machine."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import subprocess
 from pathlib import Path
 
 IDLE = 20.0
-"""Times its limit that a command may take by the clock: others want the machine too."""
+"""Ratio of the wall-clock limit to the processor-time limit, for a loaded machine."""
 
 
 def run(
     command: list[str], folder: Path, environment: dict[str, str], limit_s: float
 ) -> tuple[int | None, str, str]:
-    """Exit code (None: out of time), output and errors; each of its processes has the limit."""
+    """Return exit code (None: out of time), output and errors; each process has the limit."""
 
     def limited() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (int(limit_s), int(limit_s) + 5))

@@ -2,8 +2,9 @@
 
     python benches/mutation/reach.py [TESTS ...] --out FILE
 
-Every file of tests runs alone. A test that asks for a fixture that another one has built reaches
-what that one does: all tests of a file stand behind each of its lines, those that run it first.
+Every test file runs alone. A test that uses a fixture built by another test also reaches the lines
+of that fixture. Therefore all tests of a file are assigned to each of its lines, those that run the
+line first.
 """
 
 from __future__ import annotations
@@ -24,16 +25,16 @@ from processor import run
 
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST_S = 900.0
-"""Of processor time, for one file of tests."""
+"""Processor time for one test file, s."""
 ANY = "0"
-"""The line that stands for all of a module."""
+"""Key that represents all lines of a module."""
 BACK = 12
-"""Lines that are looked back for the begin of a statement."""
+"""Number of preceding lines that are searched for the beginning of a statement."""
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """Tests for one mutant, the quickest first, and the seconds they take without it."""
+    """Tests for one mutant, the quickest first, and their duration without it, s."""
 
     tests: tuple[str, ...]
     seconds: float
@@ -41,14 +42,14 @@ class Chosen:
 
 @dataclass(frozen=True)
 class Reach:
-    """Seconds of every test; of a module's lines the tests that run them."""
+    """Duration of every test, s, and the tests that run each line of each module."""
 
     seconds: dict[str, float]
     lines: dict[str, dict[str, list[str]]]
 
     @classmethod
     def read(cls, path: Path) -> Reach:
-        """What `write` wrote."""
+        """Read a file written by `write`."""
         held = json.loads(path.read_text("utf-8"))
         tests, by_file = list(held["seconds"]), held["lines"]
         named = {
@@ -57,7 +58,7 @@ class Reach:
         return cls(held["seconds"], named)
 
     def write(self, path: Path) -> None:
-        """As JSON; a test is its place in the list."""
+        """Write as JSON; a test is represented by its index in the list."""
         place = {test: i for i, test in enumerate(self.seconds)}
         lines = {
             m: {n: [place[t] for t in of if t in place] for n, of in at.items()}
@@ -67,25 +68,25 @@ class Reach:
         path.write_text(text.replace('},"', '},\n"').replace('],"', '],\n"') + "\n", "utf-8")
 
     def by_file(self) -> Reach:
-        """The same in files of tests and whole modules: little to keep, and slow to go stale."""
+        """Aggregate to test files and complete modules: smaller, and valid for longer."""
         seconds: dict[str, float] = defaultdict(float)
         for test, took in self.seconds.items():
             seconds[test.split("::")[0]] += took
         lines = {}
         for module, at in self.lines.items():
             reached = Counter(f for of in at.values() for f in {t.split("::")[0] for t in of})
-            # Those that reach most of it in a second come first.
+            # Files that reach most lines per second come first.
             order = sorted(reached, key=lambda f: (seconds[f] + 0.2) / reached[f])
             lines[module] = {ANY: order}
         return Reach({k: round(v, 1) for k, v in sorted(seconds.items())}, lines)
 
     def chosen(self, module: str, line: int, budget_s: float) -> Chosen:
-        """The files of tests that run a line, the quickest first, as many as the budget allows.
+        """Return the test files that run a line, the quickest first, as many as the budget allows.
 
-        Of those files the tests that run the line come first, then all others: they may ask for
-        what a fixture has run. A line that runs as its module is imported belongs to all that reach
-        the module, and a line without tests, as the later ones of a long statement may be, to those
-        of the line before it.
+        The tests of those files that run the line come first, then all others, because they may use
+        a fixture that has run it. A line that runs during the import of its module is assigned all
+        tests that reach the module. A line without tests, such as a later line of a long statement,
+        uses those of the line before it.
         """
         at = self.lines.get(module, {})
         near = next((str(n) for n in range(line, line - BACK, -1) if str(n) in at), ANY)
@@ -107,7 +108,7 @@ class Reach:
 
 
 def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None:
-    """Run each file of tests under coverage; a file that was run before is left."""
+    """Run each test file under coverage; files that have already been run are skipped."""
     for file in files:
         name = file.removesuffix(".py").replace("/", "-")
         data, report = folder / f"{name}.cov", folder / f"{name}.xml"
@@ -124,14 +125,14 @@ def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None
 
 
 def _passed(report: Path) -> Iterator[tuple[str, float]]:
-    """Name and seconds of the tests that passed."""
+    """Name and duration (s) of the tests that passed."""
     for case in ElementTree.parse(report).iter("testcase"):
         if not any(part.tag in ("failure", "error", "skipped") for part in case):
             yield case.get("name", ""), float(case.get("time", "0"))
 
 
 def gathered(folder: Path) -> Reach:
-    """The reach of all that was measured."""
+    """Combine all measurements."""
     seconds: dict[str, float] = {}
     lines: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
     for report in sorted(folder.glob("*.xml")):
@@ -149,7 +150,7 @@ def gathered(folder: Path) -> Reach:
 
 
 def main() -> None:
-    """Measure, gather, write."""
+    """Measure, combine and write."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("tests", nargs="*", help="files of tests (python/tests)")
     parser.add_argument("--out", type=Path, required=True)

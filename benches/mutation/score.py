@@ -1,4 +1,4 @@
-"""Caught of total, with the interval that so many tries allow."""
+"""Share of mutants caught, with a confidence interval for the number of trials."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from trial import Trial
 
 
 def interval(caught: int, total: int, level: float = 0.95) -> tuple[float, float]:
-    """Clopper and Pearson's interval of a share (Biometrika 26, 1934)."""
+    """Clopper-Pearson interval of a share (Biometrika 26, 1934)."""
     tail = 0.5 * (1.0 - level)
     lower = beta.ppf(tail, caught, total - caught + 1) if caught else 0.0
     upper = beta.ppf(1.0 - tail, caught + 1, total - caught) if caught < total else 1.0
@@ -19,7 +19,7 @@ def interval(caught: int, total: int, level: float = 0.95) -> tuple[float, float
 
 
 def read(path: Path) -> list[Trial]:
-    """The trials of a record, the last of each name; a line that was cut off is left."""
+    """Read the trials of a record, the last of each name; incomplete lines are skipped."""
     found: dict[tuple[str, int, str], Trial] = {}
     for line in path.read_text("utf-8").splitlines() if path.is_file() else []:
         try:
@@ -31,7 +31,7 @@ def read(path: Path) -> list[Trial]:
 
 
 def table(trials: list[Trial]) -> str:
-    """One row a room, and one of them all."""
+    """Format one row per package, and one for all."""
     rooms: dict[str, list[Trial]] = defaultdict(list)
     for trial in trials:
         rooms[trial.room].append(trial)

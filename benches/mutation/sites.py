@@ -1,4 +1,4 @@
-"""Where a room's source can be faulty, and how: sites and operators of cosmic-ray."""
+"""Possible faults in the source of a package: sites and operators of cosmic-ray."""
 
 from __future__ import annotations
 
@@ -35,13 +35,15 @@ OPERATORS = (
     "RemoveDecorator",
     "ZeroIterationForLoop",
 )
-"""Of cosmic-ray's operators those whose mutants run: `a >> b` of two floats is noticed for nothing,
-and would flatter the rate."""
+"""The operators of cosmic-ray whose mutants can run.
+
+Mutants such as `a >> b` of two floats always fail and would inflate the rate.
+"""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """One mutant: the `occurrence`-th place of an operator in a file."""
+    """One mutant: the `occurrence`-th site of an operator in a file."""
 
     file: str
     line: int
@@ -51,11 +53,11 @@ class Fault:
 
     @property
     def name(self) -> str:
-        """What a record knows it by."""
+        """Name in the record."""
         return f"{self.file}:{self.line}:{self.column} {self.operator} {self.occurrence}"
 
     def applied(self, source: str) -> str:
-        """The source with the fault in it."""
+        """Return the source with the fault applied."""
         made = MutationVisitor.mutate_code(source, _operator(self.operator), self.occurrence)
         if made is None:
             raise ValueError(f"{self.name} has no place")
@@ -74,7 +76,7 @@ def _nodes(node: NodeOrLeaf) -> Iterator[NodeOrLeaf]:
 
 
 def _is_for_types(node: NodeOrLeaf) -> bool:
-    """True inside an annotation, and under `if TYPE_CHECKING`: neither is ever run."""
+    """Whether a node is in an annotation or under `if TYPE_CHECKING`, which are never run."""
     while node.parent is not None:
         above = node.parent
         if above.type == "annassign" and node is above.children[1]:
@@ -90,7 +92,7 @@ def _is_for_types(node: NodeOrLeaf) -> bool:
 
 
 def faults_of(source: str, file: str) -> list[Fault]:
-    """Every fault of a source."""
+    """Return every possible fault of a source."""
     tree = load_grammar().parse(source)
     nodes = list(_nodes(tree))
     found = []
@@ -107,7 +109,7 @@ def faults_of(source: str, file: str) -> list[Fault]:
 
 
 def _compiles(fault: Fault, source: str) -> bool:
-    """False of `**` that opens up a dictionary, and the like: nobody needs a test to notice."""
+    """Whether the mutant compiles; some, such as `**` of a dictionary, need no test."""
     try:
         compile(fault.applied(source), fault.file, "exec")
     except SyntaxError:
@@ -116,9 +118,9 @@ def _compiles(fault: Fault, source: str) -> bool:
 
 
 def drawn(root: Path, files: list[Path], seed: str) -> Iterator[Fault]:
-    """One fault of every site, both in an order drawn by lot.
+    """Generate one fault per site, both in random order.
 
-    A longer sample of the same seed begins with the shorter one.
+    A longer sample with the same seed begins with the shorter one.
     """
     sites: dict[tuple[str, int, int], list[Fault]] = defaultdict(list)
     sources = {path.relative_to(root).as_posix(): path.read_text("utf-8") for path in files}

@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 class TreeCopy:
-    """The tree on disk without the files that git ignores, in a directory of its own."""
+    """The tree on disk without the files that git ignores, in a separate directory."""
 
     def __init__(self, root: Path, folder: Path) -> None:
         self.root, self.folder = root, folder
@@ -30,7 +30,8 @@ class TreeCopy:
         return os.environ | {
             "PATH": os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"])),
             "PYTHONPATH": os.pathsep.join(str(self.folder / part) for part in parts),
-            # A file that changes twice in a second would keep the bytecode of its first text.
+            # A file that changes twice within a second would keep the bytecode of its first
+            # version.
             "PYTHONDONTWRITEBYTECODE": "1",
             "CARGO_TARGET_DIR": str(self.root / "target" / "mutation"),
         }

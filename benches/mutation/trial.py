@@ -1,4 +1,4 @@
-"""One mutant: put into a copy of the tree, tested by what reaches it, and taken out again."""
+"""One mutant: inserted into a copy of the tree, tested by the tests that reach it, and removed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NO_TESTS, PASSED, USAGE = 5, 0, 4
 
 @dataclass
 class Trial:
-    """What became of a mutant: `caught`, `timeout` (caught too), `survived` or `not reached`."""
+    """Result of a mutant: `caught`, `timeout` (also caught), `survived` or `not reached`."""
 
     name: str
     file: str
@@ -37,17 +37,17 @@ class Trial:
 
     @property
     def caught(self) -> bool:
-        """True where the tests bit."""
+        """Whether the tests noticed the mutant."""
         return self.word in ("caught", "timeout")
 
     def row(self) -> dict[str, Any]:
-        """As a line of the record holds it."""
+        """Return the fields as a line of the record."""
         return asdict(self)
 
 
 @dataclass
 class Bench:
-    """A copy of the tree, and which tests were seen to pass in it without any fault."""
+    """A copy of the tree, and which tests pass in it without any fault."""
 
     copy: TreeCopy
     sound: dict[str, bool] = field(default_factory=dict)
@@ -55,8 +55,10 @@ class Bench:
     def pytest(
         self, tests: list[str], limit_s: float, without: Sequence[str] = ()
     ) -> tuple[int | None, str]:
-        """Exit code (None: out of time) and output of tests, in order, to the first failure;
-        without some that a file of them holds."""
+        """Run tests in order up to the first failure, without some tests of the files.
+
+        Returns the exit code (None: out of time) and the output.
+        """
         command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no"]
         command += ["-p", "no:cacheprovider", *tests]
         command += [word for test in without for word in ("--deselect", test)]
@@ -65,21 +67,21 @@ class Bench:
         return code, told
 
     def is_sound(self, test: str) -> bool:
-        """True where a test passes without a fault; else it notices nothing."""
+        """Whether a test passes without a fault; otherwise its failure is not evidence."""
         if test not in self.sound:
             code, _ = self.pytest([test], 600.0)
             self.sound[test] = code == PASSED
         return self.sound[test]
 
     def tried(self, fault: Fault, chosen: Chosen) -> Trial:
-        """A mutant's fate."""
+        """Insert a mutant, run its tests and return the result."""
         path = self.copy.folder / fault.file
         before = path.read_text("utf-8")
         after = fault.applied(before)
         lines = difflib.unified_diff(before.splitlines(), after.splitlines(), lineterm="", n=0)
         diff = [line for line in lines if line[:3] not in ("---", "+++") and line[:2] != "@@"]
         trial = Trial(fault.name, fault.file, fault.line, fault.operator, diff)
-        # A file of tests may have gone since it was measured.
+        # A test file may have been removed since the measurement.
         tests = [t for t in chosen.tests if (self.copy.folder / t.split("::")[0]).is_file()]
         trial.tests = len(tests)
         limit_s = 60.0 + 6.0 * chosen.seconds
@@ -93,14 +95,14 @@ class Bench:
                 path.write_text(before, "utf-8")
             found = FAILED.search(told)
             trial.by = found.group(1) if found else None
-            # A mutant that cannot be imported has no tests either.
+            # A mutant that cannot be imported also reports missing tests.
             if code == NO_TESTS or (code == USAGE and not self.is_sound(tests[0])):
                 raise RuntimeError(f"{fault.name}: its tests cannot be found\n{told[-800:]}")
             trial.word = "timeout" if code is None else "survived" if code == PASSED else "caught"
-            # Tests that take as long anyway have noticed nothing.
+            # Tests that take as long without the mutant have not noticed it.
             if code is None and self.pytest(tests, limit_s, struck_off)[0] is None:
                 trial.word = "not reached"
-            # A test that fails anyway is struck off, and the others are asked again.
+            # A test that fails without the mutant is removed, and the others run again.
             by = trial.by
             if code == 1 and by is not None and by not in struck_off and not self.is_sound(by):
                 if by in tests:

@@ -4,9 +4,9 @@
     .venv/bin/python benches/recorded --folder CASES --heldout HELDOUT
 
 Simulates campaigns with the independent simulator (`simulator/rigsim/recording`), or takes labelled
-ones from disk, and reads, diagnoses and judges them. `--out F` keeps one JSON line a campaign; a
-second call with the same file goes on from it, and with `--first 0` prints its tables alone. Each
-diagnosis is a process of its own, ended after `--limit` seconds of the processor's time.
+ones from disk, and reads, diagnoses and assesses them. `--out F` stores one JSON line per campaign.
+A second call with the same file continues it; with `--first 0` it only prints the tables. Each
+diagnosis is a separate process, ended after `--limit` seconds of processor time.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def _on_disk(asked: argparse.Namespace) -> list[Job]:
 
 
 def main() -> int:
-    """Run what is missing, then print all of it."""
+    """Run the missing campaigns, then print all results."""
     parser = _parser()
     asked = parser.parse_args()
     if (asked.folder is None) != (asked.heldout is None):
@@ -95,7 +95,7 @@ def main() -> int:
     if asked.out is not None and asked.out.exists():
         rows = [json.loads(text) for text in asked.out.read_text(encoding="utf-8").splitlines()]
     done = {row["key"] for row in rows}
-    # Threads only wait and simulate here: each diagnosis is a process of its own.
+    # These threads only wait and simulate: each diagnosis is a separate process.
     with ThreadPoolExecutor(asked.jobs) as pool:
         running = [pool.submit(run) for key, run in jobs if key not in done]
         for future in as_completed(running):

@@ -1,4 +1,4 @@
-"""A labelled campaign on disk, and the row of figures that a bench keeps of it."""
+"""A labelled campaign on disk, and the row of results that a study stores for it."""
 
 from __future__ import annotations
 
@@ -10,22 +10,20 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Case:
-    """What is in two folders.
+    """A labelled campaign in two folders.
 
-    Attributes
-    ----------
-    key
-        A name of its own.
+    Attributes ---------- key
+        A unique name.
     effects, artefacts
-        The physics that is hidden, and what the recording did.
+        The hidden effects and the recording artefacts.
     strength
-        Of the artefacts: `mild`, `usual`, `severe`, or `-` where it is not known.
+        Strength of the artefacts: `mild`, `usual`, `severe`, or `-` if unknown.
     noise_n
         White noise of the clean recording (1 s.d.), N.
     runs, held_out
         Folders: `rig.toml` and runs; clean runs of the same rig with other motions.
     effect_over_noise
-        RMS of the weakest effect over the noise in the run that shows it best; 0 if not known.
+        RMS of the weakest effect over the noise in the run that shows it best; 0 if unknown.
     """
 
     key: str
@@ -39,5 +37,5 @@ class Case:
 
     @property
     def kind(self) -> str:
-        """How many effects are hidden, in a word."""
+        """`none`, `single` or `pair`, by the number of hidden effects."""
         return ("none", "single", "pair")[min(len(self.effects), 2)]

@@ -1,4 +1,4 @@
-"""Labelled campaigns that are on disk already."""
+"""Labelled campaigns that already exist on disk."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from case import Case
 
 
 def cases(folder: Path, held_out: Path) -> list[Case]:
-    """The campaigns of a folder with `NAME/rig.toml`, `NAME/*.csv` and a truth beside them.
+    """Read the campaigns of a folder with `NAME/rig.toml`, `NAME/*.csv` and the truth.
 
-    `truth.json` in the folder or above it has, by name, `effects`, `artefacts`, `noise_n` and,
-    where it is known, `strength`; or each campaign has a `NAME.json` beside its folder. Raises
-    FileNotFoundError, in words, where something is missing.
+    `truth.json` in the folder or above it contains `effects`, `artefacts`, `noise_n` and, if known,
+    `strength` by name. Alternatively each campaign has a `NAME.json` next to its folder. Raises
+    FileNotFoundError with a message if something is missing.
     """
     for needed in (folder, held_out):
         if not needed.is_dir():

@@ -1,4 +1,4 @@
-"""What an answer is worth against what was hidden, and which artefacts were found."""
+"""Assessment of a diagnosis against the hidden effects, and the artefacts that were found."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 OUTCOMES = ("right", "tied", "named falsely", "unexplained", "missed", "failed")
 
 FAIR = {"skew": {"time_delay"}}
-"""Names that are true of an artefact: a late force is late, whoever made it so."""
+"""Names that correctly describe an artefact: a delayed force is a delay, whatever its cause."""
 
 FOUND_AS: dict[str, set[str]] = {
     "backward_velocity": {"coarse_speed", "filtered_speed", "late_speed", "late_channel"},
@@ -32,10 +32,10 @@ FOUND_AS: dict[str, set[str]] = {
     "slow_force": {"interpolated", "held_samples"},
     "spikes": {"glitches"},
 }
-"""The kinds of finding that say what an artefact did; any of them will do. `off_grid` has none."""
+"""The kinds of finding that correctly report an artefact; any one suffices. None for `off_grid`."""
 
 ALWAYS_FAIR = {"unsettled_start"}
-"""True of every campaign here."""
+"""Findings that are true of every campaign in this study."""
 
 
 def judge(
@@ -45,12 +45,14 @@ def judge(
     named: Sequence[str],
     alternatives: Mapping[str, Sequence[str]],
 ) -> str:
-    """One of `OUTCOMES` but `failed`.
+    """Assess a result as one of `OUTCOMES` except `failed`.
 
-    `right`: exactly what is hidden is named, and what else remains is not said to be unexplained.
-    `tied`: `ambiguous`, every hidden effect among the tied names, and not more names than hidden
-    effects. `named falsely`: a name that is neither. `unexplained`: nothing false, structure said
-    to remain. `missed`: nothing false, and not all of what is hidden.
+    - `right`: exactly the hidden effects are named, and no unexplained structure is reported.
+    - `tied`: `ambiguous`, every hidden effect is among the tied names, and there are not more names
+      than hidden effects.
+    - `named falsely`: a name that is neither.
+    - `unexplained`: no false name, remaining structure is reported.
+    - `missed`: no false name, and not all hidden effects are named.
     """
     fair = set().union(*(FAIR.get(name, set()) for name in artefacts))
     truth = set(effects)
@@ -68,9 +70,9 @@ def judge(
 
 
 def found(artefacts: Iterable[str], kinds: Iterable[str]) -> tuple[list[str], list[str], list[str]]:
-    """Artefacts that a finding tells of; those that none does; findings that tell of nothing done.
+    """Return artefacts reported by a finding, artefacts not reported, and false findings.
 
-    Artefacts that no finding can tell of (`off_grid`) are in neither list.
+    Artefacts that no finding can report (`off_grid`) are in neither list.
     """
     said = set(kinds)
     can = [name for name in artefacts if name in FOUND_AS]

@@ -1,4 +1,4 @@
-"""A campaign in a process of its own, ended where it takes too long."""
+"""A campaign in a separate process that is ended if it takes too long."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ ONE = Path(__file__).with_name("one.py")
 
 
 def scored(case: Case, limit_s: float) -> Row:
-    """The row of a case; judged `failed`, and why, where it broke, or took over `limit_s` (s of the
-    processor's time; where that cannot be limited, and where it waits, `PATIENCE` times as much).
+    """Return the row of a case, assessed as `failed`, with the reason, if it broke or took too
+    long. `limit_s` is in seconds of processor time. If processor time cannot be limited, or the
+    process waits, the limit is `PATIENCE` times as long in wall-clock time.
     """
     row: Row = {
         "key": case.key,

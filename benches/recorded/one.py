@@ -1,6 +1,8 @@
-"""One campaign from its files to a row: `python one.py < case.json > row.json`, a process of its
-own, so that what hangs can be ended. The time that counts is the processor's, which does not depend
-on what else a machine does."""
+"""Process one campaign from its files to a row: `python one.py < case.json > row.json`.
+
+A separate process, so that it can be ended if it hangs. The limit is processor time, which does not
+depend on the load of the machine.
+"""
 
 from __future__ import annotations
 
@@ -24,14 +26,14 @@ except ImportError:  # not on Windows
     resource = None
 
 SLOWEST_M_S = 5e-4
-"""Below it the sign of a measured speed is a guess."""
+"""Speed below which the sign of a measured speed is uncertain."""
 
 SETTLED_S = 2.0
-"""By then a film has forgotten the state in which a run began."""
+"""Time after which a film has forgotten its state at the start of the run."""
 
 
 def held_out(model: jbf.Model, runs: Sequence[jbf.Run]) -> tuple[float, float]:
-    """RMS of record minus prediction, N: of all that moves, and of that once films settled."""
+    """RMS of record minus prediction, N: of all moving samples, and of those after settling."""
     every, late = [], []
     for run in runs:
         assert run.friction_n is not None
@@ -44,7 +46,7 @@ def held_out(model: jbf.Model, runs: Sequence[jbf.Run]) -> tuple[float, float]:
 
 
 def answered(case: Case) -> Row:
-    """What is said of a campaign, and what it is worth."""
+    """Diagnose a campaign and assess the result."""
     begun, worked = time.monotonic(), time.process_time()
     rig = jbf.read_rig(f"{case.runs}/rig.toml")
     diagnosis = jbf.diagnose(rig, jbf.read_runs([case.runs]))
@@ -74,7 +76,7 @@ def answered(case: Case) -> Row:
 
 
 def main() -> None:
-    """Read a case, write its row; `one.py SECONDS` ends after so much of the processor's time."""
+    """Read a case and write its row; `one.py SECONDS` limits the processor time."""
     if len(sys.argv) > 1 and resource is not None:
         most = math.ceil(float(sys.argv[1]))
         resource.setrlimit(resource.RLIMIT_CPU, (most, most + 5))

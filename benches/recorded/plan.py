@@ -1,7 +1,8 @@
-"""Which campaigns are simulated: every one is a seed, what is hidden, and what the recording does.
+"""Plan of the simulated campaigns, each defined by a seed, hidden effects and artefacts.
 
-A round has every artefact at each strength, and a dozen recordings with two or three artefacts,
-each with nothing, one effect and two effects hidden. Effects go round: each comes about as often.
+A round has every artefact at each strength, and a dozen recordings with two or three artefacts.
+Each of these occurs without, with one and with two hidden effects. Effects rotate, so that each
+occurs about equally often.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from rigsim.recording import ARTEFACTS, OFF_GRID, ONE_OF, STRENGTHS
 
 KINDS = ("none", "single", "pair")
 CLEAN = {"none": 4, "single": 12, "pair": 4}
-"""Campaigns of a round that are recorded cleanly."""
+"""Number of campaigns per round that are recorded without artefacts."""
 COMBINATIONS = 12
 A_ROUND = 1000
 SHORT = (
@@ -50,13 +51,13 @@ class Task:
 
     @property
     def key(self) -> str:
-        """A name of its own."""
+        """A unique name."""
         hidden = "+".join(self.effects) or "nothing"
         return f"{'+'.join(self.artefacts)}/{self.strength}/{hidden}/{self.seed}"
 
 
 def _recordings(rng: np.random.Generator) -> Iterator[tuple[str, tuple[str, ...], str]]:
-    """Kind, artefacts and strength of each campaign of a round."""
+    """Generate kind, artefacts and strength of each campaign of a round."""
     for kind in KINDS:
         for _ in range(CLEAN[kind]):
             yield kind, (OFF_GRID,), "-"
@@ -80,15 +81,14 @@ def _round(number: int) -> list[Task]:
     for i, (kind, artefacts, strength) in enumerate(_recordings(rng)):
         hidden = {"none": (), "single": next(ones), "pair": tuple(next(pairs))}[kind]
         found.append(Task(kind, A_ROUND * number + i, hidden, artefacts, strength))
-    # Shuffled, so that a bench that is stopped early is a fair sample.
+    # Shuffled, so that an early stop leaves a fair sample.
     return [found[k] for k in rng.permutation(len(found))]
 
 
 def tasks(
     kinds: tuple[str, ...], seeds: int, first_seed: int = 1, artefacts: tuple[str, ...] = ()
 ) -> list[Task]:
-    """All campaigns of some kinds and, where they are named, of recordings with these artefacts
-    alone."""
+    """Return all campaigns of some kinds, limited to recordings with these artefacts if given."""
     rounds = itertools.chain.from_iterable(_round(n) for n in range(first_seed, first_seed + seeds))
     return [
         task
@@ -103,7 +103,7 @@ def _samples(seed: int, effects: tuple[str, ...]) -> float:
 
 
 def short(first_seed: int = 1) -> list[Task]:
-    """A dozen small campaigns: those of the seeds from the first on that have few samples."""
+    """Return a dozen small campaigns: those with few samples, from the first seed on."""
     seeds = itertools.count(A_ROUND * first_seed)
     found = []
     for artefacts, effects in SHORT:

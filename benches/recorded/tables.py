@@ -1,4 +1,4 @@
-"""The rows of a bench as Markdown tables."""
+"""Results of a study as Markdown tables."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _seconds(rows: Sequence[Row]) -> list[str]:
 
 
 def grouped(rows: Sequence[Row], title: str, of: Callable[[Row], str]) -> str:
-    """Outcomes, held-out error over the noise, artefacts found, and time, group by group."""
+    """Outcomes, held-out error over noise, artefacts found, and time, by group."""
     heads = [title, "campaigns", *OUTCOMES, "all named"]
     heads += ["held-out, median", "worst", "artefacts found", "CPU s, median", "worst"]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
@@ -47,7 +47,7 @@ def grouped(rows: Sequence[Row], title: str, of: Callable[[Row], str]) -> str:
 
 
 def recorded(row: Row) -> bool:
-    """Whether the recording did more than to start and stop between samples."""
+    """Whether the recording has an artefact other than starts and stops between samples."""
     return set(row["artefacts"]) != {"off_grid"}
 
 
@@ -59,7 +59,7 @@ def _line(what: str, rows: Sequence[Row], good: Callable[[Row], bool]) -> str:
 
 
 def totals(rows: Sequence[Row]) -> str:
-    """What is asked of recordings, in a few lines; a failure is not good anywhere."""
+    """Summary of the required properties in a few lines; failed campaigns count as not good."""
     clean = [row for row in rows if not recorded(row)]
     dirty = [row for row in rows if recorded(row)]
     one = [row for row in dirty if row["kind"] == "single"]
@@ -94,12 +94,12 @@ def _names(row: Row) -> bool:
 
 
 def kept(rows: Sequence[Row]) -> float:
-    """The share of answers that are right, or honest ties."""
+    """Share of results that are right or valid ties."""
     return float(np.mean([row["judged"] in ("right", "tied") for row in rows])) if rows else 0.0
 
 
 def line(row: Row) -> str:
-    """A campaign in a line, for a bench that runs."""
+    """Format a campaign as one line, for progress output."""
     said = ",".join(row["named"]) or "-"
     held = f"{row['held_out_over_noise']:7.3f}" if "held_out_over_noise" in row else "      -"
     hidden = ",".join(row["effects"]) or "-"
@@ -111,7 +111,7 @@ def line(row: Row) -> str:
 
 
 def tables(rows: Sequence[Row]) -> str:
-    """All tables."""
+    """Return all tables as one text."""
     parts = [
         grouped(rows, "artefacts", lambda row: " + ".join(row["artefacts"])),
         grouped(rows, "hidden", lambda row: row["kind"]),

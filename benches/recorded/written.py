@@ -1,4 +1,4 @@
-"""A simulated campaign as the files that a user would have."""
+"""Write a simulated campaign as the files that a user would have."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rigsim.recording import write_recorded
 
 
 def written(task: Task, folder: Path) -> Case:
-    """The campaign of a task and its held-out runs below a folder."""
+    """Write the campaign of a task and its held-out runs below a folder."""
     name = task.key.replace("/", "_")
     runs, held_out = folder / "cases" / name, folder / "heldout" / name
     strength = "usual" if task.strength == "-" else task.strength

@@ -1,11 +1,10 @@
 """Whether fits and diagnoses of absurd campaigns end, and in a sane answer.
 
-`python benches/torture`.
-Every case is a rig and a campaign drawn at random (`draw.py`): scales over six decades, one run or
-four, ten samples or two thousand, no motion, one speed, noise alone, zeros. What is asked of each:
-an answer, or one line that says what these runs cannot show; no exception else, no warning of a
-library, no number that is not finite, no bound as a value, not `adequate` far off the noise, and
-all of it within `--limit` seconds of processor time.
+`python benches/torture`. Every case is a rig and a campaign drawn at random (`draw.py`): scales
+over six decades, one to four runs, ten to two thousand samples, no motion, one speed, noise alone,
+zeros. Each must give a result, or one line that states what these runs cannot show. Not allowed are
+other exceptions, warnings of a library, numbers that are not finite, a bound as a value, and
+`adequate` far above the noise. The limit is `--limit` seconds of processor time.
 """
 
 from __future__ import annotations
@@ -28,16 +27,16 @@ from draw import Case, draw
 from jbf.models.catalogue import parameters_of
 
 FAR_OFF = 3.0
-"""Times the noise from which on a model is not adequate, of a hundred samples and more."""
+"""Ratio to the noise above which a model with over a hundred samples is not adequate."""
 
 
 def out_of_time(_signal: int, _frame: FrameType | None) -> None:
-    """The limit of processor time is reached."""
+    """Raise because the limit of processor time is reached."""
     raise TimeoutError
 
 
 def complaints(case: Case, fitted: jbf.Fit) -> Iterator[str]:
-    """What is wrong with a fit's numbers."""
+    """Generate the faults of a fit's numbers."""
     pages = parameters_of(fitted.model.law, tuple(fitted.model.effects))
     for name, known in fitted.parameters.items():
         page = pages[name]
@@ -52,7 +51,7 @@ def complaints(case: Case, fitted: jbf.Fit) -> Iterator[str]:
 
 
 def judge(case: Case) -> tuple[str, list[str]]:
-    """What was said, and what is wrong with it."""
+    """Return the result and its faults."""
     wrong: list[str] = []
     try:
         fitted = jbf.fit(case.rig, case.runs, law="stribeck" if case.law == "auto" else case.law)
@@ -73,7 +72,7 @@ def judge(case: Case) -> tuple[str, list[str]]:
 
 
 def tried(seed: int, limit_s: float) -> dict[str, object]:
-    """One case: what was said, what is wrong, how long it took."""
+    """Run one case and return the result, its faults and the time."""
     case = draw(seed)
     signal.signal(signal.SIGPROF, out_of_time)
     signal.setitimer(signal.ITIMER_PROF, limit_s)
@@ -96,7 +95,7 @@ def tried(seed: int, limit_s: float) -> dict[str, object]:
 
 
 def kept(path: Path | None) -> list[dict[str, object]]:
-    """The cases of a record; a line that was cut off is left."""
+    """Read the cases of a record; incomplete lines are skipped."""
     found = []
     for line in path.read_text("utf-8").splitlines() if path is not None and path.exists() else []:
         try:
@@ -107,7 +106,7 @@ def kept(path: Path | None) -> list[dict[str, object]]:
 
 
 def main() -> int:
-    """Try, tell, count."""
+    """Run the cases, print the faults and count them."""
     parser = argparse.ArgumentParser(prog="torture", description=__doc__.split(":")[0])
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--cases", type=int, default=100)

@@ -1,4 +1,4 @@
-"""Random rigs and campaigns that nobody would record on purpose, from a formula of their own."""
+"""Random rigs and campaigns with unrealistic properties, from independent formulas."""
 
 from __future__ import annotations
 
@@ -13,18 +13,16 @@ Array = npt.NDArray[np.float64]
 Random = np.random.Generator
 
 KINDS = ("friction", "friction", "friction", "noise", "zeros", "constant", "own model")
-"""What the force is: mostly friction, as most people record it."""
+"""Kinds of force: mostly friction, as in most real recordings."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A campaign and what is known of it.
+    """A campaign and its known noise.
 
-    Attributes
-    ----------
-    noise_n
-        Standard deviation of what no model can explain, N; nan where that is not known: of noise
-        alone, and of a speed that jumps at every sample, which no machine has.
+    Attributes ---------- noise_n
+        Standard deviation of the part that no model can explain, N. nan if unknown: for noise
+        alone, and for a speed that jumps at every sample, which no machine has.
     """
 
     words: str
@@ -64,7 +62,7 @@ def _strokes(t: Array, top: float, random: Random) -> Array:
 
 
 def _turns(t: Array, random: Random) -> float:
-    """An angular frequency that this record shows some periods of, rad/s."""
+    """Return an angular frequency with several periods in this record, rad/s."""
     return float(2.0 * np.pi * random.uniform(0.5, 12.0) / max(t[-1], 1e-12))
 
 
@@ -80,7 +78,7 @@ MOTIONS: dict[str, Callable[[Array, float, Random], Array]] = {
 
 
 def friction(v: Array, top: float, force_n: float, random: Random) -> Array:
-    """Coulomb's, a Stribeck peak and a viscous part, in shares drawn at random."""
+    """Coulomb friction, a Stribeck peak and a viscous part, in random proportions."""
     dry, peak, viscous = random.dirichlet([1.0, 1.0, 1.0])
     slow = top * 10.0 ** random.uniform(-2.0, 0.0)
     level = dry + peak * np.exp(-((v / slow) ** 2))
@@ -88,7 +86,7 @@ def friction(v: Array, top: float, force_n: float, random: Random) -> Array:
 
 
 def _rig(random: Random, force_n: float) -> jbf.Rig:
-    """A bearing of some size under about the force, or no bearing at all."""
+    """Draw a bearing for about this force, or a rig without a bearing."""
     if random.random() < 0.5:
         return jbf.Rig()
     radius = 10.0 ** random.uniform(-3.0, 0.0)
@@ -104,7 +102,7 @@ def _rig(random: Random, force_n: float) -> jbf.Rig:
 
 
 def draw(seed: int) -> Case:
-    """A case; the same of one seed."""
+    """Draw the case of a seed."""
     random = np.random.default_rng(seed)
     force_n, top = 10.0 ** random.uniform(-3.0, 3.0, 2) * (10.0, 0.1)
     step_s = 10.0 ** random.uniform(-4.0, 0.0)

@@ -37,9 +37,7 @@ def finer(times: Vector, jumps: Vector) -> Vector:
 
 
 def through_cell(force: Vector, effects: Parameters) -> Vector:
-    """Force (N) in the cell: without the part held back by play, and with the cell's
-    nonlinearity.
-    """
+    """Force (N) in the cell, without the part held back by play and with its nonlinearity."""
     play = effects.get("sensor_hysteresis", {}).get("w", 0.0)
     cubic = effects.get("sensor_nonlinearity", {}).get("c", 0.0)
     seen = force - _kept_back(force, play) if play > 0.0 else force
@@ -50,9 +48,7 @@ def through_cell(force: Vector, effects: Parameters) -> Vector:
 
 
 def _kept_back(force: Vector, play: float) -> Vector:
-    """Part of a force (N) carried by a spring and a slider that slips at `play`, relaxed at
-    first.
-    """
+    """Part of a force (N) borne by a spring and a slider that slips at `play`, relaxed at first."""
     borne, out = 0.0, np.zeros(len(force))
     for i, more in enumerate(np.diff(force).tolist(), start=1):
         borne = float(np.clip(borne + more, -play, play))

@@ -20,9 +20,7 @@ OIL_K = 95.0
 
 @dataclass(frozen=True)
 class Warmth:
-    """Temperature (C) over the time of one run (s): a start, an oscillation and an exponential
-    rise.
-    """
+    """Temperature (C) over the time of one run (s): start, oscillation and exponential rise."""
 
     start_c: float
     swing_k: float = 0.0

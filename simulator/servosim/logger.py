@@ -24,8 +24,8 @@ class Logger:
         Sampling rate.
     stamps
         `even`; `jitter`: samples at uneven instants with true stamps; `jittered`: an even clock
-        with wrong stamps; `millis`: whole milliseconds of a loop of another period; `arrival`: an even
-        clock, stamped on arrival.
+        with wrong stamps; `millis`: whole milliseconds of a loop of another period; `arrival`: an
+        even clock, stamped on arrival.
     stamp_share
         Size of the stamp error, samples.
     speed

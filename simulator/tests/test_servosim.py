@@ -74,7 +74,7 @@ def test_parameters_follow_from_the_true_motion_where_the_force_is_on_time(seed:
     left = forces - rows @ found
     sd = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows)) * (left @ left) / len(left))
     true = [plant.coulomb, plant.viscous, plant.inertia, plant.gravity][:rank]
-    # Encoder counts and pieces of constant weight add to the noise.
+    # The tolerance allows for encoder counts and pieces of constant weight besides the noise.
     share = np.abs(rows).max(axis=0) / np.std(forces)
     assert np.all(np.abs(found - true) * share < 4.5 * sd * share + 0.005)
 

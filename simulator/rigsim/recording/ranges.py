@@ -11,9 +11,7 @@ Range = tuple[float, float]
 
 
 def sized(**ranges: tuple[Range, Range, Range]) -> Callable[[str, Rng], dict[str, float]]:
-    """Make a function that draws sizes by name, log-uniformly from the (mild, usual, severe)
-    ranges.
-    """
+    """Return a function that draws sizes log-uniformly from the (mild, usual, severe) ranges."""
 
     def draw(strength: str, rng: Rng) -> dict[str, float]:
         at = STRENGTHS.index(strength)

@@ -1,8 +1,7 @@
-"""Draw the house: `.venv/bin/python docs/architecture.py`.
+"""Draw the architecture diagrams: `.venv/bin/python docs/architecture.py`.
 
-`docs/images/rooms.png` has the rooms of `python/jbf` from top to bottom, with how many imports go
-from each to each: read off the source, so that the picture cannot be older than the house.
-`docs/images/way_of_data.png` has the way of the data through a diagnosis.
+`docs/images/rooms.png` shows the packages of `python/jbf` from top to bottom, with the number of
+imports between them; `docs/images/way_of_data.png` shows the data flow of a diagnosis.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ FLOORS: list[list[tuple[str, str]]] = [
     [("comparison", "record - prediction in;\nwhere it fails out")],
     [("estimation", "model x runs in;\nparameters with errors out")],
     [
-        ("", ""),  # what stands beside it is not below the rooms above
+        ("", ""),  # `importing`, to the right, is not below the packages above
         ("models", "law + effects + parameters in;\nprediction out"),
         ("importing", "strangers' files, a map in;\nruns, rig, ledger out"),
     ],
@@ -45,7 +44,7 @@ FLOORS: list[list[tuple[str, str]]] = [
 
 
 def imports() -> Counter[tuple[str, str]]:
-    """How many imports go from one room to another."""
+    """Count the imports from each package to each other package."""
     rooms = {name for floor in FLOORS for name, _ in floor if name}
     found: Counter[tuple[str, str]] = Counter()
     for path in PACKAGE.rglob("*.py"):
@@ -63,7 +62,7 @@ def imports() -> Counter[tuple[str, str]]:
 
 
 def box(ax: Axes, x: float, y: float, size: tuple[float, float], title: str, words: str) -> None:
-    """A room: its name, and what comes in and goes out."""
+    """Draw a package: its name, its input and its output."""
     width, height = size
     colour = CORE if title == "_core" else ROOM
     corner = (x - width / 2, y - height / 2)
@@ -75,7 +74,7 @@ def box(ax: Axes, x: float, y: float, size: tuple[float, float], title: str, wor
 
 
 def canvas(width: float, height: float) -> tuple[Figure, Axes]:
-    """A figure in inches, its axes in the same."""
+    """Return a figure of this size and axes, both in inches."""
     figure = Figure(figsize=(width, height))
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     ax.set_xlim(0.0, width)
@@ -85,7 +84,7 @@ def canvas(width: float, height: float) -> tuple[Figure, Axes]:
 
 
 def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], bend: float = 0.0) -> None:
-    """From one place to another."""
+    """Draw an arrow from `a` to `b`."""
     style = f"arc3,rad={bend}"
     ax.add_patch(
         FancyArrowPatch(
@@ -95,7 +94,7 @@ def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], bend: float 
 
 
 def rooms() -> Figure:
-    """The rooms from top to bottom, each importing only those below it."""
+    """Draw the packages from top to bottom; each imports only those below it."""
     counts = imports()
     figure, ax = canvas(9.4, 1.12 * len(FLOORS) + 0.24)
     places: dict[str, tuple[float, float]] = {}
@@ -146,7 +145,7 @@ STEPS: list[tuple[str, str]] = [
 
 
 def way_of_data() -> Figure:
-    """The steps of a diagnosis in their order: there along the top, back along the bottom."""
+    """Draw the steps of a diagnosis in order, along the top and back along the bottom."""
     figure, ax = canvas(11.0, 3.9)
     places = []
     for k, (name, words) in enumerate(STEPS):
@@ -169,7 +168,7 @@ def way_of_data() -> Figure:
 
 
 def main() -> int:
-    """Draw both."""
+    """Draw both diagrams."""
     for name, figure in (("rooms", rooms()), ("way_of_data", way_of_data())):
         figure.savefig(IMAGES / f"{name}.png", dpi=110)
         print(f"docs/images/{name}.png")

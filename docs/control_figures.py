@@ -16,11 +16,11 @@ from jbf.control.schemes import LISTED_VOLTS
 from jbf.control.tuning import LAW_RAD_S
 
 LOGGED = 11
-"""The thesis's program logs one step in so many of a 50 s run."""
+"""The thesis's program logs every 11th step of a 50 s run."""
 
 
 def ablation() -> None:
-    """What each part of the observed compensator is worth."""
+    """Print the errors of the observed compensator without each of its parts."""
     model, rigid = thesis_model(), thesis_model(elastic="nothing")
     settings = tune(model)
     variants = {
@@ -45,7 +45,7 @@ def ablation() -> None:
 
 
 def starts() -> None:
-    """Peaks at the start, with the rig sticking harder after it has stood."""
+    """Print the peaks at the start, with friction that grows while the rig is at rest."""
     values = {n: p.value for n, p in thesis_model().parameters.items()}
     for a in (0.0, 0.05, 0.1):
         model = Model(
@@ -60,7 +60,9 @@ def starts() -> None:
 
 
 def reversals() -> None:
-    """Peaks at slow reversals: of every step, of the logged ones, and with more damping."""
+    """Print the peaks at slow reversals: of all steps, of the logged ones, and with more
+    damping.
+    """
     damped = thesis_model(**{"drive_compliance.c_n_m_s_rad": 1.0})
     for row in ("velocity sine", "velocity triangle"):
         for scheme in ("learning", "coulomb"):
@@ -75,7 +77,7 @@ def reversals() -> None:
 
 
 def relay() -> None:
-    """How often the shaft turns round in the position sine, and the largest compensation."""
+    """Print the rate of reversals in the position sine, and the largest compensation."""
     for volts in (None, LISTED_VOLTS):
         r = run(None, Learning(volts=volts), replace(TASKS["position sine"], seconds=25.0))
         turns = np.sum(np.diff(np.sign(r.velocity_rad_s)) != 0.0) / r.task.seconds

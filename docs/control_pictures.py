@@ -21,7 +21,7 @@ SEEDS = 2
 
 
 def runs(row: str) -> Figure:
-    """Four schemes side by side on one row of the tables."""
+    """Plot four schemes next to each other for one row of the tables."""
     return plot_runs([control.run(None, scheme, control.TASKS[row]) for scheme in SCHEMES])
 
 
@@ -37,7 +37,7 @@ def _ratios(ax: Axes, values: np.ndarray, lines: dict[str, list[float]], label: 
 
 
 def settled() -> Figure:
-    """Scale and belt against the thesis's figures: where do they agree?"""
+    """Plot the ratios to the thesis's figures over the scale and the belt stiffness."""
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     bench, model = control.THESIS_BENCH, control.thesis_model()
@@ -75,7 +75,7 @@ def settled() -> Figure:
 
 
 def main() -> None:
-    """All of them; a minute."""
+    """Make all pictures; takes a minute."""
     figures = {
         "control_velocity_sine": runs("velocity sine"),
         "control_position_triangle": runs("position triangle"),

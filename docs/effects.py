@@ -1,7 +1,7 @@
 """Write the page and the picture of every effect: `.venv/bin/python docs/effects.py [NAME...]`.
 
-The words are the catalogue's (`jbf.effects()`), the curves the library's: nothing is said twice.
-`--check` writes nothing, and exits with 1 where a page is not what the catalogue would write.
+Texts come from the catalogue (`jbf.effects()`) and curves from the library, so that nothing is
+duplicated. `--check` writes nothing, and exits with 1 if a page differs from the catalogue.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ PLAIN, WITH = "0.3", "tab:red"
 
 @dataclass(frozen=True)
 class Shown:
-    """What a picture shows: an effect's parameters, and under which motion."""
+    """Content of a picture: the parameters of an effect, and the motion."""
 
     values: Mapping[str, float] = field(default_factory=dict)
     motion: str = "a sine of 1 rad/s"
     load_share: float = 1.0
     beside: Mapping[str, float] = field(default_factory=dict)
-    """Parameters of effects without which it shows nothing, drawn on both curves."""
+    """Parameters of other effects that this one requires, used in both curves."""
     warms_c: tuple[float, float] | None = None
     """Temperatures at the beginning and at the end, C."""
 
@@ -109,7 +109,7 @@ SHOWN = {
     "sensor_offset": Shown({"b": 4.0}),
     "sensor_drift": Shown({"d": 0.2}, "eight periods of 1 rad/s"),
 }
-"""Large enough to see. An effect without an entry is shown at its starting values."""
+"""Values large enough to be visible. Effects without an entry use their starting values."""
 
 
 def speed_of(motion: str) -> tuple[np.ndarray, np.ndarray]:
@@ -129,14 +129,14 @@ def speed_of(motion: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def shown(effect: Effect) -> Shown:
-    """What the picture of an effect shows."""
+    """Return the content of an effect's picture."""
     if effect.name in SHOWN:
         return SHOWN[effect.name]
     return Shown({p.name: p.starts[0] for p in effect.parameters})
 
 
 def motion_of(effect: Effect, speed_times: float = 1.0, load_times: float = 1.0) -> jbf.Run:
-    """The motion under which an effect is shown, without friction."""
+    """Return the motion under which an effect is shown, without friction."""
     what = shown(effect)
     time, speed = speed_of(what.motion)
     speed = speed_times * speed
@@ -154,7 +154,7 @@ def motion_of(effect: Effect, speed_times: float = 1.0, load_times: float = 1.0)
 
 
 def models_of(effect: Effect) -> tuple[jbf.Model, jbf.Model]:
-    """The law without an effect and with it."""
+    """Return the models without an effect and with it."""
     what = shown(effect)
     own = {f"{effect.name}.{name}": value for name, value in what.values.items()}
     law, values = ("journal", LAW) if "journal" not in effect.refused else ("coulomb", IN_NEWTONS)
@@ -167,8 +167,10 @@ def models_of(effect: Effect) -> tuple[jbf.Model, jbf.Model]:
 
 
 def record(effect: Effect, folder: Path) -> None:
-    """A rig and two runs with an effect in them: the picture's motion, and half of it under more
-    load, with noise. The command of the effect's page is tried on them."""
+    """Write a rig and two runs with an effect, for the command on the effect's page.
+
+    The runs are the picture's motion, and the same at half the speed under more load, with noise.
+    """
     model = models_of(effect)[1]
     RIG.write(folder / "rig.toml")
     (folder / "runs").mkdir()
@@ -187,7 +189,7 @@ def record(effect: Effect, folder: Path) -> None:
 
 
 def draw(effect: Effect) -> Figure:
-    """Friction against speed and along time, without the effect and with it."""
+    """Plot friction against speed and over time, without the effect and with it."""
     motion = motion_of(effect)
     plain, changed = (model.predict(motion) for model in models_of(effect))
     figure = Figure(figsize=(9.0, 3.4), layout="constrained")
@@ -211,7 +213,7 @@ def _curves(axes: Axes, x: np.ndarray, plain: np.ndarray, changed: np.ndarray) -
 
 
 def page(effect: Effect) -> str:
-    """The page of an effect, as Markdown."""
+    """Return the page of an effect, as Markdown."""
     what = shown(effect)
     units = {p.name: p.unit for p in effect.parameters}
     values = ", ".join(f"{n} = {v:g} {_unit(units, n)}".strip() for n, v in what.values.items())
@@ -284,7 +286,7 @@ def _row(p: Parameter) -> str:
 
 
 def index() -> str:
-    """The list of all pages, in the order of the signal chain."""
+    """Return the list of all pages, in the order of the signal chain."""
     lines = [
         "# Effects",
         "",
@@ -303,18 +305,18 @@ def index() -> str:
 
 
 def catalogue() -> dict[str, Effect]:
-    """The library's own effects."""
+    """Return the effects of the library."""
     return built_in()
 
 
 def texts() -> dict[Path, str]:
-    """Every page by its path."""
+    """Return every page by its path."""
     pages = {FOLDER / f"{e.name}.md": page(e) for e in catalogue().values()}
     return {FOLDER / "README.md": index(), **pages}
 
 
 def stale() -> list[str]:
-    """Pages and pictures that are missing, not what the catalogue writes, or of no effect."""
+    """List pages and pictures that are missing, out of date, or belong to no effect."""
     expected = texts()
     wrong = [
         p.name
@@ -328,7 +330,7 @@ def stale() -> list[str]:
 
 
 def main() -> int:
-    """Write, or check."""
+    """Write the pages and pictures, or check them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument(
         "names", nargs="*", metavar="NAME", help="pictures of these; all by default"

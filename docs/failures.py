@@ -1,7 +1,7 @@
 """Write docs/why/failures.md and its pictures: `.venv/bin/python docs/failures.py [--check]`.
 
-Each failure is made: something is hidden in simulated runs of the thesis's bearing, the law alone
-is fitted to them, and what it leaves is drawn. Causes and advice are those of the reports.
+Each failure is simulated. Runs of the thesis's bearing contain a hidden effect or disturbance, the
+law alone is fitted to them, and the residual is drawn. Causes and advice are those of the reports.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Spoil = Callable[[int, Array, Array], Array]
 
 @dataclass(frozen=True)
 class Shown:
-    """A failure: the axis or kind it is seen along, what is hidden, in words and as values."""
+    """A failure: the axis or kind along which it appears, its description, and its values."""
 
     kind: str
     title: str
@@ -101,7 +101,7 @@ SHOWN = (
 
 
 def motions() -> list[tuple[str, Array, Array]]:
-    """Names, times and speeds: sines, one-way sweeps, starts and stops."""
+    """Return names, times and speeds: sines, starts and stops."""
     time_s = np.arange(0.0, 30.0, STEP_S)
     levels = np.array([0.0, 0.03, 0.0, -0.06, 0.0, 0.09, 0.0, -0.03, 0.0, 0.06])
     held = levels[np.minimum((time_s / 3.0).astype(int), len(levels) - 1)]
@@ -115,7 +115,7 @@ def motions() -> list[tuple[str, Array, Array]]:
 
 
 def compared(shown: Shown) -> Comparison:
-    """The law alone, beside runs in which something is hidden."""
+    """Fit the law alone to runs with a hidden effect, and compare it with them."""
     rig, random = jbf.Rig.thesis(), np.random.default_rng(11)
     own = shown.effects or {}
     names = list(dict.fromkeys(name.partition(".")[0] for name in own))
@@ -133,7 +133,7 @@ def compared(shown: Shown) -> Comparison:
 
 
 def looks(shown: Shown, found: Comparison) -> str:
-    """What the comparison says of it; the axis must be among those that it names."""
+    """Describe the result of the comparison; the axis must be among those that it names."""
     if shown.kind == "frequency":
         return "A line stands out of the noise, and the means along every axis are near zero."
     if shown.kind == "bursts":
@@ -144,7 +144,7 @@ def looks(shown: Shown, found: Comparison) -> str:
 
 
 def draw(shown: Shown, found: Comparison, name: str) -> None:
-    """The picture."""
+    """Draw the picture of a failure."""
     if shown.kind == "frequency":
         ax = jbf.plot.spectrum(found)
     elif shown.kind == "bursts":
@@ -155,12 +155,12 @@ def draw(shown: Shown, found: Comparison, name: str) -> None:
 
 
 def sentence(words: str) -> str:
-    """With a capital and a full stop."""
+    """Return the text with a capital letter and a full stop."""
     return f"{words[0].upper()}{words[1:]}."
 
 
 def page(drawn: bool) -> str:
-    """The page; the pictures too, where they are asked for."""
+    """Return the page, and draw the pictures if `drawn`."""
     parts = [HEAD]
     for shown in SHOWN:
         found = compared(shown)
@@ -193,7 +193,7 @@ and commit in [figures](../reference/figures.md).)*
 
 
 def main() -> int:
-    """Write, or check the words."""
+    """Write the page and pictures, or check the text."""
     if "--check" in sys.argv[1:]:
         return PAGE.read_text(encoding="utf-8") != page(drawn=False)
     IMAGES.mkdir(exist_ok=True)

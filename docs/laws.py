@@ -1,6 +1,6 @@
 """Draw each base law for docs/laws.md: `.venv/bin/python docs/laws.py`.
 
-Friction against speed and against place under a sine of 1 rad/s, and the steady curve.
+Friction against speed and against position under a sine of 1 rad/s, and the steady curve.
 """
 
 from __future__ import annotations
@@ -24,14 +24,17 @@ VALUES = {
     "maxwell_slip": {"F_c_n": 5.0, "sigma_0_n_m": 1e3, "F_v_n_s_m": 20.0},
     "elasto_plastic": {"F_c_n": 5.0, "sigma_0_n_m": 1e3, "F_v_n_s_m": 20.0},
 }
-"""Of each law; what is not named stands at the catalogue's first start. The bristles are soft, so
-that their bending can be seen."""
+"""Parameters of each law.
+
+Parameters without an entry have the first starting value of the catalogue. The bristles are
+compliant, so that their deflection is visible.
+"""
 SPEED_M_S = 0.05
 LINE, STEADY = "#0072B2", "0.45"
 
 
 def figure_of(law: str) -> Figure:
-    """Loops of a law."""
+    """Plot the loops of a law."""
     bearing = "journal" in law
     time_s = np.linspace(0.0, 4.0 * np.pi, 6001)
     speed = SPEED_M_S * np.sin(time_s)

@@ -19,7 +19,7 @@ SMALL = (6.4, 3.6)
 
 
 def main() -> None:
-    """The README's picture, and one of each function of `jbf.plot`."""
+    """Make the README's picture, and one for each function of `jbf.plot`."""
     rig, runs = jbf.read_rig(DEMO / "rig.toml"), jbf.read_runs(DEMO)
     diagnosis = jbf.diagnose(rig, runs)
     figure = Figure(figsize=(11.0, 7.0), layout="constrained")
@@ -28,13 +28,13 @@ def main() -> None:
     folder = HERE / "images" / "plot"
     folder.mkdir(exist_ok=True)
     for name, draw in each(diagnosis).items():
-        # The same picture is the same file: names in it not drawn by lot.
+        # A fixed salt for the identifiers makes the file reproducible.
         with matplotlib.rc_context({"svg.hashsalt": name}):
             jbf.plot.save(draw(one_axes(None, SMALL)), folder / f"{name}.svg")
 
 
 def each(diagnosis: jbf.Diagnosis) -> dict[str, Callable[[Axes], Axes]]:
-    """A picture of each function."""
+    """Return a drawing function for each function of `jbf.plot`."""
     before, after = diagnosis.before, diagnosis.after
     loop = control.run(None, "observed", control.TASKS["velocity sine"])
     plot = jbf.plot

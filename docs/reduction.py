@@ -17,7 +17,7 @@ TITLES = {"journal": "journal clock, $U_{tr}/R$", "thesis": "thesis clock, 1 s$^
 
 
 def main() -> None:
-    """Two panels, one a clock: largest difference over the loop's peak."""
+    """Plot the largest difference relative to the loop's peak, in one panel per clock."""
     printed = subprocess.run(COMMAND, check=True, capture_output=True, text=True, cwd=HERE.parent)
     rows = list(csv.DictReader(printed.stdout.splitlines()))
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")

@@ -1,6 +1,6 @@
 """Make the pictures of docs/workbench.md: `.venv/bin/python docs/workbench_pictures.py`.
 
-The workbench over the demo's data in a headless Chromium (Debian: `apt-get install chromium`).
+The workbench with the demo data in a headless Chromium (Debian: `apt-get install chromium`).
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 
 
 def shot(page: Page, name: str) -> None:
-    """What the window shows."""
+    """Save a screenshot of the window."""
     page.wait_for_timeout(1500)
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     picture.save(HERE / "images" / f"workbench_{name}.png", optimize=True)
 
 
 def models(page: Page, count: int) -> None:
-    """Wait until there are so many, and nothing runs."""
+    """Wait until there are `count` models and no task runs."""
     page.wait_for_selector(f"#models .item:nth-of-type({count + 1}) [data-key^=model-]")
     page.wait_for_selector("[data-key=cancel]", state="detached")
 
 
 def main() -> int:
-    """The story, room by room."""
+    """Take the pictures, page by page."""
     if why_not() is not None:
         print(f"SKIPPED: {why_not()}")
         return 1
@@ -55,7 +55,7 @@ def main() -> int:
         page.keyboard.press("2")
         page.click("[data-key=fail-0]")
         size = page.viewport_size
-        # The pictures of this room are whole a little further down.
+        # The pictures of this page are complete only in a slightly larger window.
         page.set_viewport_size({"width": size["width"], "height": size["height"] + 30})
         shot(page, "see")
         page.set_viewport_size(size)

@@ -1,9 +1,9 @@
 """Source archive and wheel, the same bytes wherever they are built with the same tools.
 
 `python release/build.py --out dist` packs the source archive, unpacks it in an empty folder and
-builds the wheel from there: what the archive lacks, the wheel lacks. `--target
-aarch64-unknown-linux-musl` builds for another machine, with zig as the linker
-(`pip install ziglang`; `rustup target add ...`).
+builds the wheel from there, so that the wheel contains only files of the archive. `--target
+aarch64-unknown-linux-musl` builds for another machine, with zig as the linker (`pip install
+ziglang`; `rustup target add ...`).
 """
 
 from __future__ import annotations
@@ -21,11 +21,14 @@ from steps import ROOT, clean_environment, run, say
 MATURIN = (sys.executable, "-m", "maturin")
 BUILD_FOLDER = "jbf-build-"
 EPOCH = "315532800"
-"""1980, the first instant that a zip file can hold: used where there is no git to ask."""
+"""1980, the first date that a zip file can store: used if git is not available."""
 
 
 def build_environment(source: Path) -> dict[str, str]:
-    """A build's variables: no date but the commit's, no path of this machine in the binary."""
+    """Environment of a reproducible build.
+
+    The date is that of the commit, and the binary contains no path of this machine.
+    """
     environment = clean_environment()
     cargo = Path(environment.get("CARGO_HOME", Path.home() / ".cargo"))
     flags = [f"--remap-path-prefix={source}=/jbf", f"--remap-path-prefix={cargo}=/cargo"]
@@ -47,16 +50,16 @@ def _commit_date() -> str:
 
 
 def pack(out: Path) -> Path:
-    """The source archive."""
-    # As a file: the package itself needs the extension, which is not built yet.
+    """Build the source archive."""
+    # Run as a file: importing the package needs the extension, which is not built yet.
     run([sys.executable, ROOT / "python/jbf/workbench/vendored.py"], cwd=ROOT)
-    # Not `--sdist` of `maturin build`, whose folder would have another name each time.
+    # Not `--sdist` of `maturin build`, which uses a folder with a different name each time.
     run([*MATURIN, "sdist", "--out", out], cwd=ROOT, environment=build_environment(ROOT))
     return max(out.glob("*.tar.gz"), key=lambda path: path.stat().st_mtime)
 
 
 def build(archive: Path, out: Path, extra: list[str]) -> Path:
-    """The wheel of a source archive, from an empty folder."""
+    """Build the wheel of a source archive in an empty folder."""
     with tempfile.TemporaryDirectory(prefix=BUILD_FOLDER) as folder:
         with tarfile.open(archive) as tar:
             tar.extractall(folder, filter="data")
@@ -70,7 +73,7 @@ def build(archive: Path, out: Path, extra: list[str]) -> Path:
 
 
 def main() -> None:
-    """Command line."""
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "dist")
     parser.add_argument("--target", help="Rust's name of another machine; linked by zig")

@@ -1,8 +1,8 @@
 """The licences of what is linked into a wheel: THIRD_PARTY.md, which every wheel brings along.
 
 `python release/licences.py` writes it from the crates that cargo fetched and from the notices of
-the Rust toolchain; `--check` only says whether every crate of Cargo.lock that a wheel links is in
-it as it is.
+the Rust toolchain. `--check` only checks that every crate of Cargo.lock that a wheel links is
+listed correctly.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ docs/dependencies.md.
 
 @dataclass(frozen=True)
 class Library:
-    """One that is linked, with the notice that its licence asks to keep."""
+    """A linked library, with the notice that its licence requires."""
 
     name: str
     version: str
@@ -39,7 +39,7 @@ class Library:
 
     @property
     def row(self) -> str:
-        """Of the table."""
+        """Row of the table."""
         return f"| `{self.name}` | {self.version} | {self.licence} |"
 
 
@@ -65,7 +65,7 @@ def _spdx(licence: str) -> str:
 
 
 def _notice(package: dict[str, str]) -> str:
-    """The text of the licence that is chosen: MIT where there is a choice."""
+    """Return the text of the selected licence: MIT if there is a choice."""
     folder = Path(package["manifest_path"]).parent
     files = sorted(p for p in folder.iterdir() if re.match(r"(?i)licen[cs]e|copying", p.name))
     chosen = [p for p in files if "MIT" in p.name.upper()] or [p for p in files if p.is_file()]
@@ -75,7 +75,7 @@ def _notice(package: dict[str, str]) -> str:
 
 
 def standard_library() -> tuple[str, list[Library]]:
-    """The toolchain's own notices: its version, and the crates in Rust's standard library."""
+    """Return the version of the toolchain and the crates of Rust's standard library."""
     root = Path(run(["rustc", "--print", "sysroot"], cwd=ROOT, quiet=True).strip())
     version = run(["rustc", "--version"], cwd=ROOT, quiet=True).split()[1]
     page = (root / "share/doc/rust/COPYRIGHT-library.html").read_text(encoding="utf-8")
@@ -95,7 +95,7 @@ def standard_library() -> tuple[str, list[Library]]:
 
 
 def written() -> str:
-    """The page."""
+    """Return the page."""
     version, standard = standard_library()
     crates = linked()
     table = "| library | version | licence |\n| --- | --- | --- |\n"
@@ -108,7 +108,7 @@ def written() -> str:
     parts.append(table + "\n".join(library.row for library in standard) + "\n")
     texts: dict[str, list[str]] = defaultdict(list)
     for library in [*crates, *standard]:
-        # Line breaks aside, many of these are one and the same.
+        # Except for line breaks, many of these texts are identical.
         texts[library.notice].append(f"{library.name} {library.version}")
     for text, names in texts.items():
         parts.append(f"## {', '.join(dict.fromkeys(names))}\n\n```text\n{text}\n```\n")
@@ -116,7 +116,7 @@ def written() -> str:
 
 
 def main() -> None:
-    """Command line."""
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true")
     if not parser.parse_args().check:

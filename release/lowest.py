@@ -1,8 +1,8 @@
 """Do the oldest versions that pyproject.toml allows still do?
 
-`python release/lowest.py dist` installs the wheel with each direct dependency at its floor
-(`uv pip install --resolution lowest-direct`), extras included, on Python 3.10 where there is one,
-and runs the tests of `wheel_test.py` and those of the extras.
+`python release/lowest.py dist` installs the wheel with each direct dependency at its lowest allowed
+version (`uv pip install --resolution lowest-direct`), extras included, on Python 3.10 if available.
+It then runs the tests of `wheel_test.py` and those of the extras.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from wheel_test import TESTS, TOOLS, find_wheel, run_tests
 EXTRAS = ("formats", "workbench")
 TESTS_OF_EXTRAS = ("importing/test_formats", "workbench/test_guard", "workbench/test_session")
 FROM_SOURCE = ("mat-io",)
-"""Without wheels; pure Python."""
+"""Pure Python packages without wheels."""
 
 
 def oldest_python() -> str:
-    """Python 3.10, or this one."""
-    # pyenv's command of that name does nothing unless the version is chosen.
+    """Return Python 3.10, or this interpreter."""
+    # pyenv's command of that name does nothing unless the version is selected.
     kept = sorted(Path.home().glob(".pyenv/versions/3.10.*/bin/python3.10"))
     for found in [shutil.which("python3.10"), *map(str, kept)]:
         if found and not subprocess.run([found, "-V"], capture_output=True, check=False).returncode:
@@ -37,7 +37,7 @@ def oldest_python() -> str:
 
 
 def check_floors(installed: dict[str, str]) -> None:
-    """A floor below every version that this Python can have is none, and was not tried."""
+    """Fail if a lowest version was not installed because this Python has no such version."""
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     kept = text[text.index("\ndependencies") : text.index("\ndev = ")]
     wrong = []
@@ -50,7 +50,7 @@ def check_floors(installed: dict[str, str]) -> None:
 
 
 def main() -> None:
-    """Command line."""
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("dist", type=Path, help="a wheel, or the folder of one")
     parser.add_argument("--python", default=oldest_python())
@@ -67,7 +67,7 @@ def main() -> None:
         extras = [word for extra in EXTRAS for word in ("--extra", extra)]
         run([*install, *only, "-r", ROOT / "pyproject.toml", *extras], cwd=folder)
         run([*uv, "install", "--quiet", "--python", python, "--no-deps", wheel], cwd=folder)
-        # Tools of the tests are not what is tried; old starlettes test with httpx.
+        # Test tools are not subject to the lowest versions; old starlettes test with httpx.
         run([*uv, "install", "--quiet", "--python", python, *TOOLS, "httpx", "httpx2"], cwd=folder)
         version = run([python, "-V"], cwd=folder)
         listed = run([*uv, "list", "--python", python, "--format", "json"], cwd=folder, quiet=True)

@@ -1,4 +1,4 @@
-"""What the programs here share: commands, and an environment in which nothing leaks in."""
+"""Common functions of the release programs: commands, and a clean environment."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ _LEAKS = (
     "PYTHON", "VIRTUAL_ENV", "CONDA", "PYTEST", "COVERAGE", "RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS",
     "CARGO_BUILD_", "CARGO_PROFILE_", "CARGO_TARGET_", "CARGO_INCREMENTAL", "MATURIN_", "PYO3_",
 )  # fmt: skip
-"""Beginnings of variables that would bring something of this shell into a build or a test."""
+"""Prefixes of variables that would affect a build or a test."""
 
 
 def clean_environment() -> dict[str, str]:
-    """This process's, without what points at source trees, environments or flags."""
+    """The environment of this process, without variables for source trees, environments or
+    flags.
+    """
     return {k: v for k, v in os.environ.items() if not k.startswith(_LEAKS)}
 
 
 def say(text: str) -> None:
-    """A line about what is done, at once."""
+    """Print a progress line immediately."""
     print(f"-- {text}", flush=True)
 
 
@@ -33,7 +35,7 @@ def run(
     environment: Mapping[str, str] | None = None,
     quiet: bool = False,
 ) -> str:
-    """Run a command, whose failure ends the program with its output; returns what it printed."""
+    """Run a command and return its output; a failure ends the program with that output."""
     words = [str(word) for word in command]
     done = subprocess.run(
         words,
@@ -52,15 +54,15 @@ def run(
 
 
 def make_environment(folder: Path, python: str = sys.executable) -> Path:
-    """A new virtual environment; returns its interpreter."""
-    # Of the interpreter itself, not of an environment that it may stand in.
+    """Create a new virtual environment; returns its interpreter."""
+    # Use the base interpreter, not a virtual environment that contains it.
     base = run([python, "-c", "import sys; print(sys._base_executable)"], cwd=ROOT, quiet=True)
     run([base.strip(), "-m", "venv", folder], cwd=ROOT, quiet=True)
     return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
 def tracked_files() -> list[Path]:
-    """What git keeps, and what is new and not ignored; relative to the root."""
+    """Files tracked by git and new files that are not ignored, relative to the root."""
     listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
     names = run(listed, cwd=ROOT, quiet=True).split("\0")
     return [Path(name) for name in names if name and (ROOT / name).is_file()]

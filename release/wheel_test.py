@@ -1,8 +1,8 @@
 """A wheel as a stranger gets it: installed from a package alone, asked for a diagnosis, tested.
 
-`python release/wheel_test.py dist/*.whl`. A new environment in a folder of its own, nothing
-compiled (`--only-binary`); the tests are copied there without the package, so that what they import
-can only be the installed one.
+`python release/wheel_test.py dist/*.whl`. Uses a new environment in a separate folder, and compiles
+nothing (`--only-binary`). The tests are copied there without the package, so that they can import
+only the installed one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ TESTS = (
     "project/test_lazy_imports", "records/test_channels", "records/test_rig",
     "records/test_run", "reporting/test_text_reports",
 )  # fmt: skip
-"""Some of each package, in a minute or two; none needs an extra or the rest of the tree."""
+"""Some tests of each package, in a minute or two; none needs an extra or the rest of the tree."""
 COPIED = ("python/tests/", "simulator/", "benches/", "pyproject.toml")
 TOOLS = ("pytest>=8", "hypothesis>=6.100", "filelock>=3.12")
 MUST_HOLD = (
@@ -44,7 +44,7 @@ MUST_HOLD = (
 
 
 def find_wheel(place: Path) -> Path:
-    """A wheel, or the only one in a folder."""
+    """Return a wheel, or the only one in a folder."""
     wheels = sorted(place.glob("*.whl")) if place.is_dir() else [place]
     if len(wheels) != 1 or not wheels[0].is_file():
         sys.exit(f"{place} is neither a wheel nor a folder of one")
@@ -52,7 +52,7 @@ def find_wheel(place: Path) -> Path:
 
 
 def check_contents(wheel: Path) -> None:
-    """What a wheel must hold, and what it must not."""
+    """Check the required files of a wheel, and that it contains no others."""
     with zipfile.ZipFile(wheel) as archive:
         contents = {name: archive.read(name) for name in archive.namelist()}
     for wanted in MUST_HOLD:
@@ -67,7 +67,7 @@ def check_contents(wheel: Path) -> None:
 
 
 def first_diagnosis(python: Path, wheel: Path, folder: Path) -> None:
-    """Install and diagnose; ends the program where jbf comes from elsewhere or errs."""
+    """Install and diagnose; exit if jbf is imported from elsewhere or fails."""
     start, before = time.monotonic(), os.times()
     install = [python, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", wheel]
     run(install, cwd=folder)
@@ -91,7 +91,7 @@ def first_diagnosis(python: Path, wheel: Path, folder: Path) -> None:
         f"pip install {installed - start:.0f} s, jbf demo {took - installed:.0f} s, "
         f"{spent:.0f} s of the processor for both"
     )
-    # The same from files, as of one's own rig.
+    # Repeat the diagnosis from files, as for a user's rig.
     own = data / "hidden"
     run([jbf, "diagnose", own / "rig.toml", own, "--json", found], cwd=folder, quiet=True)
     answer = json.loads(found.read_text(encoding="utf-8"))
@@ -100,7 +100,7 @@ def first_diagnosis(python: Path, wheel: Path, folder: Path) -> None:
 
 
 def run_tests(python: Path, folder: Path, tests: list[str]) -> None:
-    """The tests against what is installed."""
+    """Run the tests against the installed package."""
     tree = folder / "tree"
     for name in tracked_files():
         if name.as_posix().startswith(COPIED):
@@ -111,7 +111,7 @@ def run_tests(python: Path, folder: Path, tests: list[str]) -> None:
 
 
 def main() -> None:
-    """Command line."""
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("wheel", type=Path, help="a wheel, or the folder of one")
     parser.add_argument("--python", default=sys.executable, help="another interpreter to test with")

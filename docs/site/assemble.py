@@ -1,8 +1,8 @@
-"""Gather the site's pages in one folder, their links turned to where each page stands there.
+"""Collect the pages of the site in one folder and adapt their links.
 
-The pages are written for the repository, where they link to files beside them. In the site a page
-that lives elsewhere has a place of its own (`pages.OUTSIDE`), and a source file that is linked to
-becomes a page that shows it: a reader with only the site has all of it.
+The pages are written for the repository, where they link to neighbouring files. In the site, pages
+from other places have separate paths (`pages.OUTSIDE`). A linked source file becomes a page that
+shows it, so that the site is complete without the repository.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from pathlib import Path
 from pages import DOCS, LINK, OUTSIDE, ROOT, prose
 
 RUSTDOC = {"reference/jbf_core.md": "jbf_core", "reference/jbf_c.md": "jbf_c"}
-"""Pages beneath whose heading the documentation of a crate is linked to."""
+"""Pages that link to the documentation of a crate below their heading."""
 LEFT_OUT = {".py", ".pyc"}
 LEXERS = {".rs": "rust", ".py": "python", ".toml": "toml", ".h": "c", ".c": "c", ".x": "text"}
 
 
 class Broken(Exception):
-    """A link to nothing."""
+    """A link without a target."""
 
 
 class Source:
@@ -32,9 +32,9 @@ class Source:
         self.broken: list[str] = []
 
     def place(self, page: Path) -> str:
-        """Where a file of the repository stands in the site."""
+        """Return the path of a repository file in the site."""
         if page.is_dir():
-            # What a folder is about is told by its README, of a program by its first lines.
+            # A folder is represented by its README, a program by its main module.
             page = next(
                 (page / n for n in ("README.md", "__main__.py") if (page / n).exists()), page
             )
@@ -49,12 +49,12 @@ class Source:
             return f"notebooks/{page.stem}.md"
         if page.is_dir():
             raise Broken(f"{name} is a folder that nothing tells of")
-        # Folders that begin with a dot are left out of a site.
+        # Folders whose name begins with a dot are omitted from a site.
         self.shown[page] = f"source/{name.lstrip('.')}.md"
         return self.shown[page]
 
     def turned(self, page: Path, text: str) -> str:
-        """The text of a page with its links as they are in the site."""
+        """Return the text of a page with its links adapted to the site."""
         here = os.path.dirname(self.place(page))
         bare = prose(text)
         out, at = [], 0
@@ -77,13 +77,13 @@ class Source:
         return "".join([*out, text[at:]])
 
     def write(self, name: str, text: str) -> None:
-        """A page of the site."""
+        """Write a page of the site."""
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
 
     def show(self) -> None:
-        """The source files that pages link to, each a page."""
+        """Write a page for each source file that pages link to."""
         for path, place in self.shown.items():
             name = path.relative_to(ROOT).as_posix()
             lexer = LEXERS.get(path.suffix, "text")
@@ -94,7 +94,7 @@ class Source:
 
 
 def assemble(folder: Path) -> list[str]:
-    """Fill the folder; returns the links that lead nowhere."""
+    """Fill the folder and return the broken links."""
     shutil.rmtree(folder, ignore_errors=True)
     source = Source(folder)
     for path in sorted(DOCS.rglob("*")):

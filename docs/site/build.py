@@ -1,7 +1,8 @@
 """Build the site: `.venv/bin/python docs/site/build.py`, into `target/site/html`.
 
-Gathers the pages, runs the notebooks, builds all in strict mode (a warning ends it), adds the
-documentation of the crates, and checks what came out: links, anchors, nothing from outside.
+Collects the pages, runs the notebooks, builds the site in strict mode (a warning is an error), adds
+the documentation of the crates, and checks the result for broken links and anchors and for external
+resources.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ CRATES = ("jbf-core", "jbf-batch", "jbf-c")
 
 
 def notebooks(folder: Path) -> None:
-    """The notebooks of examples, run now, as pages with their pictures."""
+    """Run the example notebooks and write them as pages with their pictures."""
     folder.mkdir(parents=True, exist_ok=True)
     convert = [sys.executable, "-m", "nbconvert", "--log-level", "ERROR", "--to", "markdown"]
     subprocess.run(
@@ -34,7 +35,7 @@ def notebooks(folder: Path) -> None:
 
 
 def rust(folder: Path) -> None:
-    """The documentation of the crates, as rustdoc makes it."""
+    """Build the documentation of the crates with rustdoc."""
     named = [word for crate in CRATES for word in ("-p", crate)]
     subprocess.run(
         ["cargo", "doc", "--quiet", "--no-deps", "--target-dir", str(TARGET / "site-doc"), *named],
@@ -47,7 +48,7 @@ def rust(folder: Path) -> None:
 
 
 def main() -> int:
-    """Build; the number of faults."""
+    """Build the site; the exit code is not 0 if there are faults."""
     broken = assemble(SITE / "source")
     for line in broken:
         print(line, file=sys.stderr)
@@ -61,7 +62,7 @@ def main() -> int:
         build, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
     print(done.stdout, end="")
-    # What is wrong with a docstring is said, and strict mode does not count it.
+    # Errors in docstrings are printed, but strict mode ignores them.
     if done.returncode != 0 or re.search(r"^(griffe|WARNING)", done.stdout, re.MULTILINE):
         return 1
     found = faults(SITE / "html", skip=("rust",))

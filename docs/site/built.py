@@ -1,5 +1,4 @@
-"""What must hold of the built pages: each link and anchor leads somewhere, nothing is loaded from
-outside."""
+"""Check the built pages: each link and anchor has a target, and no external resource is loaded."""
 
 from __future__ import annotations
 
@@ -16,7 +15,7 @@ LOADS = {
     "video": "src",
 }
 NO_LOAD = {"canonical", "prev", "next", "license", "author"}
-"""Relations of a `link` that name a page and load none."""
+"""Relations of a `link` that refer to a page without loading it."""
 
 
 class Page(HTMLParser):
@@ -30,7 +29,7 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Keep what matters of a tag."""
+        """Record the links, loads and anchors of a tag."""
         of = {name: value or "" for name, value in attrs}
         self.anchors |= {of[name] for name in ("id", "name") if name in of}
         if tag == "a" and "href" in of:
@@ -41,12 +40,12 @@ class Page(HTMLParser):
 
 
 def outside(address: str) -> bool:
-    """Whether an address is another machine's."""
+    """Whether an address is on another machine."""
     return bool(urlsplit(address).netloc) or urlsplit(address).scheme in ("http", "https", "ftp")
 
 
 def faults(folder: Path, skip: tuple[str, ...] = ()) -> list[str]:
-    """What is wrong with the pages of a site; those under `skip` are linked to, not read."""
+    """List the faults in the pages of a site; pages under `skip` are link targets only."""
     pages = {
         path: Page(path.read_text(encoding="utf-8"))
         for path in sorted(folder.rglob("*.html"))
@@ -56,7 +55,7 @@ def faults(folder: Path, skip: tuple[str, ...] = ()) -> list[str]:
     for path, page in pages.items():
         name = path.relative_to(folder)
         found += [f"{name}: loads {address}" for address in page.loads if outside(address)]
-        # The page for what is not there is served from any depth.
+        # The page for missing addresses is served from any depth.
         if path.name == "404.html":
             continue
         for address in {*page.links, *(a for a in page.loads if not outside(a))}:

@@ -1,6 +1,6 @@
 """Write docs/reference/commands.md from the parsers: `.venv/bin/python docs/site/commands.py`.
 
-`--check` writes nothing, and exits with 1 where the page is not what the parsers say.
+`--check` writes nothing, and exits with 1 if the page differs from the parsers.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Long work shows its progress on a terminal. `--json -` writes to standard output
 def leaves(
     of: argparse.ArgumentParser, about: str = ""
 ) -> Iterator[tuple[argparse.ArgumentParser, str]]:
-    """The parsers of commands that do something, with what each does."""
+    """Generate the parsers of the executable commands, with their descriptions."""
     for action in of._actions:
         if isinstance(action, argparse._SubParsersAction):
             words = {choice.dest: choice.help or "" for choice in action._choices_actions}
@@ -38,12 +38,12 @@ def leaves(
 
 
 def cell(text: str) -> str:
-    """Text in a table."""
+    """Format text for a table cell."""
     return " ".join(text.split()).replace("|", "\\|")
 
 
 def named(action: argparse.Action) -> str:
-    """An argument as one types it."""
+    """Format an argument as it is typed."""
     value = action.metavar if action.metavar is not None else (action.dest or "").upper()
     if action.choices and action.metavar is None:
         value = "{" + ",".join(map(str, action.choices)) + "}"
@@ -55,7 +55,7 @@ def named(action: argparse.Action) -> str:
 
 
 def usage(of: argparse.ArgumentParser) -> str:
-    """A command in a line; argparse's own words differ from one Python to the next."""
+    """Format a command as one line; the usage text of argparse varies with the Python version."""
     shown = {"?": "[{}]", "*": "[{} ...]", "+": "{0} [{0} ...]", None: "{}"}
     needed = [named(a)[1:-1] for a in of._actions if a.option_strings and a.required]
     places = [
@@ -67,7 +67,7 @@ def usage(of: argparse.ArgumentParser) -> str:
 
 
 def section(of: argparse.ArgumentParser, about: str) -> str:
-    """A command."""
+    """Return the section of a command."""
     lines = [f"## {of.prog}", (of.description or about).strip(), ""]
     lines += ["```text", usage(of), "```", "", "| argument | what |", "| --- | --- |"]
     for group in of._action_groups:
@@ -83,12 +83,12 @@ def section(of: argparse.ArgumentParser, about: str) -> str:
 
 
 def page() -> str:
-    """The whole page."""
+    """Return the complete page."""
     return "\n".join([HEAD, *(section(of, about) for of, about in leaves(parser()))])
 
 
 def main() -> int:
-    """Write or check."""
+    """Write the page or check it."""
     text = page()
     if "--check" in sys.argv[1:]:
         return PAGE.read_text(encoding="utf-8") != text

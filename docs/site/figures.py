@@ -1,9 +1,9 @@
 """Make every picture and generated page anew, from one commit: `make figures`.
 
-Writes docs/reference/figures.md: which command made what, on which machine, from which commit.
-Scripts that are named are run alone (`make figures ONLY=...`, which builds this commit's extension
-first); of the others the page tells the commit that brought what stands there now.
-`--as-committed` makes nothing, and tells that of all.
+Writes docs/reference/figures.md: the command that made each file, the machine and the commit. If
+scripts are named, only these run (`make figures ONLY=...`, which first builds this commit's
+extension); for the others the page gives the commit that last changed their files. With
+`--as-committed` nothing runs, and the page gives that commit for all files.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SCRIPTS = {
     "docs/workbench_pictures.py": ("images/workbench_*.png",),
     "docs/site/commands.py": ("reference/commands.md",),
 }
-"""What each script writes, beside docs."""
+"""Files written by each script, relative to docs."""
 NOT_ANEW = {
     "images/detection.png": "a day of campaigns (`benches/hidden_effects`, seed 701, 784478f), "
     "not made anew",
@@ -45,12 +45,12 @@ HEAD = """# Figures: command, machine, commit
 
 
 def said(*command: str) -> str:
-    """What a command prints."""
+    """Return the output of a command."""
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
 
 
 def commit() -> str:
-    """The commit, and whether what the figures depend on differs from it."""
+    """Return the commit, marked if the sources of the figures differ from it."""
     changed = said("git", "status", "--porcelain", "python", "crates", "docs/*.py", "simulator")
     return said("git", "rev-parse", "--short", "HEAD").strip() + (
         " with changes" if changed else ""
@@ -58,7 +58,7 @@ def commit() -> str:
 
 
 def machine() -> str:
-    """Processor, cores, Python."""
+    """Describe processor, cores and Python version."""
     info = Path("/proc/cpuinfo")
     named = [
         line.partition(":")[2].strip()
@@ -70,13 +70,13 @@ def machine() -> str:
 
 
 def brought(names: tuple[str, ...]) -> str:
-    """The commit that last changed what a script writes, and its day."""
+    """Return the commit that last changed the files of a script, and its date."""
     paths = [f"docs/{name}" for name in names]
     return said("git", "log", "-1", "--format=%h, %as", "--", *paths).strip()
 
 
 def write(rows: list[tuple[str, tuple[str, ...], str]], told: str) -> None:
-    """The page."""
+    """Write the page."""
     lines = ["| beside `docs` | made by | commit |", "| --- | --- | --- |"]
     for script, names, source in rows:
         shown = ", ".join(f"`{name}`" for name in names)
@@ -87,7 +87,7 @@ def write(rows: list[tuple[str, tuple[str, ...], str]], told: str) -> None:
 
 
 def main() -> int:
-    """Run all, or those that are named; stop at the first that fails."""
+    """Run all scripts, or those that are named; stop at the first that fails."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scripts", nargs="*", metavar="SCRIPT", help="such as docs/laws.py")
     parser.add_argument("--as-committed", action="store_true")
@@ -96,7 +96,7 @@ def main() -> int:
         parser.error(f"{unknown[0]} makes no figure; these do: {', '.join(SCRIPTS)}")
     made = [] if asked.as_committed else asked.scripts or list(SCRIPTS)
     source = commit()
-    # The date that matplotlib writes into SVG is the commit's.
+    # The date that matplotlib writes into SVG files is that of the commit.
     dated = {**os.environ, "SOURCE_DATE_EPOCH": said("git", "log", "-1", "--format=%ct").strip()}
     for script in made:
         start = time.monotonic()

@@ -1,4 +1,4 @@
-"""What the pages are: text, code blocks, links, and where each stands in the site."""
+"""The pages of the documentation: text, code blocks, links, and their paths in the site."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OUTSIDE = {
     "crates/jbf-c/README.md": "reference/jbf_c.md",
     "examples/firmware/README.md": "project/firmware.md",
 }
-"""Pages that live beside what they are about, and where they stand in the site."""
+"""Pages stored next to their subject, and their paths in the site."""
 
 FENCE = re.compile(
     r"^(?P<ticks>`{3,})(?P<info>[^`\n]*)\n(?P<body>.*?)^(?P=ticks)[ \t]*$", re.M | re.S
@@ -32,7 +32,7 @@ LINK = re.compile(r"(?P<head>!?\[(?:[^\[\]]|\[[^\]]*\])*\]\()(?P<target>[^)\s]+)
 
 @dataclass(frozen=True)
 class Block:
-    """A code block: its language, the name of the file that it is, its text, its line."""
+    """A code block: its language, the name of its file, its text and its line."""
 
     language: str
     title: str
@@ -41,18 +41,18 @@ class Block:
 
 
 def every_page() -> list[Path]:
-    """All pages, those of the site and the README, in an order that stays."""
+    """Return all pages of the site and the README, in a fixed order."""
     found = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
     return [*found, *(ROOT / name for name in OUTSIDE if (ROOT / name).exists())]
 
 
 def name_of(page: Path) -> str:
-    """A page's path from the root of the repository."""
+    """Return a page's path relative to the root of the repository."""
     return page.resolve().relative_to(ROOT).as_posix()
 
 
 def blocks(text: str) -> list[Block]:
-    """The code blocks of a page, in their order."""
+    """Return the code blocks of a page, in order."""
     found = []
     for match in FENCE.finditer(text):
         info = match["info"].strip()
@@ -64,7 +64,7 @@ def blocks(text: str) -> list[Block]:
 
 
 def prose(text: str) -> str:
-    """A page with blanks in the place of its code, where what looks like a link is none."""
+    """Return a page with its code replaced by blanks, so that code contains no links."""
     blank = re.compile(r"[^\n]")
     text = FENCE.sub(lambda match: blank.sub(" ", match[0]), text)
     return re.sub(r"(`+)(?:(?!\1).)+?\1", lambda m: "`" * len(m[0]), text)

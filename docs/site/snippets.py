@@ -1,20 +1,20 @@
-"""Run a page as a reader would: from top to bottom, in an empty folder, what it shows compared.
+"""Run the code of a page from top to bottom in an empty folder, and compare the shown output.
 
 `.venv/bin/python docs/site/snippets.py PAGE...`
 
 - a block with `title="NAME"` is a file of that name;
-- `python` runs in one interpreter a page, `sh` in bash, in the folder where the last block left it;
-- `output` is what the block before it prints: each line, in that order, blanks aside; `...` leaves
-  out any lines, and within a line any words;
+- `python` runs in one interpreter per page, `sh` in bash, in the folder where the last block ended;
+- `output` is the output of the block before it: each line, in that order, except for blanks; `...`
+  omits any lines, and within a line any words;
 - `text` and blocks without a language are prose;
-- a first line `# in a clone of the repository` has a block run at its root;
-- a first line `# not tested: WHY`, and a shell line that ends in `(not tested: WHY)`, are not run;
+- a first line `# in a clone of the repository` runs a block at its root;
+- a first line `# not tested: WHY`, or a shell line that ends in `(not tested: WHY)`, is not run;
 - `<!-- needs: TOOL... -->` names programs and targets of Rust without which a page is skipped;
-- `<!-- given: NAME -->` in a page puts what the text presumes into the folder (`GIVEN`);
-  another word after it says of what.
+- `<!-- given: NAME -->` in a page copies the files that the text presumes into the folder
+  (`GIVEN`); further words are its arguments.
 
-A page that has other code (`rust`, `c`, ...) without a title is at fault, unless `ELSEWHERE` says
-which test compiles it.
+A page that has other code (`rust`, `c`, ...) without a title is at fault, unless `ELSEWHERE` names
+the test that compiles it.
 """
 
 from __future__ import annotations
@@ -43,15 +43,15 @@ SIMULATOR = ROOT / "simulator"
 DEMO = ROOT / "python" / "jbf" / "data" / "demo" / "hidden"
 WHY = re.compile(r"not tested: (\S+ \S+ [^)\n]+)")
 SECONDS = 1800
-"""A shell block that takes longer hangs; a busy machine is slow."""
+"""A shell block that takes longer is considered to hang; a busy machine is slow."""
 
 
 class Wrong(Exception):
-    """A page that does not do what it shows."""
+    """A page whose code does not give the shown result."""
 
 
 def _campaign(folder: Path) -> None:
-    """A rig with its runs, runs left aside, planned ones, and models: the shipped data."""
+    """Copy the shipped data: a rig with its runs, further runs, planned runs, and models."""
     import jbf
 
     shutil.copy(DEMO / "rig.toml", folder / "rig.toml")
@@ -71,7 +71,7 @@ def _campaign(folder: Path) -> None:
 
 
 def _warm_campaign(folder: Path) -> None:
-    """The same rig, warming, with a seal that grips as it warms."""
+    """Copy the same rig with rising temperature and a seal whose friction grows with it."""
     import jbf
     import numpy as np
 
@@ -92,12 +92,12 @@ def _warm_campaign(folder: Path) -> None:
 
 
 def _schema(folder: Path) -> None:
-    """What the site publishes."""
+    """Copy the published schema."""
     shutil.copy(ROOT / "docs" / "schema" / "results.json", folder)
 
 
 def _measurement(folder: Path) -> None:
-    """A bench's log of six tests, in German."""
+    """Write a log of six tests on a test bench, in German."""
     sys.path.insert(0, str(SIMULATOR))
     from rigsim import axis_campaign
 
@@ -118,7 +118,7 @@ def _measurement(folder: Path) -> None:
 
 
 def _joint(folder: Path) -> None:
-    """Recordings of a robot joint behind a gear."""
+    """Write recordings of a robot joint behind a gear."""
     import numpy as np
 
     sys.path.insert(0, str(SIMULATOR))
@@ -137,7 +137,7 @@ def _joint(folder: Path) -> None:
 
 
 def _effect(folder: Path, name: str) -> None:
-    """Runs with an effect in them."""
+    """Write runs with an effect."""
     sys.path.insert(0, str(DOCS))
     import effects
 
@@ -156,12 +156,12 @@ IN_A_CLONE = "# in a clone of the repository"
 
 
 def squeezed(text: str) -> str:
-    """Words with one blank between them."""
+    """Collapse whitespace to single blanks."""
     return " ".join(text.split())
 
 
 def compare(shown: str, said: str) -> None:
-    """Each shown line is among what was said, in that order."""
+    """Check that the shown lines occur in the output in this order."""
     lines, at = [squeezed(line) for line in said.splitlines()], 0
     for wanted in (squeezed(line) for line in shown.splitlines()):
         if wanted in ("", "..."):
@@ -175,7 +175,7 @@ def compare(shown: str, said: str) -> None:
 
 
 def told_why(line: str) -> bool:
-    """Whether a line says that it is not run; a reason has three words or more."""
+    """Whether a line is marked as not tested; the reason must have three words or more."""
     if "not tested" not in line:
         return False
     if not WHY.search(line):
@@ -184,7 +184,7 @@ def told_why(line: str) -> bool:
 
 
 def missing(page: Path) -> list[str]:
-    """What a page needs and this machine lacks: programs, targets of Rust that cannot be had."""
+    """Return what a page needs and this machine lacks: programs and Rust targets."""
     found = re.findall(r"<!-- needs: (.*?) -->", page.read_text(encoding="utf-8"))
     return [name for name in " ".join(found).split() if not _is_there(name)]
 
@@ -200,7 +200,7 @@ def _is_there(name: str) -> bool:
 
 
 class Reader:
-    """Someone who follows a page."""
+    """Runs the blocks of a page in sequence."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -208,7 +208,7 @@ class Reader:
         self.said: str | None = None
 
     def follow(self, block: Block) -> None:
-        """Do what a block says."""
+        """Execute a block."""
         first = block.body.split("\n", 1)[0]
         if first.lstrip("#/ ").startswith("not tested") and told_why(first):
             self.said = None
@@ -228,9 +228,9 @@ class Reader:
             raise Wrong(f"`{block.language}` is neither run nor a file (title=)")
 
     def python(self, block: Block) -> str:
-        """What a block prints."""
+        """Return the output of a Python block."""
         printed = io.StringIO()
-        # Line numbers of a traceback are the page's.
+        # Line numbers of a traceback are those of the page.
         code = compile("\n" * block.row + block.body, "the page", "exec")
         here = os.getcwd()
         os.chdir(self.folder)
@@ -242,7 +242,7 @@ class Reader:
         return printed.getvalue()
 
     def shell(self, body: str) -> str:
-        """What the lines of a block print; where they end the next block begins."""
+        """Return the output of a shell block; the next block starts in its last folder."""
         kept = [line for line in body.splitlines() if not told_why(line)]
         place = self.folder / ".folder"
         script = "\n".join([*kept, f'pwd > "{place}"'])
@@ -267,7 +267,7 @@ class Reader:
 
 
 def run(page: Path, keep: Path | None = None) -> None:
-    """Follow a page; raises `Wrong` with the row."""
+    """Run a page; raises `Wrong` with the row."""
     text = page.read_text(encoding="utf-8")
     name = name_of(page)
     with tempfile.TemporaryDirectory() as temporary:

@@ -1,9 +1,9 @@
 """Processor time of `jbf.control.run` for 100 s of loop at 2 ms (50,000 steps), plant and log too.
 
 `python benches/control_runs.py` prints the median and the least of several runs for each scheme.
-The task is the velocity sine of Table 6.2. The benches are the thesis's with its elastic belt, the
-same without a belt (`rigid`), and one with every effect of the catalogue that needs no thermometer,
-at its starting values (`all effects`).
+The task is the velocity sine of Table 6.2. The bench is the thesis's with its elastic belt, or
+without it (`rigid`). `all effects` has every effect of the catalogue that needs no thermometer, at
+its starting values.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
-//! A trajectory to a tolerance: two periods of U = 0.127 sin(w t), 2000 samples on the second, as
-//! task T2 (reduced, 1e-6) and T3 (with inertia, 1e-5) of `peers.py` have them.
+//! A trajectory to a tolerance: two periods of U = 0.127 sin(w t), with 2000 samples on the second.
+//!
+//! These are the tasks T2 (reduced, 1e-6) and T3 (with inertia, 1e-5) of `peers.py`.
 
 use criterion::Criterion;
 use jbf_benches::{law, LOAD_N};

@@ -1,5 +1,6 @@
-//! A recorded run of 60 s at 50 samples/s, with inner steps of 2 ms and of 20 ms: what a fit
-//! pays for one prediction, and for one with four derivatives.
+//! A recorded run of 60 s at 50 samples/s, with inner steps of 2 ms and of 20 ms.
+//!
+//! The times are those of one prediction in a fit, and of one with four derivatives.
 
 use criterion::{Criterion, Throughput};
 use jbf_benches::{chain, two_way};

@@ -1,4 +1,4 @@
-//! What the benchmarks share: Table 4.2 over any scalar, chains, and a sampled motion.
+//! Shared code of the benchmarks: Table 4.2 for any scalar, chains, and a sampled motion.
 
 pub mod steps;
 
@@ -12,7 +12,7 @@ pub const LOAD_N: f64 = 104.0;
 /// Step of the thesis's control loop, s.
 pub const LOOP_STEP_S: f64 = 0.002;
 
-/// Table 4.2 on the journal clock; `lift` may make derivatives of the four parameters.
+/// Table 4.2 on the journal clock; `lift` may attach derivatives to the four parameters.
 pub fn law<T: Real>(lift: impl Fn(usize, f64) -> T) -> Journal<T> {
     let p = Parameters::TABLE_4_2;
     let parameters = Parameters {
@@ -24,7 +24,7 @@ pub fn law<T: Real>(lift: impl Fn(usize, f64) -> T) -> Journal<T> {
     Journal::new(&Bearing::THESIS, LOAD_N, &parameters, Clock::Journal).expect("Table 4.2 is valid")
 }
 
-/// The same law with the named effects at their starting values.
+/// This law with the named effects at their starting values.
 pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain<T, Journal<T>> {
     let mut all = Effects::NONE;
     for info in CATALOGUE.iter().filter(|info| effects.contains(&info.name)) {
@@ -43,7 +43,7 @@ pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain
     }
 }
 
-/// Two-way motion of chapter 4, U = 0.127 sin(t), at a time.
+/// Motion in both directions of chapter 4, U = 0.127 sin(t), at a time.
 pub fn two_way<T: Real>(time_s: f64) -> Motion<T> {
     let (sin, cos) = time_s.sin_cos();
     Motion::at_rest(T::of(LOAD_N))
@@ -53,8 +53,9 @@ pub fn two_way<T: Real>(time_s: f64) -> Motion<T> {
         .with_angle_rad(T::of(0.127 * (1.0 - cos) / Bearing::THESIS.radius_m))
 }
 
-/// A period of it at the loop's step, so that a benchmark meets reversals and full film in
-/// their due shares.
+/// One period of this motion at the loop's step.
+///
+/// A benchmark thus includes reversals and full film in realistic proportions.
 pub fn period<T: Real>() -> Vec<Motion<T>> {
     (0..3142)
         .map(|i| two_way(LOOP_STEP_S * f64::from(i)))

@@ -1,9 +1,11 @@
-//! Everything that a loop may step, under one name each. Criterion, the budget and the instruction
-//! counts all go over this list; a law or an effect of a catalogue is in it by itself. To add
-//! another kind of thing, write a function like those below and call it in [`all`].
+//! Every component that a control loop can step, each with a name.
 //!
-//! All go through whole periods of U = 0.127 sin(t) at 2 ms, so that reversals, contact and full
-//! film come in their due shares.
+//! Criterion, the time budget and the instruction counts use this list. Laws and effects of the
+//! catalogues are included automatically. To add another kind of component, write a function like
+//! those below and call it in [`all`].
+//!
+//! All components run through whole periods of U = 0.127 sin(t) at 2 ms, so that reversals, contact
+//! and full film occur in realistic proportions.
 
 use crate::{chain, law, period, LOAD_N, LOOP_STEP_S};
 use jbf_core::compensator::Compensator;
@@ -19,16 +21,16 @@ use jbf_trace::loops::{coulomb_observer, each, velocity_observer, LoopVisitor};
 use jbf_trace::{asked, Shaft, LOOP_STEPS};
 use std::hint::black_box;
 
-/// Steps in a period of the motion.
+/// Steps per period of the motion.
 pub const PERIOD: u64 = 3141;
 
-/// Someone who wants to see things step.
+/// An observer of stepped components.
 pub trait Watch {
-    /// `steps(n)` takes `n` steps of the thing of that name, on from where it was.
+    /// `steps(n)` makes `n` steps of the named component, continuing from its state.
     fn watch(&mut self, name: &str, steps: &mut dyn FnMut(u64));
 }
 
-/// Everything.
+/// Steps every component.
 pub fn all(watch: &mut impl Watch) {
     laws::<f64>(watch, "f64");
     laws::<f32>(watch, "f32");
@@ -39,7 +41,7 @@ pub fn all(watch: &mut impl Watch) {
     loops::<f32>(watch, "f32");
 }
 
-/// Call `step` with the ends of each step of the motion in turn.
+/// Calls `step` with the start and end of each step of the motion in turn.
 fn along<T: Real, O>(
     watch: &mut impl Watch,
     name: &str,
@@ -69,7 +71,7 @@ struct Bare<'a, W> {
 impl<T: Real, W: Watch> Visitor<T> for Bare<'_, W> {
     type Output = ();
 
-    /// The law by itself: film or memory, friction, bristle.
+    /// The law alone: film or memory, friction, bristle.
     fn visit<L: Named<T>>(self, law: L) {
         let mut state = law.start(T::of(LOAD_N));
         let mut before = T::ZERO;
@@ -88,7 +90,7 @@ impl<T: Real, W: Watch> Visitor<T> for Bare<'_, W> {
     }
 }
 
-/// Every law of the catalogue, with its own stepper, at the values where its fits start.
+/// Every law of the catalogue with its own stepper, at its starting values.
 fn laws<T: Real>(watch: &mut impl Watch, kind: &str) {
     for page in law::CATALOGUE {
         let values: Vec<T> = page.parameters.iter().map(|p| T::of(p.starts[0])).collect();
@@ -107,7 +109,7 @@ fn laws<T: Real>(watch: &mut impl Watch, kind: &str) {
     }
 }
 
-/// Every stepper, on the films that it is for, and the friction after it.
+/// Every stepper with the films that it supports, and the friction after it.
 fn steppers<T: Real>(watch: &mut impl Watch, kind: &str) {
     let reduced = law::<T>(|_, v| T::of(v));
     let p = Parameters::TABLE_4_2;
@@ -152,8 +154,10 @@ fn one_chain<T: Real>(
     along(watch, name, |_, to| chain.step(&mut state, to, dt_s));
 }
 
-/// The signal chain round the first law: without effects, with each, with all, and with the
-/// derivatives of the four parameters carried along.
+/// The signal chain with the first law.
+///
+/// Without effects, with each effect, with all, and with derivatives with respect to the four
+/// parameters.
 fn chains(watch: &mut impl Watch) {
     let all: Vec<&str> = CATALOGUE.iter().map(|info| info.name).collect();
     one_chain(watch, "chain/none/f64", &[], |_, v| v);
@@ -174,8 +178,9 @@ struct Looped<'a, W> {
 }
 
 impl<T: Real, W: Watch> LoopVisitor<T> for Looped<'_, W> {
-    /// A whole loop, counter to voltage, along what its encoder showed once: a closed loop would
-    /// measure the shaft too.
+    /// A complete loop from counter to voltage, along recorded encoder readings.
+    ///
+    /// A closed loop would also measure the simulation of the shaft.
     fn visit<C: Compensator<T>>(
         &mut self,
         name: &'static str,
@@ -204,7 +209,7 @@ impl<T: Real, W: Watch> LoopVisitor<T> for Looped<'_, W> {
     }
 }
 
-/// Observers by themselves, and every loop round a compensator.
+/// Observers alone, and every loop with a compensator.
 fn loops<T: Real>(watch: &mut impl Watch, kind: &str) {
     let observer = velocity_observer::<T>().expect("valid");
     let mut velocity = T::ZERO;

@@ -1,8 +1,8 @@
 """Build the site: `.venv/bin/python docs/site/build.py`, into `target/site/html`.
 
-Collects the pages, runs the notebooks, builds the site in strict mode (a warning is an error), adds
-the documentation of the crates, and checks the result for broken links and anchors and for external
-resources.
+Collects the pages, runs the notebooks, builds the site in strict mode (a warning is an error), and
+adds the documentation of the crates. Checks the result for broken links and anchors and for
+external resources.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
-//! What each thing costs of the 2 ms of a control loop, as a table. A word on the command line
-//! keeps the names that hold it:
+//! Time of each component relative to the 2 ms of a control loop, as a table.
+//!
+//! An argument selects the names that contain it:
 //!
 //! `cargo run --release -p jbf-benches --bin budget -- chain/`
 
@@ -7,7 +8,7 @@ use jbf_benches::steps::{all, Watch, PERIOD};
 use jbf_benches::LOOP_STEP_S;
 use std::time::Instant;
 
-/// Batches of one period, of which the middle time counts.
+/// Number of batches of one period; the median time counts.
 const BATCHES: usize = 41;
 
 struct Budget {

@@ -1,10 +1,11 @@
-//! Steps for `benches/counts.py`, which runs this under callgrind: a call of the mark parts one
-//! thing from the next, and the names go to standard output in their order.
+//! Steps for `benches/counts.py`, which runs this program under callgrind.
+//!
+//! A call of the mark separates the components; their names are printed in order.
 
 use jbf_benches::steps::{all, Watch, PERIOD};
 use std::hint::black_box;
 
-/// Callgrind writes down what it counted since the last mark.
+/// Callgrind writes its counts since the last mark.
 #[inline(never)]
 fn jbf_counts_mark() {
     black_box(());
@@ -15,7 +16,7 @@ struct Counted;
 impl Watch for Counted {
     fn watch(&mut self, name: &str, steps: &mut dyn FnMut(u64)) {
         println!("{name}");
-        // Half a period first, so that no run counts its own beginning.
+        // Run half a period first, so that the initial steps are not counted.
         steps(PERIOD / 2);
         jbf_counts_mark();
         steps(PERIOD);

@@ -1,6 +1,8 @@
-//! Task T1 for `benches/peers.py`, which takes turns with it: 50,000 steps of the reduced law along
-//! U = 0.127 sin(t/4) at 2 ms, friction stored at every step. A line in, such as `euler f64`;
-//! nanoseconds a step and the last friction coefficient out.
+//! Task T1 for `benches/peers.py`, which alternates with it.
+//!
+//! 50,000 steps of the reduced law along U = 0.127 sin(t/4) at 2 ms, with friction stored at every
+//! step. It reads a line such as `euler f64`, and prints nanoseconds per step and the last friction
+//! coefficient.
 
 use jbf_benches::{law, LOAD_N, LOOP_STEP_S};
 use jbf_core::law::journal::{Journal, State};
@@ -12,7 +14,7 @@ use std::time::Instant;
 
 const STEPS: usize = 50_000;
 
-/// `halves` holds the speed at every half step.
+/// `halves` contains the speed at every half step.
 #[inline(never)]
 fn run<T: Real>(
     law: &Journal<T>,

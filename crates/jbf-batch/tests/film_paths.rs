@@ -1,4 +1,6 @@
-//! Paths of films side by side: the bits of each stepped alone, on any instruction set.
+//! Paths of several films computed together equal, to the bit, those computed one by one.
+//!
+//! This holds for every instruction set.
 
 use jbf_batch::{film_paths, Simd};
 use jbf_core::film_path::FilmStep;
@@ -15,7 +17,7 @@ fn law(i: usize, k0: f64) -> Journal<f64> {
     Journal::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal).expect("valid")
 }
 
-/// Steps of unlike lengths under a load of its own, which is not the constructor's.
+/// Steps of different lengths under a load that differs from the constructor's.
 fn steps(count: usize, motion: usize, longest_s: f64) -> Vec<FilmStep> {
     let speed = |t: f64| 0.127 * (t * (0.4 + 0.3 * motion as f64)).sin().abs();
     let mut time_s = 0.0;
@@ -45,7 +47,7 @@ fn alone(law: &Journal<f64>, steps: &[FilmStep]) -> Vec<f64> {
 
 #[test]
 fn the_bits_of_each_alone() {
-    // As many as fill one block, less, more; of a motion each, or some of one.
+    // Fewer films than a block, exactly a block, and more; with separate or shared motions.
     for count in [1, 7, 16, 30, 45] {
         let motions: Vec<Vec<FilmStep>> = (0..count)
             .map(|m| steps(50 + 37 * (m % 6), m / 5, 0.02))
@@ -61,7 +63,7 @@ fn the_bits_of_each_alone() {
     }
 }
 
-/// A film that a coarse step carries out of its bearing has no path; its neighbours have theirs.
+/// A film that leaves its bearing in a coarse step has no path; the other films have theirs.
 #[test]
 fn what_leaves_the_bearing_is_told() {
     let coarse = steps(200, 1, 5.0);

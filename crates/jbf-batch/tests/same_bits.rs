@@ -1,5 +1,7 @@
-//! The same bits on any instruction set and any number of threads, and those of the core
-//! stepping one set after the other: also where steps are so coarse that films are held.
+//! Results are identical to the bit for every instruction set and number of threads.
+//!
+//! They equal those of the core stepping one set after the other, even where steps are so coarse
+//! that films are held.
 
 use jbf_batch::{Batch, Films, Float, Method, Simd, Speeds};
 use jbf_core::law::journal::{Journal, Parameters};
@@ -9,7 +11,7 @@ use jbf_core::{Bearing, Clock};
 
 const SAMPLES: usize = 300;
 
-/// Sets over the printed tables' range: not a multiple of any block.
+/// Parameter sets over the range of the printed tables; their number is not a multiple of a block.
 fn laws<F: Float>(sets: usize) -> Vec<Journal<F>> {
     let share = |i: usize, k: usize| 0.8 + 0.4 * ((i * 37 + k * 101) % 97) as f64 / 97.0;
     (0..sets)
@@ -26,13 +28,13 @@ fn laws<F: Float>(sets: usize) -> Vec<Journal<F>> {
         .collect()
 }
 
-/// Two-way motion with rests at zero, sets out of phase where `set` differs.
+/// Motion in both directions with rests at zero; sets are out of phase where `set` differs.
 fn speed<F: Float>(sample: usize, set: usize) -> F {
     let wave = (0.03 * sample as f64 + set as f64).sin();
     F::of(if wave.abs() < 0.1 { 0.0 } else { 0.127 * wave })
 }
 
-/// One set after the other, with the core.
+/// Step one set after the other with the core.
 fn alone<F: Float>(batch: &Batch<F>, dt_s: F, u: impl Fn(usize, usize) -> F) -> (Vec<F>, Films<F>) {
     let mut films = batch.start();
     let laws = laws::<F>(films.0.len());
@@ -122,7 +124,7 @@ fn single_precision() {
     }
 }
 
-/// Steps so coarse that films leave the bearing: they are held as the core holds them.
+/// With steps so coarse that films leave the bearing, they are held as in the core.
 #[test]
 fn held_films() {
     assert!(agree::<f64>(40, Method::Euler, 0.3) > 0);

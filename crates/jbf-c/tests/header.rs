@@ -1,4 +1,4 @@
-//! The header declares what the library has, with the sizes that it has.
+//! The declarations of the header match the library, including the sizes.
 
 use jbf_c::SIZES;
 use jbf_core::law::CATALOGUE;

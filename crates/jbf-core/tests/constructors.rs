@@ -10,7 +10,7 @@ fn build(bearing: Bearing, load_n: f64, p: Parameters<f64>) -> Result<(), Error>
     Journal::new(&bearing, load_n, &p, Clock::Journal).map(|_| ())
 }
 
-/// `kappa0 (eps - eps_tr)/(eps_b - eps_tr)` and `K0 (eps - eps_tr)` are one line.
+/// `kappa0 (eps - eps_tr)/(eps_b - eps_tr)` and `K0 (eps - eps_tr)` are the same line.
 #[test]
 fn original_form_is_the_same_stiffness() {
     let eps_tr = 0.9723504945734831;
@@ -20,7 +20,7 @@ fn original_form_is_the_same_stiffness() {
         let original = kappa0 * (eps - eps_tr) / (eps_b - eps_tr);
         assert!((k0 * (eps - eps_tr) / original - 1.0).abs() < 1e-14);
     }
-    // And back: the eps_b that gives Table 4.2 its K0.
+    // Conversely: the eps_b that gives Table 4.2 its K0.
     let eps_b = eps_tr + 18_000.0 / 7.5e5;
     assert!(
         (k0_from_original(18_000.0, eps_b, eps_tr).expect("valid") / 7.5e5 - 1.0).abs() < 1e-12
@@ -54,7 +54,7 @@ fn sizes_of_the_bearing_are_named() {
         (good.with_mass_kg(f64::INFINITY), "mass_kg"),
         (good.with_viscosity_pa_s(0.0), "viscosity_pa_s"),
         (good.with_count(0), "count"),
-        // Finite each, but together beyond the numbers.
+        // Each value is finite, but the combination overflows.
         (good.with_length_m(1e-200), "load_number"),
     ] {
         let error = build(bearing, 104.0, Parameters::TABLE_4_2).expect_err(name);
@@ -62,7 +62,7 @@ fn sizes_of_the_bearing_are_named() {
     }
 }
 
-/// A load that is a number, one over which is none.
+/// The load is representable, but the load number that follows from it is not.
 #[test]
 fn a_load_too_small_for_the_number_is_named() {
     for load_n in [1e-39, 1e-310] {
@@ -101,7 +101,7 @@ fn parameters_of_the_law_are_named() {
             assert!(error.to_string().contains("must be"), "{error}");
         }
     }
-    // A bearing without asperity friction or without viscous friction is a bearing.
+    // A bearing without asperity friction or without viscous friction is valid.
     assert!(build(
         Bearing::THESIS,
         104.0,

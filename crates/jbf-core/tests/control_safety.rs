@@ -1,5 +1,7 @@
-//! Whatever a loop meets, its output stays a finite voltage within the limit, it says what is
-//! wrong, learns nothing meanwhile, falls back to its control law, and comes back.
+//! For any input the output of a loop stays a finite voltage within the limit.
+//!
+//! The loop reports the fault, learns nothing while it lasts, falls back to its control law, and
+//! recovers.
 
 #[macro_use]
 mod common;
@@ -12,7 +14,7 @@ use jbf_core::controller::{Controller, Status};
 use jbf_core::reference::Target;
 use jbf_core::Real;
 
-/// A step of 10 rad: the position comes there, whatever compensates, and stays.
+/// After a step of 10 rad the position settles there with every compensator.
 #[test]
 fn a_step_of_ten_radians() {
     with_each_compensator!(f64, Control::Position, |name, controller| {
@@ -24,13 +26,14 @@ fn a_step_of_ten_radians() {
                 last = last.max((bench.shaft.angle_rad - 10.0).abs());
             }
         }
-        // Friction alone holds the bare law 0.43 rad off (its stuck observer gives 1.88 V/rad).
+        // Friction alone causes 0.43 rad error with the bare law (its stuck observer gives 1.88
+        // V/rad).
         let bound = if name == "none" { 0.6 } else { 0.3 };
         assert!(last < bound, "{name}: {last} rad off");
     });
 }
 
-/// The load doubles in full run, and falls to half: speed comes back.
+/// When the load doubles in motion and then falls to half, the speed recovers.
 #[test]
 fn the_load_doubles() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
@@ -48,8 +51,8 @@ fn the_load_doubles() {
             }
             assert!(parts.output_v.abs() < 10.0, "{name}");
         }
-        // Without compensation twice the friction, 1.2 V, is 0.93 rad/s; laps of another load
-        // must first be forgotten.
+        // Without compensation twice the friction, 1.2 V, is 0.93 rad/s; periods learned under
+        // another load must first be forgotten.
         let bound = match name {
             "none" | "table" => 1.1,
             "repetitive" => 1.5,
@@ -59,8 +62,10 @@ fn the_load_doubles() {
     });
 }
 
-/// A counter that stands still under a voltage that moves the shaft: told within the patience,
-/// nothing is learned, the control law acts alone; and back when the counter lives.
+/// A counter that does not change while the voltage moves the shaft is reported within the
+/// patience.
+///
+/// Nothing is learned meanwhile and the control law acts alone; the loop recovers with the counter.
 #[test]
 fn a_frozen_encoder() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
@@ -80,7 +85,7 @@ fn a_frozen_encoder() {
                 assert!(told > 0 || i < 400, "{name}: not told after {i} steps");
             }
         }
-        // All the time but for the first moments, and for the trials of a doubtful observer.
+        // Reported all the time except for the first moments and the trials of a doubtful observer.
         let share = if name.starts_with("observed") {
             0.75
         } else {
@@ -99,7 +104,7 @@ fn a_frozen_encoder() {
     });
 }
 
-/// Blind steps teach nothing.
+/// Nothing is learned in steps without a valid measurement.
 #[test]
 fn nothing_is_learned_in_the_dark() {
     let mut bench = Bench::new(
@@ -118,7 +123,7 @@ fn nothing_is_learned_in_the_dark() {
     assert_eq!(bench.state.compensator.learned, kept);
 }
 
-/// A counter that jumps: one step is not believed, and the loop goes on from where it was.
+/// If a counter jumps, that step is rejected and the loop continues from its previous position.
 #[test]
 fn a_jumping_encoder() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
@@ -138,7 +143,7 @@ fn a_jumping_encoder() {
     });
 }
 
-/// A reference that is no number: the last one holds.
+/// If a reference is not finite, the last valid one is used.
 #[test]
 fn a_reference_that_is_no_number() {
     with_each_compensator!(f32, Control::Position, |name, controller| {
@@ -160,8 +165,9 @@ fn a_reference_that_is_no_number() {
     });
 }
 
-/// A reference beyond what the drive can do: saturated is said, nothing is learned, and the loop
-/// follows again.
+/// A reference beyond the drive's ability is reported as saturated and nothing is learned.
+///
+/// Afterwards the loop follows again.
 #[test]
 fn saturated() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
@@ -172,7 +178,8 @@ fn saturated() {
             said += u32::from(parts.status.has(Status::SATURATED));
         }
         assert!(said > 1_900, "{name}: {said}");
-        // Braking teaches a lap what it must unlearn, 0.5 V a lap and rad/s of error.
+        // While braking a repetitive compensator learns a wrong value; it unlearns 0.5 V per period
+        // and rad/s of error.
         for _ in 0..20_000 {
             bench.step(2.0, 0.0);
         }
@@ -181,7 +188,7 @@ fn saturated() {
     });
 }
 
-/// Random counters, random references, from the smallest to the largest numbers.
+/// Random counters and references, from the smallest to the largest numbers.
 fn torture<T: Real, C: Compensator<T>>(name: &str, controller: &Controller<T, C>) {
     let mut random = Random::new(7);
     for _ in 0..20 {
@@ -212,7 +219,7 @@ fn torture<T: Real, C: Compensator<T>>(name: &str, controller: &Controller<T, C>
             assert!(v.is_finite() && v.abs() <= T::of(10.0), "{name}: {v:?}");
             assert!(parts.velocity_rad_s.is_finite(), "{name}");
         }
-        // And with a calm target it is as good as new.
+        // With a constant target the loop recovers completely.
         for _ in 0..20_000 {
             let target = Target {
                 value: T::ZERO,
@@ -236,7 +243,7 @@ fn torture_in_single() {
     with_each_compensator!(f32, Control::Velocity, |name, c| { torture(name, &c) });
 }
 
-/// Learned numbers survive a power cycle; those that are none, or beyond the limits, do no harm.
+/// Learned values survive a power cycle; values not finite or beyond the limits do no harm.
 #[test]
 fn what_was_learned_can_be_kept() {
     let control = Control::Velocity;
@@ -267,7 +274,7 @@ fn what_was_learned_can_be_kept() {
     assert!(held.k0 <= 1e7 && held.gamma > 0.0);
 }
 
-/// Single precision does what double precision does.
+/// Single precision gives the same result as double precision.
 #[test]
 fn single_precision_follows_double() {
     fn rms<T: Real>() -> f64 {

@@ -1,4 +1,5 @@
-//! What compensation is for: less error than without, for the film and for what it lacks; and
+//! Compensation reduces the error, for the film and for missing effects.
+//!
 //! 1e8 steps change nothing.
 
 #[macro_use]
@@ -52,13 +53,13 @@ fn the_observed_model_beats_every_other() {
     }
 }
 
-/// A model with the effect that the plant has beats the one without.
+/// A model with the effect of the plant is better than a model without it.
 #[test]
 fn the_missing_effect_is_worth_having() {
     let control = Control::Velocity;
     for effect in [
         ("presliding", &[2e4][..]),
-        // Mild: a steep one makes any loop of this bandwidth stick and slip.
+        // Moderate: a steep one makes any loop of this bandwidth stick and slip.
         ("stribeck_excess", &[0.03, 0.01, 1.0][..]),
         ("direction_asymmetry", &[0.3][..]),
         ("position_ripple", &[0.3, 0.5][..]),
@@ -75,13 +76,13 @@ fn the_missing_effect_is_worth_having() {
     }
 }
 
-/// The observer's error dies as its poles say: two at -60/s, the plant's own at -135/s.
+/// The observer's error decays by its poles: two at -60/s, the plant's own at -135/s.
 #[test]
 fn the_observer_has_its_poles() {
     let control = Control::Velocity;
     let compensator = observed::<f64>(control);
     let mut state = compensator.start();
-    // A shaft at 5 rad/s under the voltage that holds it there, friction as the model says.
+    // A shaft at 5 rad/s under the voltage that holds this speed, with the friction of the model.
     let mut log = Vec::new();
     for i in 0..400 {
         let volts = 135.0 / 457.0 * 5.0 + 0.05;
@@ -90,7 +91,7 @@ fn the_observer_has_its_poles() {
             log.push((v - 5.0).abs());
         }
     }
-    // Once the fast pole has died, the double pole: |error| ~ (c0 + c1 n) p^n.
+    // After the fast pole has decayed, the double pole remains: |error| ~ (c0 + c1 n) p^n.
     let (n0, n1) = (40, 90);
     let rate = (log[n0] / log[n1]).ln() / ((n1 - n0) as f64 * DT_S);
     assert!((40.0..62.0).contains(&rate), "{rate} 1/s");
@@ -103,7 +104,7 @@ fn endless<T: Real, C: Compensator<T>>(name: &str, control: Control, c: Controll
     for i in 0..n {
         let phase = (i % lap) as f64 / lap as f64 * core::f64::consts::TAU;
         let rate = core::f64::consts::TAU / (lap as f64 * DT_S);
-        // Off zero, so that the shaft turns on and on: the counter rolls over for ever.
+        // With an offset, so that the shaft turns continuously and the counter rolls over.
         let (value, slope) = match control {
             Control::Velocity => (2.0 + 3.0 * phase.sin(), 3.0 * rate * phase.cos()),
             Control::Position => (phase.sin(), rate * phase.cos()),
@@ -128,7 +129,7 @@ fn endless<T: Real, C: Compensator<T>>(name: &str, control: Control, c: Controll
     );
 }
 
-/// A million steps, in single precision.
+/// 300,000 steps in single precision.
 #[test]
 fn a_million_steps_change_nothing() {
     for control in [Control::Velocity, Control::Position] {
@@ -138,7 +139,7 @@ fn a_million_steps_change_nothing() {
     }
 }
 
-/// 1e8 steps, 55 hours of the loop, no drift and no growth: `cargo test --release -- --ignored`.
+/// 1e8 steps, 55 hours of the loop, without drift or growth: `cargo test --release -- --ignored`.
 #[test]
 #[ignore = "minutes: make test-extended"]
 fn a_hundred_million_steps_change_nothing() {

@@ -1,5 +1,6 @@
-//! The driver against trajectories of an independent implementation, at every tolerance and for
-//! every kind of motion.
+//! The driver compared with trajectories of an independent implementation.
+//!
+//! It is tested at every tolerance and for every kind of motion.
 
 mod common;
 
@@ -18,7 +19,7 @@ fn full(clock: Clock) -> JournalFull<f64> {
     JournalFull::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("Table 4.2 is valid")
 }
 
-/// One reference run; its rows are time, speed, eps, phi, f.
+/// A reference run; its rows are time, speed, eps, phi, f.
 struct Run {
     omega_rad_s: f64,
     clock: Clock,
@@ -65,7 +66,7 @@ fn errors<F: Film<f64, N>, const N: usize>(film: &F, run: &Run, tolerance: f64) 
     let start = Start::default();
     follow(film, &motion, &start, &times, tolerance, |i, sample| {
         let [_, speed, eps, phi, f] = run.rows[i];
-        // On a reversal friction is set-valued.
+        // Friction is set-valued at a reversal.
         let df = if speed.abs() < 1e-9 {
             0.0
         } else {
@@ -104,8 +105,10 @@ fn the_full_model_is_right_to_1e_7() {
     }
 }
 
-/// Every tolerance from 1e-3 to 1e-12 succeeds; the error keeps below a few tolerances, and
-/// falls, until the digits of the reference are all used.
+/// Every tolerance from 1e-3 to 1e-12 succeeds.
+///
+/// The error stays below a few tolerances and decreases until it reaches the digits of the
+/// reference.
 fn falls_with_the_tolerance<F: Film<f64, N>, const N: usize>(film: &F, run: &Run, digits: f64) {
     let mut best = f64::INFINITY;
     for tenth in 6..=24 {
@@ -134,8 +137,9 @@ fn no_tolerance_fails() {
     }
 }
 
-/// Friction along a motion that is given as a formula with its kinks, as a function whose
-/// reversals are not told, and as a dense record.
+/// Friction is the same along three forms of one motion.
+///
+/// The forms are a formula with its kinks, a function without known reversals, and a dense record.
 #[test]
 fn the_same_motion_in_three_forms() {
     let film = law::<f64>(Clock::Journal);
@@ -160,7 +164,7 @@ fn the_same_motion_in_three_forms() {
             "function at {}",
             times[i]
         );
-        // Straight lines of 0.5 ms are off by w^2 a h^2/8 = 5e-9 m/s.
+        // Linear interpolation over 0.5 ms has an error of w^2 a h^2/8 = 5e-9 m/s.
         assert!(
             (exact[i] - record[i]).abs() < 1e-6,
             "record at {}",
@@ -184,7 +188,7 @@ impl Excitation for Dyn<'_> {
     }
 }
 
-/// A record that rests, starts, rests and turns back.
+/// A record that rests, starts, rests and reverses.
 #[test]
 fn rest_is_a_motion_too() {
     let film = full(Clock::Journal);
@@ -202,7 +206,7 @@ fn rest_is_a_motion_too() {
         "at rest friction is set-valued"
     );
     assert!(out[15] > 0.0 && out[45] < 0.0 && out[60] < 0.0);
-    // The same in steps of the loop.
+    // Follow this motion in steps of constant length.
     let mut state = film.start(LOAD_N);
     let h = 1e-4;
     for i in 0..60_000 {
@@ -217,7 +221,7 @@ fn rest_is_a_motion_too() {
     }
 }
 
-/// Derivatives go through the driver: its steps follow the values alone.
+/// Derivatives pass through the driver: its steps depend on the values alone.
 #[test]
 fn derivatives_match_differences() {
     let motion = Sine::new(AMPLITUDE_M_S, 1.0).expect("valid");
@@ -261,7 +265,7 @@ fn derivatives_match_differences() {
     }
 }
 
-/// Laws far from the thesis's, at any tolerance: every run ends, in numbers.
+/// With laws far from the thesis's and any tolerance, every run ends with finite numbers.
 #[test]
 fn far_laws_are_followed() {
     let mut random = Random::new(21);

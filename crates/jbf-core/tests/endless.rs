@@ -1,9 +1,8 @@
-//! A billion steps of the loop, 23 days of it, in single precision: the last laps are as the early
-//! ones were. In the ordinary run a million.
+//! A billion steps of the loop, 23 days, in single precision: late periods equal early ones.
 //!
-//! One lap of the target is a whole number of steps and brings the shaft back or on by the same
-//! angle, so that laps may be compared: the mean of an error that drifts moves, its RMS grows where
-//! something rings or forgets.
+//! The regular run has a million steps. One period of the target is a whole number of steps and
+//! returns or advances the shaft by a constant angle, so that periods can be compared. The mean
+//! reveals a drifting error, the RMS an oscillation or a loss of learned values.
 
 mod common;
 
@@ -12,11 +11,11 @@ use jbf_core::compensator::Compensator;
 use jbf_core::controller::Controller;
 use std::time::Instant;
 
-/// Steps of a lap, and laps that are compared.
+/// Steps of a period, and number of periods that are compared.
 const LAP: u64 = 1000;
 const LAPS: u64 = 50;
 
-/// Laps until the loop has learned what there is.
+/// Periods until learning has settled.
 const SETTLED: u64 = 200;
 
 /// Mean and RMS of an error.
@@ -41,7 +40,7 @@ impl Errors {
     }
 }
 
-/// `steps` steps; true errors of the settled laps and of the last.
+/// Runs `steps` steps and returns the true errors of the settled periods and of the last ones.
 fn run<C: Compensator<f32>>(
     control: Control,
     controller: Controller<f32, C>,
@@ -54,7 +53,7 @@ fn run<C: Compensator<f32>>(
             let rate = core::f64::consts::TAU / (LAP as f64 * DT_S);
             let phase = rate * i as f64 * DT_S;
             match control {
-                // Off zero: the shaft turns on and on, and the counter rolls over.
+                // With an offset: the shaft turns continuously, and the counter rolls over.
                 Control::Velocity => (2.0 + 3.0 * phase.sin(), 3.0 * rate * phase.cos()),
                 Control::Position => (phase.sin(), rate * phase.cos()),
             }
@@ -129,8 +128,8 @@ fn a_million_steps() {
     );
 }
 
-/// `cargo test --release -p jbf-core --test endless -- --ignored --nocapture`; `JBF_STEPS` takes
-/// fewer.
+/// `cargo test --release -p jbf-core --test endless -- --ignored --nocapture`; `JBF_STEPS` sets a
+/// smaller number of steps.
 #[test]
 #[ignore = "forty minutes: make test-extended"]
 fn a_billion_steps() {

@@ -1,4 +1,4 @@
-//! A film on the path of its own parameters: the chain round it gives the same bits.
+//! A film on the path of its own parameters: the chain gives the same bits.
 
 mod common;
 
@@ -13,7 +13,7 @@ use std::cell::RefCell;
 
 const MAX_STEP_S: f64 = 0.02;
 
-/// A law with derivatives by f_m, U_tr and K0 where its numbers carry any.
+/// A law with derivatives with respect to f_m, U_tr and K0 if its numbers carry them.
 fn law<T: Real>(lifted: impl Fn(f64, usize) -> T) -> Journal<T> {
     let p = Parameters::TABLE_4_2;
     let parameters = Parameters {
@@ -45,7 +45,7 @@ fn with<T: Real, L: Law<T>>(law: L, named: &[(&str, &[f64])]) -> Chain<T, L, Eff
     Chain::round(law, effects, Some(&Bearing::THESIS))
 }
 
-/// Two-way motion at uneven samples, some so far apart that steps lie between them.
+/// Motion in both directions with uneven samples, some so far apart that inner steps are needed.
 struct Columns([Vec<f64>; 5]);
 
 impl Columns {
@@ -81,13 +81,13 @@ impl Columns {
     }
 }
 
-/// The steps of a record, and a film's places along them.
+/// The film's states along the steps of a record.
 fn path<const N: usize>(record: &Record<'_>, by: [usize; 2]) -> Vec<Place> {
     let inner_s = inner_step_s(&chain(law(|v, _| v)), record, MAX_STEP_S);
     path_and_ends::<N>(record, by, inner_s).0
 }
 
-/// The same, and of each sample but the first the number of the last step before it.
+/// As `path`, and for each sample except the first the number of the last step before it.
 fn path_and_ends<const N: usize>(
     record: &Record<'_>,
     by: [usize; 2],
@@ -158,7 +158,7 @@ fn the_same_bits_and_slopes() {
         .any(|f| f.slope[1] != 0.0 && f.slope[2] != 0.0));
 }
 
-/// Of effects that remember nothing the steps between two samples change no reading.
+/// For effects without memory the steps between two samples do not change a reading.
 #[test]
 fn the_last_step_before_each_sample_is_enough() {
     let columns = Columns::new();
@@ -194,13 +194,13 @@ fn the_last_step_before_each_sample_is_enough() {
     assert!(!remembers("coulomb_drag", &[1.0]) && !remembers("sensor_offset", &[0.1]));
 }
 
-/// U_tr or K0, by its number on the page.
+/// U_tr or K0, by its index in the parameters.
 fn plain_parameter(number: usize) -> f64 {
     let p = Parameters::TABLE_4_2;
     [p.f_m, p.u_tr_m_s, p.k0, p.gamma][number]
 }
 
-/// Past its end the film steps by itself: from where the path left its eccentricity.
+/// Beyond the end of the path the film steps by itself, from the last eccentricity of the path.
 #[test]
 fn a_path_too_short_is_no_panic() {
     let columns = Columns::new();

@@ -1,6 +1,7 @@
-//! An encoder that stands still for three seconds and lives again, under models of any viscous
-//! friction: the loop's speed stays one that the drive can have, and a second later the loop is as
-//! good as it was; a position loop once it has been back for what it ran off meanwhile.
+//! An encoder that freezes for three seconds and recovers, with models of any viscous friction.
+//!
+//! The speed of the loop stays within the ability of the drive. A second later the loop is as
+//! accurate as before; a position loop once it has returned from where it drifted.
 
 mod common;
 
@@ -16,16 +17,16 @@ use jbf_core::plant::Plant;
 use jbf_core::reference::Target;
 use jbf_core::{Chain, Clock, Real};
 
-/// Steps before the encoder freezes, while it is frozen, and those that are compared: one period of
-/// the target.
+/// Steps before the encoder freezes, steps while it is frozen, and steps that are compared (one
+/// period of the target).
 const RUN: u32 = 2000;
 const FROZEN: u32 = 1500;
 const SEEN: u32 = 1000;
 
-/// Twice what the drive's largest voltage holds without friction, rad/s.
+/// Twice the speed that the drive's largest voltage holds without friction, rad/s.
 const FASTEST_RAD_S: f64 = 68.0;
 
-/// What it learned in the dark and must learn anew may cost this share of the target's amplitude.
+/// Error allowed for values learned while frozen, as a share of the target's amplitude.
 const ALLOWED: f64 = 0.15;
 
 const NO_EFFECTS: &[(&str, &[f64])] = &[];
@@ -35,9 +36,10 @@ fn law<T: Real, L: Named<T>>(values: &[f64]) -> L {
     L::build(None, None, &lifted, Clock::Journal).expect("in the bounds")
 }
 
-/// Run the loop round a model on a plant with a friction; its errors (RMS, as the loop sees
-/// them, of the target's amplitude) over
-/// the last period before the encoder freezes and over one after it lives again.
+/// Runs the loop with a model on a plant with friction and returns its errors.
+///
+/// The errors are the RMS in the loop's own signal, relative to the target's amplitude. They are
+/// taken over the last period before the encoder freezes and over one after it recovers.
 fn errors<T: Real, L: Law<f64>>(
     told: &str,
     control: Control,
@@ -46,7 +48,7 @@ fn errors<T: Real, L: Law<f64>>(
 ) -> [f64; 2] {
     let compensator = Observed::new(model, &bench::settings(control)).expect("settings");
     let controller = bench::controller::<T, _>(control, compensator);
-    // What the drive can do without its limit.
+    // An amplitude within the ability of the drive.
     let viscous_v = chain.law.friction(&chain.law.start(LOAD_N), 0.0127).smooth * DRIVE.volts_per_n;
     let size = 1.5 / (1.0 + 1.5 * viscous_v);
     let plant = Plant::new(chain, DRIVE, DT_S / 2.0).expect("the thesis's drive");
@@ -88,7 +90,7 @@ fn errors<T: Real, L: Law<f64>>(
     squares.map(|square| square.sqrt() / size)
 }
 
-/// A law of a viscous friction with effects, carried whole, and bare where it has none.
+/// Tests a law with viscous friction and effects, as a whole chain, and bare without effects.
 fn comes_back<T: Real, A: Named<T>, B: Named<f64>>(values: &[f64], effects: &[(&str, &[f64])]) {
     for (control, named) in [
         (Control::Position, "position"),
@@ -129,8 +131,9 @@ fn any_viscous_friction_in_single_precision() {
     }
 }
 
-/// Steep through what stands round the law: a weight that hides it, an asymmetry that doubles it, a
-/// drag with the square of the speed, a bristle beside it.
+/// Steep viscous friction due to effects.
+///
+/// A weight that hides it, an asymmetry that doubles it, a quadratic drag, and a bristle.
 #[test]
 fn steep_through_effects() {
     let values = [8.0, 10.0, 1e4];

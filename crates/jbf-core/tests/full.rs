@@ -1,5 +1,6 @@
-//! The full model, inertia included, at the step of a control loop, 2 ms, against trajectories
-//! of an independent implementation (Radau, rtol 1e-10).
+//! The full model with inertia at the step of a control loop, 2 ms.
+//!
+//! The reference is an independent implementation (Radau, rtol 1e-10).
 
 mod common;
 
@@ -18,7 +19,7 @@ fn full<T: Real>(clock: Clock) -> JournalFull<T> {
     JournalFull::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("Table 4.2 is valid")
 }
 
-/// One reference run; its rows are time, speed, eps, phi, f.
+/// A reference run; its rows are time, speed, eps, phi, f.
 struct Run {
     omega_rad_s: f64,
     clock: Clock,
@@ -50,7 +51,7 @@ impl Run {
         out
     }
 
-    /// Largest error over the loop's peak.
+    /// Largest error relative to the loop's peak.
     fn worst<T: Real>(&self, stepper: &impl StiffStepper, step_s: f64) -> f64 {
         let got = self.friction::<T>(stepper, step_s);
         let peak = self
@@ -83,8 +84,10 @@ fn runs() -> Vec<Run> {
     ]
 }
 
-/// The brief is 1e-4 of the peak. Most of what is left comes from steps that straddle the kink of
-/// |U| at a reversal (6e-7 where they land on it), and in single precision from rounding.
+/// The error is far below the required 1e-4 of the peak.
+///
+/// Most of it comes from steps across the kink of |U| at a reversal (6e-7 if a step ends there),
+/// and in single precision from rounding.
 #[test]
 fn the_loop_step_is_far_within_1e_4_of_the_peak() {
     for run in runs() {
@@ -98,7 +101,7 @@ fn the_loop_step_is_far_within_1e_4_of_the_peak() {
     }
 }
 
-/// Short steps leave what the reference itself is good to, 1e-8.
+/// With short steps the error is that of the reference, 1e-8.
 #[test]
 fn short_steps_converge_on_the_reference() {
     for run in runs() {
@@ -112,8 +115,9 @@ fn short_steps_converge_on_the_reference() {
     }
 }
 
-/// A law that steps with derivatives gives the value that it gives without, and derivatives
-/// that are differences' limits.
+/// A law with derivatives gives the same values as without.
+///
+/// The derivatives are the limits of differences.
 #[test]
 fn derivatives_go_through_the_implicit_step() {
     let end = |lift: &dyn Fn(usize, f64) -> Dual<4>| {
@@ -148,7 +152,7 @@ fn derivatives_go_through_the_implicit_step() {
     }
 }
 
-/// A state that a change of load surprises finds the other load's steady state.
+/// After a change of load the state reaches the steady state of the new load.
 #[test]
 fn a_jump_of_the_load_is_followed() {
     let law = full::<f64>(Clock::Journal);
@@ -165,7 +169,7 @@ fn a_jump_of_the_load_is_followed() {
     assert_eq!(state.clamped, 0);
 }
 
-/// A bearing whose mass is nonsense is refused by name.
+/// An invalid bearing mass is rejected with its name.
 #[test]
 fn the_mass_is_checked() {
     for (mass_kg, name) in [(0.0, "mass_kg"), (1e-320, "mass_number")] {

@@ -1,4 +1,4 @@
-//! The load of a run may change: the law then is the one that the new load would have built.
+//! The load may change during a run: the law then equals the one built with the new load.
 
 mod common;
 
@@ -35,8 +35,9 @@ fn after_a_change_of_load_the_law_is_the_other_loads() {
     }
 }
 
-/// A lifted bearing is taken as one with a hundredth of its load: the film finds the steady
-/// state of that, whatever the load was before, and no number is lost.
+/// A lifted bearing is treated as one with a hundredth of its load.
+///
+/// The film reaches the steady state of that load for any load before, and all numbers stay finite.
 #[test]
 fn a_lifted_bearing_has_a_small_friction() {
     let law = common::law::<f64>(Clock::Journal);

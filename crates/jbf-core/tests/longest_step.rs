@@ -1,5 +1,4 @@
-//! The step that the law asks for is one that it can take without loss, wherever the
-//! parameters stand.
+//! The law's longest step is accurate for any parameters.
 
 mod common;
 
@@ -8,8 +7,10 @@ use jbf_core::law::journal::{Journal, Parameters, State};
 use jbf_core::law::Law;
 use jbf_core::{Bearing, Clock};
 
-/// A film pushed off its steady state, by a tenth of its gap and more: the way back in steps
-/// of that length is the way back in steps a quarter as long, to a thousandth of the gap.
+/// A film displaced from its steady state by a tenth of its gap and more.
+///
+/// Its return in steps of that length equals that in steps a quarter as long, within a thousandth
+/// of the gap.
 #[test]
 fn the_longest_step_loses_nothing() {
     let mut random = Random::new(11);
@@ -51,7 +52,7 @@ fn the_longest_step_loses_nothing() {
     }
 }
 
-/// Nor is it timid: for the thesis's bearing several steps of its 2 ms loop.
+/// The step is not too short: for the thesis's bearing several steps of its 2 ms loop.
 #[test]
 fn the_longest_step_is_not_timid() {
     for clock in [Clock::Journal, Clock::Thesis] {

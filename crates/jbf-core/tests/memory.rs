@@ -1,5 +1,4 @@
-//! What a chain keeps in memory: what its law, the motion and the effects in it need, and nothing
-//! for effects that are not there.
+//! Memory of a chain: only what its law, the motion and its effects need.
 
 use jbf_core::chain::State;
 use jbf_core::effect::coulomb_drag::CoulombDrag;
@@ -13,14 +12,14 @@ use std::mem::size_of;
 
 type Changes<T, L, E> = State<T, <L as Law<T>>::State, E>;
 
-/// Bytes of state of a chain round Coulomb's law.
+/// Bytes of state of a chain with Coulomb's law.
 fn state<T: Real, E: EffectSet<T>>() -> usize {
     size_of::<Changes<T, Coulomb<T>, E>>()
 }
 
 fn lean<T: Real>() {
-    // Both motions, the speed that the film feels and its factor, what a bristle bends towards, the
-    // jump, the force, the reading, and the law's own.
+    // Both motions, the effective film speed and its factor, the level of a bristle, the jump, the
+    // force, the reading, and the law's own state.
     let number = size_of::<T>();
     let needed = size_of::<Motion<T>>() + size_of::<JournalMotion<T>>() + 6 * number;
     assert!(
@@ -36,7 +35,7 @@ fn lean<T: Real>() {
         state::<T, Effects<T>>() > 4 * lag,
         "the catalogue keeps room for all"
     );
-    // The law's three numbers, the rig's two, the drag's one and the lag's one.
+    // Three numbers of the law, two of the rig, one of the drag and one of the lag.
     type Pair<T> = (Beside<CoulombDrag<T>>, InInstrument<SensorLag<T>>);
     assert_eq!(size_of::<Chain<T, Coulomb<T>, ()>>(), 5 * number);
     assert_eq!(size_of::<Chain<T, Coulomb<T>, Pair<T>>>(), 7 * number);

@@ -1,10 +1,10 @@
-//! The rooms of the crate import one way: no room reaches, by whatever detour, itself.
+//! The modules of the crate import each other without cycles.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Every file below a room.
+/// Every file below a module.
 fn files(at: &Path) -> Vec<PathBuf> {
     if at.is_file() {
         return vec![at.to_path_buf()];
@@ -15,8 +15,10 @@ fn files(at: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Room and what it imports: a file or a folder in `src`, and each `crate::room` in it but for
-/// comments and its own tests. What `lib.rs` gives at the top (`crate::Dual`) is its room's.
+/// Modules and their imports: a file or a folder in `src`, and each `crate::module` in it.
+///
+/// Comments and the module's own tests are excluded. A top-level export of `lib.rs` (`crate::Dual`)
+/// belongs to its module.
 fn imports() -> BTreeMap<String, BTreeSet<String>> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let entries = fs::read_dir(&src).expect("the sources");
@@ -61,7 +63,8 @@ fn imports() -> BTreeMap<String, BTreeSet<String>> {
 fn rooms_import_one_way() {
     let mut left = imports();
     assert!(left.len() > 20 && left["chain"].contains("effect"));
-    // Take away, again and again, what imports nothing that is left, and what nothing left imports.
+    // Remove repeatedly the modules that import no remaining module, and those that no remaining
+    // module imports.
     loop {
         let done: Vec<String> = left
             .iter()

@@ -1,4 +1,4 @@
-//! Encoder, velocity observer, Coulomb observer and reference against the thesis's own forms.
+//! Encoder, velocity observer, Coulomb observer and reference compared with the thesis's forms.
 
 mod common;
 
@@ -45,7 +45,7 @@ fn a_speed_that_hides_a_roll_over_is_refused() {
     assert_eq!(error.name(), "top_speed_rad_s");
 }
 
-/// Without loss: single precision keeps the last count after a billion.
+/// Single precision keeps the last count after a billion counts.
 #[test]
 fn the_angle_of_a_billion_counts() {
     let encoder = Encoder::<f64>::new(1.0, 32, 1e9, DT_S).unwrap();
@@ -59,7 +59,7 @@ fn the_angle_of_a_billion_counts() {
     assert_eq!(encoder.angle_rad(&state), 1_000_001_000.0);
 }
 
-/// The thesis's step, `v = k x + z; z += dt (-(a + k) v + b u)`, number for number.
+/// The observer equals the thesis's step, `v = k x + z; z += dt (-(a + k) v + b u)`.
 #[test]
 fn velocity_observers_are_the_thesis_s() {
     for (a, b) in [(0.0, 0.0), (135.0, 457.0)] {
@@ -78,7 +78,7 @@ fn velocity_observers_are_the_thesis_s() {
     }
 }
 
-/// On a plant with constant friction F the level comes to F at the rate k_F b (p = 1).
+/// With constant friction F the level converges to F at the rate k_F b (p = 1).
 #[test]
 fn the_coulomb_observer_learns_at_its_rate() {
     let (gain, b, friction) = (0.01, 457.0, 0.7);
@@ -88,21 +88,23 @@ fn the_coulomb_observer_learns_at_its_rate() {
     for i in 0..1000_u32 {
         let level = observer.level_v(&state, &observer.power(v));
         let t = f64::from(i) * DT_S;
-        // It begins at -k_F v, and each of its Euler steps takes (1 - k_F b dt) of the way.
+        // It begins at -k_F v, and each Euler step covers the share k_F b dt of the remaining
+        // difference.
         let exact = friction + (-gain * 50.0 - friction) * (1.0 - gain * b * DT_S).powi(i as i32);
         assert!((level - exact).abs() < 1e-9, "{t}: {level} {exact}");
         observer.learn(&mut state, &observer.power(v), v, 0.0);
         v += DT_S * b * (level - friction);
         if v < 10.0 {
-            // Keep it moving: a push that the observer knows of.
+            // Keep it moving with an input that is known to the observer.
             observer.learn(&mut state, &observer.power(v), v, (50.0 - v) / DT_S);
             v = 50.0;
         }
     }
 }
 
-/// phi is continuous, its slope is its slope, and the gain is bounded, for exponents on both sides
-/// of 1 (the guard at v = 0 for p < 1, at speed for p > 1).
+/// phi is continuous, its derivative is correct, and the gain is bounded.
+///
+/// This holds for exponents on both sides of 1 (guard at v = 0 for p < 1, at speed for p > 1).
 #[test]
 fn exponents_are_guarded() {
     let (gain, b) = (0.01, 457.0);
@@ -113,7 +115,7 @@ fn exponents_are_guarded() {
         for i in 0..60_000_u32 {
             let w = 1e-6 * 1.0003_f64.powi(i as i32);
             let level = -observer.level_v(&State::default(), &observer.power(w)) / gain;
-            // The slope, from what one step learns.
+            // The derivative, from the change learned in one step.
             state = State::default();
             observer.learn(&mut state, &observer.power(w), w, 1.0);
             let learned = observer.level_v(&state, &observer.power(w)) + gain * level;
@@ -126,7 +128,7 @@ fn exponents_are_guarded() {
             }
             before = Some((w, level));
         }
-        // At rest exactly it holds.
+        // At exactly zero speed the level is held.
         let rest = state;
         let mut held = state;
         observer.learn(&mut held, &observer.power(0.0), 0.0, 1e3);
@@ -135,8 +137,9 @@ fn exponents_are_guarded() {
     }
 }
 
-/// An exponent just below one has a guard that reaches beyond every speed where the gain is too
-/// large; it overflowed, and phi was no number.
+/// An exponent just below one has a guard beyond every speed at which the gain is too large.
+///
+/// It used to overflow, so that phi was not finite.
 #[test]
 fn a_guard_beyond_every_speed_is_refused() {
     let error = CoulombObserver::<f32>::new(14.4, 0.991, 5.0, 0.3, 0.025).unwrap_err();
@@ -155,8 +158,10 @@ fn what_it_learns_is_limited() {
     assert!((observer.level_v(&state, &observer.power(1.0)) - 2.0).abs() < 1e-5);
 }
 
-/// The phases of Appendices D and E: a sine about zero starts there, any other at its low end; a
-/// triangle starts low, a square high.
+/// Initial phases of Appendices D and E.
+///
+/// A sine about zero starts at zero, any other at its minimum; a triangle starts low, a square
+/// high.
 #[test]
 fn references_start_as_the_thesis_s_do() {
     let at = |wave, low, high| Reference::new(wave, low, high, 0.25).unwrap().at(0.0);
@@ -167,7 +172,7 @@ fn references_start_as_the_thesis_s_do() {
     assert_eq!(at(Wave::Square, -1.04, 1.04).value, 1.04);
 }
 
-/// Rates are the derivatives of the values, away from corners.
+/// Rates are the derivatives of the values, except at corners.
 #[test]
 fn rates_are_derivatives() {
     for wave in [Wave::Sine, Wave::Triangle] {

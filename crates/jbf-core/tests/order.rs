@@ -1,11 +1,12 @@
-//! Orders of convergence of the implicit steppers; those of Euler and Runge-Kutta are in
-//! `reference.rs`. Smooth stretches: one way, always in mixed lubrication, so that neither |U| nor
-//! the asperity load has a kink.
+//! Orders of convergence of the implicit steppers; for Euler and Runge-Kutta see `reference.rs`.
 //!
-//! Three values of the input make a parabola along a step, whose error is of third order and,
-//! being odd about the middle, leaves an error of fourth order at the end: a method of order
-//! five keeps its order only under a steady input. The driver, which asks the excitation itself,
-//! has it always.
+//! The motion is smooth: one direction, always in mixed lubrication, so that neither |U| nor the
+//! asperity load has a kink.
+//!
+//! Three values of the input define a parabola along a step. Its error is of third order and odd
+//! about the middle, which leaves an error of fourth order at the end. A method of order five
+//! therefore keeps its order only under a steady input. The driver evaluates the excitation itself
+//! and always keeps it.
 
 mod common;
 
@@ -15,10 +16,10 @@ use jbf_core::law::journal_full::{self, JournalFull};
 use jbf_core::stepper::{Rodas3, Rodas5P, StiffStepper};
 use jbf_core::{Bearing, Clock};
 
-/// Where the reduced film is after a while of `0.03 + swing sin(4 t)` m/s.
+/// State of the reduced film after some time of `0.03 + swing sin(4 t)` m/s.
 fn reduced(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
     let law = law::<f64>(Clock::Journal);
-    // Off its steady state, so that a steady speed moves it too.
+    // Away from its steady state, so that it also moves at a steady speed.
     let steady = law.steady(0.025).expect("a speed");
     let mut state = State::at(steady.eps, steady.phi_rad, law.nominal());
     steps(step_s, swing, |speed, h| {
@@ -28,13 +29,13 @@ fn reduced(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
     state.xy()
 }
 
-/// The same for the full model.
+/// State of the full model after some time of the same motion.
 fn full(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
     let law = JournalFull::<f64>::new(&Bearing::THESIS, LOAD_N, &table_4_2(), Clock::Journal)
         .expect("valid");
     let steady = law.reduced().steady(0.025).expect("a speed");
     let mut state = journal_full::State::at(steady.eps, steady.phi_rad, law.under(LOAD_N));
-    // The rates settle first, in steps that are the same for every `step_s`.
+    // The rates settle first, in steps that do not depend on `step_s`.
     for _ in 0..100 {
         law.advance_with(&Rodas5P, &mut state, [0.03; 3], 1.0, 1e-5);
     }
@@ -46,7 +47,7 @@ fn full(stepper: &impl StiffStepper, step_s: f64, swing: f64) -> [f64; 2] {
 }
 
 fn steps(step_s: f64, swing: f64, mut advance: impl FnMut([f64; 3], f64)) {
-    // A steady speed is met within a second; the error must not have died with the motion.
+    // At a steady speed the film settles within a second; the error must not decay with the motion.
     let time_s = if swing == 0.0 { 0.16 } else { 1.2 };
     let n = (time_s / step_s).round();
     let h = time_s / n;
@@ -77,8 +78,10 @@ fn on_the_reduced_model() {
     }
 }
 
-/// Steps a thousand times the fast time constants. Rodas3 meets the order conditions of
-/// differential-algebraic systems and keeps its order; Rodas5P, measured, loses one of its five.
+/// Steps a thousand times longer than the fast time constants.
+///
+/// Rodas3 meets the order conditions of differential-algebraic systems and keeps its order. The
+/// measured order of Rodas5P is one below its nominal five.
 #[test]
 fn on_the_full_model() {
     for (swing, fifth, longest_s) in [(0.0, 4.0, 0.08), (0.01, 4.0, 0.04)] {

@@ -1,6 +1,7 @@
-//! Effects from outside the crate, in each place that takes them, against the catalogue's own in
-//! the same place: an effect does not act otherwise for being somebody else's, and a typed set of
-//! effects is the same chain as the catalogue's with those effects switched on.
+//! Effects defined outside the crate, in each stage that allows them.
+//!
+//! They act like the catalogue's effects in the same stage. A typed set of effects is the same
+//! chain as the catalogue with those effects active.
 
 mod common;
 
@@ -29,7 +30,7 @@ type Bristle = AsBristle<Presliding<f64>>;
 type Other = Beside<CoulombDrag<f64>>;
 type Instrument = InInstrument<SensorLag<f64>>;
 
-/// Readings, and what is felt from the commanded side, under a load that swings.
+/// Readings, and the friction as seen from the commanded side, under an oscillating load.
 fn run(effects: impl EffectSet<f64>) -> Vec<f64> {
     let rig = Rig {
         radius_m: Bearing::THESIS.radius_m,
@@ -52,7 +53,7 @@ fn run(effects: impl EffectSet<f64>) -> Vec<f64> {
     out
 }
 
-/// The effect's page, and values for its parameters.
+/// Name of an effect, and values for its parameters.
 fn page<P: Place<f64>>() -> (&'static str, Vec<f64>) {
     let values = P::INFO.parameters.iter().map(|p| p.starts[0]);
     (P::INFO.name, values.collect())
@@ -91,7 +92,7 @@ fn an_effect_acts_alike_from_outside_at_every_stage() {
     acts_alike::<Instrument>();
 }
 
-/// In whatever order a set of different stages is written, the signal meets them in the chain's.
+/// Effects of different stages act in the order of the chain, in whatever order they are written.
 #[test]
 fn all_stages_at_once_in_any_order() {
     let named = catalogue(&[
@@ -142,7 +143,7 @@ fn nothing_of_ones_own_changes_nothing() {
     }
 }
 
-/// At an infinite null an effect is left out, not built.
+/// At an infinite null an effect is rejected; it must be omitted.
 #[test]
 fn an_infinite_null_is_refused() {
     let error = Bristle::new(&[f64::INFINITY]).expect_err("vanishes");
@@ -150,7 +151,7 @@ fn an_infinite_null_is_refused() {
     assert!(Bristle::new(&[-1.0]).is_err() && Bristle::new(&[]).is_err());
 }
 
-/// The longest step of a typed set is the shortest of its effects'.
+/// The longest step of a typed set is the shortest of those of its effects.
 #[test]
 fn the_longest_step_is_the_shortest_of_all() {
     let set = (typed::<Other>(), typed::<Drive>());

@@ -1,4 +1,4 @@
-//! The bench's plant against closed forms: free motion, stopping, sticking, symmetry.
+//! The bench's plant compared with closed forms: free motion, stopping, sticking, symmetry.
 
 mod common;
 
@@ -42,7 +42,7 @@ fn without_friction_it_is_exact() {
     }
 }
 
-/// With a constant level L the speed from V falls to zero at t = ln(1 + aV/(bL))/a, and stays.
+/// With a constant level L the speed V falls to zero at t = ln(1 + aV/(bL))/a, and stays zero.
 #[test]
 fn dry_friction_stops_it_in_the_exact_time() {
     let (a, b, level) = (135.0, 457.0, 0.8);
@@ -71,12 +71,12 @@ fn dry_friction_stops_it_in_the_exact_time() {
     }
 }
 
-/// An hour under nine tenths of the level: not a bit of motion, and friction equals the push.
+/// During an hour at nine tenths of the level there is no motion, and friction equals the input.
 #[test]
 fn it_sticks_for_an_hour() {
     let plant = plant(&[]);
     let mut state = plant.start(LOAD_N, 600.0);
-    // The journal at rest holds f_m of its load.
+    // The journal at rest holds f_m times its load.
     let push = 0.9 * 0.26 * LOAD_N * DRIVE.volts_per_n;
     let steps = (3600.0 / (DT_S / 2.0)) as u32;
     for _ in 0..steps {
@@ -85,14 +85,14 @@ fn it_sticks_for_an_hour() {
     assert_eq!(state.angle_rad, 0.0);
     assert_eq!(state.speed_rad_s, 0.0);
     assert!((state.friction_v / push - 1.0).abs() < 1e-12);
-    // And a push above it moves the shaft at once.
+    // An input above the level moves the shaft at once.
     for _ in 0..10 {
         plant.step(&mut state, push / 0.9 * 1.02, LOAD_N);
     }
     assert!(state.speed_rad_s > 0.0);
 }
 
-/// `v' = -a v + b (u - F)` holds over every step for the friction that is reported.
+/// `v' = -a v + b (u - F)` holds in every step for the reported friction.
 #[test]
 fn the_reported_friction_is_what_acted() {
     let plant = plant(&[("stribeck_excess", &[0.1, 0.005, 1.0])]);
@@ -131,7 +131,7 @@ impl Visitor<f64> for Symmetric {
     }
 }
 
-/// Every law of the catalogue, and u -> -u gives x -> -x.
+/// For every law of the catalogue, u -> -u gives x -> -x.
 #[test]
 fn every_law_is_symmetric() {
     for info in jbf_core::law::CATALOGUE {
@@ -149,7 +149,7 @@ fn every_law_is_symmetric() {
     }
 }
 
-/// Effects one at a time in the plant: finite, never running away, and at rest again at the end.
+/// Each effect in the plant alone: finite, without divergence, and at rest again at the end.
 fn runs_and_rests<L: Law<f64> + Copy>(law: L, effects: &[Info]) {
     for info in effects {
         let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
@@ -173,7 +173,7 @@ fn runs_and_rests<L: Law<f64> + Copy>(law: L, effects: &[Info]) {
     }
 }
 
-/// Every effect of the catalogue can be hidden in the plant, round a law that it belongs to.
+/// Every effect of the catalogue works in the plant, with a compatible law.
 #[test]
 fn every_effect_runs_and_comes_to_rest() {
     let (of_drives, others): (Vec<Info>, Vec<Info>) = jbf_core::effect::CATALOGUE
@@ -184,7 +184,7 @@ fn every_effect_runs_and_comes_to_rest() {
     runs_and_rests(newtons(15.0, 5.0), &of_drives);
 }
 
-/// A soft drive: the shaft moves before the journal does, by the twist under the push.
+/// With a compliant drive the shaft moves before the journal, by the twist under the input.
 #[test]
 fn a_soft_drive_gives_way() {
     let plant = plant(&[("drive_compliance", &[60.0, 0.5, 1e-3])]);

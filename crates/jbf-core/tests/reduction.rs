@@ -1,5 +1,7 @@
-//! The reduction (no inertia) against the full model, followed to 1e-9: the thesis calls the
-//! difference negligible; an independent implementation found these numbers.
+//! The reduced model (no inertia) compared with the full model at a tolerance of 1e-9.
+//!
+//! The thesis calls the difference negligible; the expected values are from an independent
+//! implementation.
 
 mod common;
 
@@ -8,8 +10,9 @@ use jbf_core::driver::{trajectory, Sine};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock};
 
-/// Largest difference of the unsigned coefficient over the second period of
-/// `U = 0.127 sin(w t)`, over the loop's peak.
+/// Largest difference of the unsigned coefficient relative to the loop's peak.
+///
+/// It is taken over the second period of `U = 0.127 sin(w t)`.
 fn difference(clock: Clock, omega_rad_s: f64) -> f64 {
     let full = JournalFull::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("valid");
     let reduced = law::<f64>(clock);
@@ -35,7 +38,7 @@ fn the_difference_is_the_one_found_independently() {
     ] {
         for (omega, expected) in omegas.into_iter().zip(expected) {
             let got = difference(clock, omega);
-            // Two digits are printed.
+            // The expected values have two digits.
             assert!(
                 (got / expected - 1.0).abs() < 0.05,
                 "{clock:?} {omega}: {got:e}"

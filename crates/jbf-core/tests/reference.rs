@@ -1,5 +1,6 @@
-//! The reduced model against trajectories of an independent implementation (order 8, rtol
-//! 1e-13), at the step of a control loop, 2 ms, and the orders of its steppers.
+//! The reduced model at the step of a control loop, 2 ms, and the orders of its steppers.
+//!
+//! The reference is an independent implementation (order 8, rtol 1e-13).
 
 mod common;
 
@@ -14,7 +15,7 @@ use jbf_core::{Clock, Real};
 const AMPLITUDE_M_S: f64 = 0.127;
 const LOOP_STEP_S: f64 = 0.002;
 
-/// One reference run; its rows are time, speed, eps, phi, f.
+/// A reference run; its rows are time, speed, eps, phi, f.
 struct Run {
     omega_rad_s: f64,
     clock: Clock,
@@ -127,9 +128,10 @@ fn runge_kutta_at_2_ms_matches_every_row() {
     }
 }
 
-/// What is left of the error at 2 ms comes from steps that straddle the kink of |U| at a
-/// reversal. Steps that are short against the film's memory leave only the ten digits that
-/// the rows carry.
+/// With short steps only the ten digits of the reference limit the accuracy.
+///
+/// The remaining error at 2 ms comes from steps across the kink of |U| at a reversal. The steps
+/// here are short compared with the memory of the film.
 #[test]
 fn runge_kutta_converges_on_the_reference() {
     for run in runs() {
@@ -145,9 +147,11 @@ fn runge_kutta_converges_on_the_reference() {
     }
 }
 
-/// Along a stable film with response K, Euler's error obeys `e' = -lambda e - (h/2) x''`, so
-/// `e = -(h/2) int K x''`. By parts, with K falling from one to zero, that is at most
-/// `(h/2) max|x'| (1 + 1 + 1)`: the end, the start and the integral. And it halves with h.
+/// The error of Euler's method stays within its theoretical bound and halves with h.
+///
+/// Along a stable film with response K the error obeys `e' = -lambda e - (h/2) x''`, so `e = -(h/2)
+/// int K x''`. Integrated by parts, with K falling from one to zero, it is at most `(h/2) max|x'|
+/// (1 + 1 + 1)`: the end, the start and the integral.
 #[test]
 fn euler_stays_within_its_theory() {
     for run in runs() {
@@ -168,8 +172,10 @@ fn euler_stays_within_its_theory() {
     }
 }
 
-/// Errors at three steps on a smooth motion (one way, always in mixed lubrication, so that
-/// neither |U| nor the asperity load has a kink) fall with the order of the method.
+/// Errors at three steps on a smooth motion fall with the order of the method.
+///
+/// The motion is in one direction, always in mixed lubrication, so that neither |U| nor the
+/// asperity load has a kink.
 #[test]
 fn steppers_have_their_order() {
     fn ends(stepper: &impl Stepper, step_s: f64) -> [f64; 2] {
@@ -199,9 +205,10 @@ fn steppers_have_their_order() {
     }
 }
 
-/// Single precision is within 1e-4 of the loop's peak, on the loop step and on steps so short
-/// that the film moves by less than a unit in the last place in each (a plain sum would then
-/// stand still: at 0.1 ms it is off by 4e-3).
+/// Single precision is within 1e-4 of the loop's peak, also at very short steps.
+///
+/// In the shortest steps the film changes by less than a unit in the last place. A plain sum would
+/// then not change: at 0.1 ms its error is 4e-3.
 #[test]
 fn single_precision_follows_double_at_any_step() {
     for run in runs() {

@@ -1,4 +1,4 @@
-//! Whole recorded runs: inner steps between samples, reversals between samples.
+//! Complete recorded runs: inner steps between samples, reversals between samples.
 
 mod common;
 
@@ -54,7 +54,7 @@ fn run(effects: &[(&str, &[f64])], columns: &Columns, max_step_s: f64) -> Vec<f6
     out
 }
 
-/// Without inner steps and without reversals a run is the chain, sample by sample.
+/// Without inner steps and without reversals a run equals the chain, sample by sample.
 #[test]
 fn a_run_is_the_chain() {
     let sines = Sines::one_way(1.0);
@@ -66,9 +66,10 @@ fn a_run_is_the_chain() {
     }
 }
 
-/// Inner steps refine a coarse record: halving them changes little, and what is left falls
-/// with them. Reversals lie between samples here, and the lag would show a jump put in the
-/// wrong place: 0.02 s of 2 F_d over tau is far more than is asked for.
+/// Inner steps refine a coarse record: halving them changes little, and the error decreases.
+///
+/// Reversals are between samples here. The lag would reveal a jump at a wrong instant: 0.02 s of 2
+/// F_d over tau is far above the tolerance.
 #[test]
 fn inner_steps_converge_across_reversals() {
     let sines = Sines {
@@ -89,7 +90,7 @@ fn inner_steps_converge_across_reversals() {
     assert!(fine < coarse / 10.0, "{coarse} N, {fine} N");
 }
 
-/// Columns of different lengths end the run with the shortest; an empty one gives nothing.
+/// Columns of different lengths end the run with the shortest; an empty one gives no result.
 #[test]
 fn the_shortest_column_ends_the_run() {
     let mut columns = Columns::of(&Sines::one_way(1.0), 0.01, 50);
@@ -99,8 +100,9 @@ fn the_shortest_column_ends_the_run() {
     assert!(run(&[], &columns, 0.01).is_empty());
 }
 
-/// Between its samples a temperature is on a straight line: a coarse record with one and a fine one
-/// are the same run.
+/// The temperature is interpolated linearly between its samples.
+///
+/// A coarse record and a fine record give the same run.
 #[test]
 fn a_temperature_is_followed_between_its_samples() {
     let sines = Sines::one_way(1.0);
@@ -119,8 +121,10 @@ fn a_temperature_is_followed_between_its_samples() {
     assert!((coarse[200] - bare[200]).abs() > 0.5);
 }
 
-/// Warm oil makes a fast film: the steps of a run follow its warmest sample as those of a film of
-/// that oil, and no column, or one at the reference, asks for nothing.
+/// Warm oil requires shorter inner steps.
+///
+/// The steps of a run follow its warmest sample, as for a film of that oil. Without a temperature,
+/// or at the reference temperature, there is no additional requirement.
 #[test]
 fn warm_oil_asks_for_short_steps() {
     let effects: [(&str, &[f64]); 1] = [("vogel_viscosity", &[800.0, -95.0, 40.0])];
@@ -141,8 +145,9 @@ fn warm_oil_asks_for_short_steps() {
     assert!((warm / wanted - 1.0).abs() < 1e-3 && warm > 1.5 * without);
 }
 
-/// A speed that is zero but for rounding where the motion turns round is a reversal at that sample:
-/// what follows is as if the speed were small there.
+/// A speed that is zero except for rounding at a reversal is a reversal at that sample.
+///
+/// The following samples are as if the speed were small there.
 #[test]
 fn a_reversal_may_lie_at_a_sample() {
     let turning = |speed_m_s: f64| {
@@ -158,14 +163,14 @@ fn a_reversal_may_lie_at_a_sample() {
     for speed_m_s in [-8.7e-18, -1e-13, -1e-300] {
         let (found, _) = turning(speed_m_s);
         for (i, (a, b)) in found.iter().zip(&small).enumerate() {
-            // Of a speed below the rounding of its neighbour's nothing is left: the shaft rests there.
+            // A speed below the rounding of its neighbour is lost: the shaft rests there.
             let rests = i == at && *a == 0.0;
             assert!(rests || (a - b).abs() < 1e-3, "{speed_m_s} {i}: {a} {b}");
         }
     }
 }
 
-/// What a prediction costs is counted as it is made: a step for each sample, and the inner ones.
+/// The predicted cost counts the actual steps: one per sample, and the inner ones.
 #[test]
 fn the_cost_of_a_run_is_its_inner_steps() {
     let chain = chain::<f64>(&[]);
@@ -178,7 +183,7 @@ fn the_cost_of_a_run_is_its_inner_steps() {
     }
 }
 
-/// How many steps a law of the catalogue takes along a record, and its readings (N).
+/// The number of steps of a law of the catalogue along a record, and its readings (N).
 struct Counted<'a>(Record<'a>);
 
 impl Visitor<f64> for Counted<'_> {
@@ -192,7 +197,7 @@ impl Visitor<f64> for Counted<'_> {
     }
 }
 
-/// A law without memory takes one step a sample, and reads the same where there are many between.
+/// A law without memory takes one step per sample, with the same readings as with many steps.
 #[test]
 fn laws_without_memory_take_one_step_a_sample() {
     let motion = Sines::two_way(std::f64::consts::TAU / 40.0);
@@ -221,8 +226,7 @@ fn laws_without_memory_take_one_step_a_sample() {
     }
 }
 
-/// A law of the catalogue, with its starting values, along a record: its inner step (s), and its
-/// readings (N).
+/// A law of the catalogue with its starting values along a record: inner step (s) and readings (N).
 struct Along<'a>(Record<'a>, f64);
 
 impl Visitor<f64> for Along<'_> {
@@ -236,8 +240,10 @@ impl Visitor<f64> for Along<'_> {
     }
 }
 
-/// Between samples that are far apart laws without a film take no more steps than the records can tell
-/// of: 16 of 0.4 s, not 200, and what friction is then hardly differs. Of other records all are taken.
+/// For widely spaced samples laws without a film take only as many steps as the record resolves.
+///
+/// That is 16 steps of 0.4 s instead of 200, and the friction hardly differs. For other records all
+/// steps are taken.
 #[test]
 fn samples_far_apart_are_not_walked_in_milliseconds() {
     let slow = Sines::two_way(std::f64::consts::TAU / 40.0);

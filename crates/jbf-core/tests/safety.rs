@@ -1,5 +1,4 @@
-//! Whatever finite motion, load and step a controller meets, the film stays inside the
-//! bearing and gives a number.
+//! For any finite motion, load and step the film stays inside the bearing and remains finite.
 
 mod common;
 
@@ -30,8 +29,9 @@ fn random_law<T: Real>(random: &mut Random) -> Journal<T> {
     Journal::new(&Bearing::THESIS, load_n, &p, clock).expect("in the catalogue's bounds")
 }
 
-/// Half a million random steps: speeds to 1e6 m/s, steps to 10 s, loads that jump by a
-/// hundred, that vanish and that turn round.
+/// Half a million random steps: speeds to 1e6 m/s, steps to 10 s.
+///
+/// Loads jump by a factor of a hundred, vanish, and change sign.
 fn torture<T: Real>(stepper: &impl Stepper, seed: u64) {
     let mut random = Random::new(seed);
     let mut held = 0_u32;
@@ -67,7 +67,7 @@ fn torture<T: Real>(stepper: &impl Stepper, seed: u64) {
         }
         held += u32::from(state.clamped > 0);
     }
-    // The test is worth something only if many of these steps were too coarse.
+    // The test is meaningful only if many of these steps were too coarse.
     assert!(held > LAWS / 4, "{held} of {LAWS} laws were ever held");
 }
 
@@ -91,7 +91,7 @@ fn runge_kutta_in_single_precision_stays_inside() {
     torture::<f32>(&Rk4, 4);
 }
 
-/// The same torture for the full model.
+/// This test for the full model.
 fn torture_full<T: Real>(stepper: &impl StiffStepper, seed: u64) {
     let mut random = Random::new(seed);
     for _ in 0..LAWS {
@@ -132,7 +132,7 @@ fn the_full_model_stays_inside() {
     torture_full::<f64>(&Rodas5P, 7);
 }
 
-/// A step that is too coarse is counted, once, and the film recovers from it.
+/// A step that is too coarse is counted once, and the film recovers from it.
 #[test]
 fn a_step_too_coarse_is_counted_and_forgotten() {
     let law = common::law::<f64>(Clock::Journal);
@@ -155,7 +155,7 @@ fn a_step_too_coarse_is_counted_and_forgotten() {
     );
 }
 
-/// Input that is not finite leaves the film where it was, and is counted.
+/// Input that is not finite leaves the film unchanged, and is counted.
 #[test]
 fn lost_numbers_leave_the_film_alone() {
     let law = common::law::<f64>(Clock::Journal);
@@ -169,8 +169,10 @@ fn lost_numbers_leave_the_film_alone() {
     }
 }
 
-/// The same with asperities too soft to carry the load, where a step could be held at the wall
-/// itself: there the film would not flow and the journal would stay.
+/// The film also recovers with asperities too soft to carry the load.
+///
+/// A step could be held at the wall itself there, where the film would not flow and the journal
+/// would stay.
 #[test]
 fn soft_asperities_do_not_trap_the_journal() {
     for k0 in [1.0, 1e3, 1e5] {

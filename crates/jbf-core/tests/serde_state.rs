@@ -1,4 +1,4 @@
-//! What a loop learned survives a power cycle: `cargo test -p jbf-core --features serde`.
+//! Learned values survive a power cycle: `cargo test -p jbf-core --features serde`.
 #![cfg(feature = "serde")]
 
 mod common;
@@ -21,7 +21,7 @@ fn stored<S: Serialize + DeserializeOwned>(state: &S) -> S {
     serde_json::from_str(&text).unwrap()
 }
 
-/// Drive a loop for some laps of two seconds; what its compensator is then.
+/// Runs a loop for some periods of two seconds and returns the state of its compensator.
 fn driven<C: Compensator<f64>>(compensator: C) -> C::State {
     let mut bench = Bench::new(plant(&[]), controller(CONTROL, compensator));
     for i in 0..20_000_u32 {
@@ -31,11 +31,11 @@ fn driven<C: Compensator<f64>>(compensator: C) -> C::State {
     bench.state.compensator
 }
 
-/// Both states answer alike from here on.
+/// Both states give the same output from here on.
 fn go_on_alike<C: Compensator<f64>>(compensator: &C, mut one: C::State, mut other: C::State) {
     for i in 0..5_000_u32 {
         let t = f64::from(i) * DT_S;
-        // Sense grows: it is filled in field by field.
+        // `Sense` may get further fields, so it is filled in field by field.
         let mut sense = Sense::default();
         sense.angle_rad = t.cos();
         sense.velocity_rad_s = -t.sin();

@@ -1,5 +1,6 @@
-//! A chain from names and lists of values is the chain that one builds by hand, and says what is
-//! wrong with a list.
+//! A chain built from names and lists of values equals the one built directly.
+//!
+//! Invalid lists are reported by name.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Steady states: the Stribeck curve against an independent solution, its limits, and the
+//! Steady states: the Stribeck curve compared with an independent solution, its limits, and the
 //! printed transition eccentricities.
 
 mod common;
@@ -48,8 +48,9 @@ fn stribeck_curves_of_the_four_tables() {
     }
 }
 
-/// As the speed goes to zero the asperities carry the whole load: f -> f_m, whatever K0. What
-/// the film still carries is of the order of U, so f_m - f falls with U.
+/// At vanishing speed the asperities carry the whole load: f -> f_m for every K0.
+///
+/// The share of the film is of the order of U, so f_m - f decreases with U.
 #[test]
 fn friction_at_a_creep_is_f_m() {
     for (table, ..) in TABLES {
@@ -83,8 +84,9 @@ fn a_long_run_settles_on_the_steady_state() {
     }
 }
 
-/// Three of the four printed values are (3.20) cut after the fourth digit; Table 4.2 prints
-/// 0.9727 where (3.20) gives 0.97235 - a slip of the thesis, which
+/// Three of the four printed values are (3.20) truncated after the fourth digit.
+///
+/// Table 4.2 prints 0.9727 where (3.20) gives 0.97235: an error of the thesis, which
 /// [`Journal::with_eps_tr`] reproduces.
 #[test]
 fn transition_eccentricities_as_printed() {
@@ -102,7 +104,7 @@ fn transition_eccentricities_as_printed() {
     }
 }
 
-/// A given eps_tr belongs to the constructor's load, and comes back with it.
+/// A given eps_tr applies to the constructor's load, and returns with it.
 #[test]
 fn a_given_eps_tr_survives_a_change_of_load() {
     let law = law(4.2).with_eps_tr(0.9727).expect("inside the bearing");

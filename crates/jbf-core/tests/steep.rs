@@ -1,5 +1,7 @@
-//! Loops round models of steep viscous friction: as good on a shaft that coasts for a fraction of
-//! a step as on one that coasts for many.
+//! Loops with models of steep viscous friction.
+//!
+//! They are as accurate with a shaft that coasts for a fraction of a step as with one that coasts
+//! for many steps.
 
 mod common;
 
@@ -21,13 +23,13 @@ fn law<T: Real>(viscous: f64) -> Coulomb<T> {
     Coulomb::build(None, None, &values, Clock::Journal).expect("in the bounds")
 }
 
-/// RMS of the true error over a period, as a share of the target's amplitude.
+/// RMS of the true error over a period, relative to the target's amplitude.
 fn error<T: Real>(control: Control, viscous: f64, times: f64) -> f64 {
     let chain: Chain<f64, Coulomb<f64>> = chain_round(law(viscous), &[]);
     let model = Bare::new(law::<T>(viscous), 0.0127, DRIVE.volts_per_n, LOAD_N);
     let compensator = Observed::new(model, &bench::settings(control)).expect("settings");
     let controller = bench::controller::<T, _>(control, compensator);
-    // What the drive can do without its limit.
+    // An amplitude within the ability of the drive.
     let viscous_v = chain.law.friction(&chain.law.start(LOAD_N), 0.0127).smooth * DRIVE.volts_per_n;
     let size = times * 1.5 / (1.0 + 1.5 * viscous_v);
     let plant = Plant::new(chain, DRIVE, DT_S / 2.0).expect("the thesis's drive");
@@ -57,7 +59,7 @@ fn error<T: Real>(control: Control, viscous: f64, times: f64) -> f64 {
     square.sqrt() / size
 }
 
-/// Viscous friction, N s/m, whose shaft coasts for 7 ms to a seventh of a step.
+/// Viscous friction, N s/m, with which the shaft coasts for 7 ms down to a seventh of a step.
 const VISCOUS: [f64; 10] = [0.0, 1e3, 2e3, 2.4e3, 3e3, 4e3, 5e3, 7e3, 1e4, 2e4];
 
 #[test]
@@ -78,8 +80,9 @@ fn a_position_is_followed_as_well_with_steep_friction_as_without() {
     }
 }
 
-/// Ten times what the drive can do: the voltage is not what was asked for, and the friction that was
-/// to be cancelled is not.
+/// A target of ten times the drive's ability.
+///
+/// The actual voltage differs from the commanded one, and so does the friction to be cancelled.
 #[test]
 fn a_drive_at_its_limit_does_not_lose_the_observer() {
     for viscous in VISCOUS {
@@ -87,7 +90,7 @@ fn a_drive_at_its_limit_does_not_lose_the_observer() {
             error::<f64>(Control::Position, viscous, 10.0),
             error::<f32>(Control::Position, viscous, 10.0),
         ] {
-            // Less than a target that is not followed at all.
+            // Less than the error without any motion.
             assert!(error < 0.7, "{viscous}: {error}");
         }
     }

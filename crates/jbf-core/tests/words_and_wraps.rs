@@ -1,5 +1,7 @@
-//! What no other test here asks of the core alone: names on its pages, a contact that does not
-//! bend, an instrument by itself, a table that wraps, and what was learned of viscous friction.
+//! Properties of the core that no other test here checks.
+//!
+//! Names on its pages, a contact that does not deflect, an instrument alone, a periodic table, and
+//! learned viscous friction.
 
 mod common;
 
@@ -12,7 +14,7 @@ use jbf_core::page::{Bound, Start};
 use jbf_core::run::read_force;
 use jbf_core::{Friction, Motion};
 
-/// Files and Python know them by these names, each by one of its own.
+/// Files and Python use these names, each of them unique.
 #[test]
 fn places_to_start_from_have_the_names_that_files_know() {
     let names = [
@@ -48,7 +50,7 @@ fn places_to_start_from_have_the_names_that_files_know() {
     assert_eq!(Bound::TransitionSpeed.name(), "transition_speed");
 }
 
-/// A law that says it has a bristle and lets it be rigid.
+/// A law that declares a bristle but leaves it rigid.
 #[derive(Clone, Copy, Debug)]
 struct Rigid(f64);
 
@@ -75,7 +77,7 @@ impl Law<f64> for Rigid {
     fn advance(&self, _state: &mut (), _speed_m_s: [f64; 3], _rate: f64, _dt_s: f64) {}
 }
 
-/// A bristle that a law does not bend gives its level along the motion, and nothing at rest.
+/// A bristle that a law does not deflect gives its level along the motion, and zero at rest.
 #[test]
 fn a_bristle_that_does_not_bend_gives_the_level_along_the_motion() {
     let speeds = [0.1, 0.2, 0.1, 0.0, 0.0, -0.1, -0.3, 0.0];
@@ -91,7 +93,7 @@ fn a_bristle_that_does_not_bend_gives_the_level_along_the_motion() {
     }
 }
 
-/// What an instrument reads of a force, sample by sample.
+/// Readings of an instrument for a force, sample by sample.
 fn read(effects: &[(&str, &[f64])], time_s: &[f64], force_n: &[f64]) -> Vec<f64> {
     let mut out = Vec::new();
     read_force(&chain::<f64>(effects).effects, time_s, force_n, |i, n| {
@@ -101,8 +103,9 @@ fn read(effects: &[(&str, &[f64])], time_s: &[f64], force_n: &[f64]) -> Vec<f64>
     out
 }
 
-/// A lag follows straight lines between samples as its differential equation does, however far
-/// apart they are: of a slope `s` it is late by `s tau (1 - exp(-t / tau))`.
+/// A lag follows its differential equation along linear segments at any sample spacing.
+///
+/// At a slope `s` it lags by `s tau (1 - exp(-t / tau))`.
 #[test]
 fn a_lag_alone_follows_straight_lines_between_samples() {
     let tau_s = 0.1;
@@ -121,7 +124,7 @@ fn a_lag_alone_follows_straight_lines_between_samples() {
     }
 }
 
-/// A zero that wanders counts its time from the first sample, whatever the clock says.
+/// A drifting zero counts its time from the first sample, independent of the clock.
 #[test]
 fn a_drift_counts_from_the_first_sample() {
     let time_s: Vec<f64> = (0..12).map(|i| 50.0 + 0.5 * f64::from(i)).collect();
@@ -131,8 +134,9 @@ fn a_drift_counts_from_the_first_sample() {
     }
 }
 
-/// A table against the angle is one period: between its entries straight lines, the last one back
-/// to the first, the same any number of periods further or back.
+/// A table against the angle is one period, linear between its entries.
+///
+/// The last entry connects to the first, and the table repeats in both directions.
 #[test]
 fn a_table_against_the_angle_repeats() {
     let table = Table::new([1.0, 3.0, 2.0, 6.0], Axis::Angle, 0.5, 0.0).expect("a table");
@@ -153,7 +157,7 @@ fn a_table_against_the_angle_repeats() {
     }
 }
 
-/// A table against the speed knows no sign, and holds its last entry beyond it.
+/// A table against the speed ignores the sign, and holds its last entry beyond its end.
 #[test]
 fn a_table_against_the_speed_ends() {
     let table = Table::new([1.0, 3.0, 2.0], Axis::Speed, 0.5, 0.0).expect("a table");
@@ -173,8 +177,9 @@ fn a_table_against_the_speed_ends() {
     }
 }
 
-/// The learned gamma scales viscous friction and nothing else: in proportion, and with none of it
-/// left what remains is dry.
+/// The learned gamma scales viscous friction only, and in proportion.
+///
+/// With gamma zero only dry friction remains.
 #[test]
 fn viscous_friction_is_in_proportion_to_the_gamma_that_was_learned() {
     let sent = |gamma: f64, velocity_rad_s: f64| {
@@ -192,7 +197,7 @@ fn viscous_friction_is_in_proportion_to_the_gamma_that_was_learned() {
         let viscous = two - one;
         assert!(viscous * velocity > 0.0, "{velocity}: {viscous} V");
         assert!((three - two - viscous).abs() < 1e-12 * three.abs());
-        // Asperities just touch where it begins: there is no dry friction yet.
+        // Asperities just touch at the start: there is no dry friction yet.
         assert!(
             (one - viscous).abs() < 1e-9 * one.abs(),
             "{velocity}: {one} V, {viscous} V"

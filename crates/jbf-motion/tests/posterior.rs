@@ -1,4 +1,4 @@
-//! The smoother and the whitening against dense linear algebra, and their invariances.
+//! The smoother and the whitening compared with dense linear algebra, and their invariances.
 
 use jbf_motion::{smooth, whiten, Readings, Smoothed};
 use nalgebra::{DMatrix, DVector, SMatrix};
@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, SMatrix};
 const SAMPLES: usize = 9;
 const INF: f64 = f64::INFINITY;
 
-/// Uneven instants, one of them repeated, and readings of which some are missing.
+/// Uneven instants, one of them repeated, and readings, some of them missing.
 struct Record {
     time: Vec<f64>,
     position: Vec<f64>,
@@ -84,7 +84,7 @@ fn dense<const N: usize>(record: &Record) -> (DVector<f64>, DMatrix<f64>) {
         let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
         let power = |n: usize| h.powi(n as i32) / factorial(n);
         let f = SMatrix::<f64, N, N>::from_fn(|i, j| if j < i { 0.0 } else { power(j - i) });
-        // The covariance of the repeated integrals of white noise, by its definition.
+        // The covariance of the repeated integrals of white noise, by definition.
         let moment = |i: usize, j: usize| power(i) * power(j) * h / (i + j + 1) as f64;
         let q = SMatrix::<f64, N, N>::from_fn(|i, j| moment(N - 1 - i, N - 1 - j))
             * record.intensity[k];

@@ -1,12 +1,13 @@
-//! Numbers out of bytes.
+//! Conversion of bytes to numbers.
 
 use arbitrary::{Result, Unstructured};
 use jbf_core::effect::{self, Effects, Parameter};
 use jbf_core::law::Info;
 use jbf_core::{Clock, Real};
 
-/// Any number of at most `largest`: zero, denormal, whatever the bits say; half the time one of the
-/// size of machines, which bits seldom are.
+/// Any number of magnitude at most `largest`, including zero and denormals.
+///
+/// Half of the numbers have a magnitude typical of machines, which is rare in random bits.
 pub fn number(bytes: &mut Unstructured<'_>, largest: f64) -> Result<f64> {
     let plain: u8 = bytes.arbitrary()?;
     if plain < 128 {
@@ -20,7 +21,7 @@ pub fn number(bytes: &mut Unstructured<'_>, largest: f64) -> Result<f64> {
     })
 }
 
-/// Anything from `low` to `high`: over all decades where both are positive.
+/// Any number from `low` to `high`, over all decades if both are positive.
 pub fn between(bytes: &mut Unstructured<'_>, low: f64, high: f64) -> Result<f64> {
     let share = f64::from(bytes.arbitrary::<u16>()?) / f64::from(u16::MAX);
     let value = if low > 0.0 {
@@ -31,7 +32,7 @@ pub fn between(bytes: &mut Unstructured<'_>, low: f64, high: f64) -> Result<f64>
     Ok(value.clamp(low, high))
 }
 
-/// A value within the bounds of a page, its ends and its null now and then.
+/// A value within the bounds of a parameter; sometimes a bound or its null.
 pub fn parameter(bytes: &mut Unstructured<'_>, page: &Parameter) -> Result<f64> {
     match bytes.arbitrary::<u8>()? {
         0 => Ok(page.lower),
@@ -44,7 +45,7 @@ pub fn parameter(bytes: &mut Unstructured<'_>, page: &Parameter) -> Result<f64> 
     }
 }
 
-/// Values for a whole page.
+/// Values for all parameters of a list.
 pub fn parameters<T: Real>(bytes: &mut Unstructured<'_>, pages: &[Parameter]) -> Result<Vec<T>> {
     let values = pages.iter().map(|p| parameter(bytes, p).map(T::of));
     values.collect()
@@ -67,7 +68,7 @@ pub fn clock(bytes: &mut Unstructured<'_>) -> Result<Clock> {
     })
 }
 
-/// Some of the effects that go with a law: none, a few, or any subset.
+/// Some of the effects that are compatible with a law: none, a few, or any subset.
 pub fn effects<T: Real>(bytes: &mut Unstructured<'_>, law: &Info) -> Result<Effects<T>> {
     let mut effects = Effects::NONE;
     let fitting = |i: usize| effect::CATALOGUE[i].lacking(law).is_none();
@@ -86,13 +87,13 @@ pub fn effects<T: Real>(bytes: &mut Unstructured<'_>, law: &Info) -> Result<Effe
             continue;
         }
         let values: Vec<T> = parameters(bytes, info.parameters)?;
-        // Single precision may round a bound outwards: refused, as it should be.
+        // In single precision a bound may round outwards, which is correctly rejected.
         let _ = effects.set(info.name, &values);
     }
     Ok(effects)
 }
 
-/// The relative step from one number to the next.
+/// The relative spacing of the numbers.
 pub fn rounding<T: Real>() -> f64 {
     if size_of::<T>() == size_of::<f32>() {
         f32::EPSILON.into()

@@ -1,4 +1,4 @@
-//! Any law with any effects that go with it, along a motion of jumps.
+//! Any law with any compatible effects, along a motion with jumps.
 
 use crate::bytes::{clock, effects, number, parameters, step_s};
 use crate::steps::seen;
@@ -7,8 +7,10 @@ use jbf_core::effect::{Effects, Rig};
 use jbf_core::law::{self, with_law, Named, Visitor};
 use jbf_core::{Bearing, Chain, Motion, Real};
 
-/// Largest quantity of the motion, SI: beyond, the force of a stiff drive or the heat of a film in
-/// single precision is too large for it, as the equations say.
+/// Largest quantity of the motion, SI.
+///
+/// Beyond it, the equations give a force of a stiff drive or a heat of a film that overflows in
+/// single precision.
 const LARGEST: f64 = 1e4;
 
 struct Along<'a, 'b, T: Real> {

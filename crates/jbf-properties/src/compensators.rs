@@ -1,4 +1,4 @@
-//! Every compensator of the core with any settings that its rules allow.
+//! Every compensator of the core with any valid settings.
 
 use crate::bytes::{between, clock, effects, number, parameters};
 use arbitrary::{Result, Unstructured};
@@ -18,9 +18,9 @@ use jbf_core::observer::CoulombObserver;
 use jbf_core::plant::Drive;
 use jbf_core::{Bearing, Chain, Real};
 
-/// Something to do with any compensator.
+/// An action on any compensator.
 pub trait With<T: Real> {
-    /// Do it, with a name for the failure's words.
+    /// Performs the action; `name` identifies the compensator in a failure message.
     fn with<C: Compensator<T>>(
         self,
         bytes: &mut Unstructured<'_>,
@@ -29,7 +29,7 @@ pub trait With<T: Real> {
     ) -> Result<()>;
 }
 
-/// What all of a loop's parts are told alike.
+/// Settings shared by all parts of a loop.
 pub struct Loop {
     /// The motor and shaft.
     pub drive: Drive,
@@ -39,7 +39,7 @@ pub struct Loop {
     pub dt_s: f64,
 }
 
-/// Any compensator but the observed one; true settings or none.
+/// Any compensator except the observed one; its settings may be valid or invalid.
 fn plain<T: Real>(
     bytes: &mut Unstructured<'_>,
     rig: &Loop,
@@ -146,7 +146,7 @@ impl<T: Real, W: With<T>> Visitor<T> for Round<'_, '_, T, W> {
     }
 }
 
-/// The observed compensator round any law with any effects.
+/// The observed compensator with any law and any effects.
 fn round<T: Real>(bytes: &mut Unstructured<'_>, rig: &Loop, then: impl With<T>) -> Result<()> {
     let settings = Settings::new(
         &rig.drive,
@@ -175,7 +175,7 @@ fn round<T: Real>(bytes: &mut Unstructured<'_>, rig: &Loop, then: impl With<T>) 
     with_law(page.name, bearing, Some(104.0), &values, clock, round).unwrap_or(Ok(()))
 }
 
-/// Build any compensator and hand it on.
+/// Builds any compensator and passes it to `then`.
 pub fn any<T: Real>(bytes: &mut Unstructured<'_>, rig: &Loop, then: impl With<T>) -> Result<()> {
     let which = bytes.int_in_range(0..=9_u8)?;
     if which < 5 {

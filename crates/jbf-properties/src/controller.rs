@@ -1,5 +1,6 @@
-//! Any loop: whatever the counter and the target, a finite voltage within the limit and a finite
-//! speed; and once both are calm, one that may be believed again.
+//! Any loop gives a finite voltage within the limit and a finite speed for any counter and target.
+//!
+//! When both are constant, the loop becomes valid again.
 
 use crate::bytes::{between, number};
 use crate::compensators::{any, Loop, With};
@@ -13,7 +14,7 @@ use jbf_core::plant::Drive;
 use jbf_core::reference::Target;
 use jbf_core::Real;
 
-/// Most steps of one input, so that one is not a hundred.
+/// Most steps per input, so that one input does not take as long as a hundred.
 const STEPS: usize = 64;
 
 struct Running<T: Real> {
@@ -53,7 +54,7 @@ impl<T: Real> With<T> for Running<T> {
             }
             let kind: u8 = bytes.arbitrary()?;
             match kind & 7 {
-                // Frozen, jumping, or on at a speed that may change.
+                // Frozen, jumping, or moving at a speed that may change.
                 0 | 1 => moving = 0,
                 2 => counter = bytes.arbitrary()?,
                 3 | 4 => moving = bytes.int_in_range(-most_counts..=most_counts)?,
@@ -72,7 +73,7 @@ impl<T: Real> With<T> for Running<T> {
                 value: any()?,
                 rate: any()?,
             };
-            // A stretch of the same, as a counter that hangs and a target that holds are.
+            // A period of constant input, as with a frozen counter and a constant target.
             let stretch = if kind & 0xe0 == 0xe0 { 64 } else { 1 };
             for _ in 0..stretch {
                 let parts = controller.step(&mut state, counter & 0xffff, &target);
@@ -128,7 +129,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     any(bytes, &Loop { drive, law, dt_s }, running)
 }
 
-/// Any loop round any compensator, over counters and targets of any kind.
+/// Any loop with any compensator, over counters and targets of any kind.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

@@ -8,10 +8,10 @@ use jbf_core::law::journal::{Journal, Parameters, PARAMETERS};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock};
 
-/// Long runs take long: what is looked for is numbers, not patience.
+/// Few samples, because long runs take long and only finiteness is tested.
 const SAMPLES: usize = 12;
 
-/// Most steps for that many samples.
+/// Most steps for that number of samples.
 const MOST_STEPS: u32 = 2_000_000;
 
 fn along<F: Film<f64, N>, E: Excitation, const N: usize>(
@@ -54,7 +54,7 @@ pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     let mut value = |i: usize| parameter(bytes, &PARAMETERS[i]);
     let parameters = Parameters {
         f_m: value(0)?,
-        // Beyond these a journal of this mass truly rings for millions of periods.
+        // Beyond these values a journal of this mass physically oscillates for millions of periods.
         u_tr_m_s: value(1)?.clamp(1e-3, 1.0),
         k0: value(2)?,
         gamma: value(3)?,

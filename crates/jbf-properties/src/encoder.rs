@@ -1,4 +1,4 @@
-//! The encoder against whole numbers: every turn is counted, a jump is told and left out.
+//! The encoder compared with integers: every turn is counted, a jump is reported and omitted.
 
 use crate::bytes::{between, rounding};
 use crate::steps::seen;
@@ -6,7 +6,7 @@ use arbitrary::{Result, Unstructured};
 use jbf_core::encoder::{Encoder, State};
 use jbf_core::Real;
 
-/// Counters as wide as these are seldom, but allowed.
+/// Counters as wide as these are rare, but allowed.
 const BITS: [u32; 6] = [8, 10, 16, 24, 31, 32];
 
 fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
@@ -24,7 +24,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     encoder.step(&mut state, counter);
     let (mut total, mut still) = (0_i64, 0_u32);
     while !bytes.is_empty() {
-        // A motion that the shaft can have, or a counter from anywhere.
+        // A possible motion of the shaft, or an arbitrary counter.
         let possible = bytes.ratio(7, 8)?;
         let moved = if possible {
             bytes.int_in_range(-most..=most)?
@@ -34,7 +34,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
         let believed = if moved.abs() <= most { moved } else { 0 };
         total += believed;
         still = if moved == 0 { still + 1 } else { 0 };
-        // What lies above the counter's bits is noise to it.
+        // Bits above the width of the counter are ignored.
         let above = if bits < 32 {
             bytes.arbitrary::<u32>()? << bits
         } else {

@@ -1,4 +1,4 @@
-//! Both bearing models under each of their steppers.
+//! Both bearing models with each of their steppers.
 
 use crate::bytes::{between, clock, number, parameter, step_s};
 use crate::steps::seen;

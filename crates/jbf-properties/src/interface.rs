@@ -1,5 +1,7 @@
-//! The C interface as C calls it: what it refuses it says by a code, null pointers among it, and what
-//! it steps has the same bits as the core.
+//! The C interface as called from C.
+//!
+//! It reports rejected input, including null pointers, by a code; its steps have the same bits as
+//! those of the core.
 
 use crate::bytes::{between, number, parameters, step_s};
 use crate::steps::seen;
@@ -24,7 +26,7 @@ const BEARING: CBearing = CBearing {
     count: Bearing::THESIS.count,
 };
 
-/// One number out of sixteen is none.
+/// One number in sixteen is not finite.
 fn any<T: Real>(bytes: &mut Unstructured<'_>) -> Result<T> {
     Ok(match bytes.int_in_range(0..=31_u8)? {
         0 => T::of(f64::NAN),
@@ -44,12 +46,12 @@ fn motion<T: Real>(bytes: &mut Unstructured<'_>, time_s: T) -> Result<CMotion<T>
     })
 }
 
-/// The same, where all of it is finite.
+/// Whether all values of a motion are finite.
 fn sound<T: Real>(m: &CMotion<T>) -> bool {
     Motion::from(m).is_finite()
 }
 
-/// Both texts end with a zero; the rule says something.
+/// Both texts are terminated by a zero and are not empty.
 fn told(error: &CError) {
     assert!(error.name.contains(&0) && error.rule.contains(&0));
     assert!(error.name[0] != 0 && error.rule[0] != 0);
@@ -76,7 +78,7 @@ macro_rules! laws {
                 // SAFETY: `model` and `error` are writable, `values` holds at least `count`.
                 let done = unsafe {
                     assert_eq!(jbf_c::$init(null_mut(), bearing, load_n, given, count, clock, &mut error), NULL);
-                    // Without a place for the error the answer is the same.
+                    // Without a location for the error the result is the same.
                     let silent = jbf_c::$init(model, bearing, load_n, given, count, clock, null_mut());
                     let done = jbf_c::$init(model, bearing, load_n, given, count, clock, &mut error);
                     assert_eq!(silent, done);
@@ -106,7 +108,7 @@ macro_rules! laws {
                 for _ in 0..bytes.int_in_range(0..=3)? {
                     effect(bytes, model, &mut chain, &page)?;
                 }
-                // SAFETY: init said that the model is built.
+                // SAFETY: init reported that the model is built.
                 unsafe { along(bytes, model, &chain, &page)? };
                 Ok(())
             }
@@ -124,7 +126,7 @@ macro_rules! laws {
                 let wrong = bytes.ratio(1, 8)?;
                 let name = if wrong { bytes.choose(&NAMES)?.as_ptr() } else { text.as_ptr().cast::<c_char>() };
                 let mut error = CError { name: [0; 32], rule: [0; 96], value: 0.0 };
-                // SAFETY: a built model, a text with its zero, as many values as are said.
+                // SAFETY: a built model, a text with its zero, and the stated number of values.
                 let done = unsafe {
                     assert_eq!(jbf_c::$effect(null_mut(), name, values.as_ptr(), values.len(), null_mut()), NULL);
                     assert_eq!(jbf_c::$effect(model, null(), values.as_ptr(), values.len(), null_mut()), NULL);
@@ -187,7 +189,7 @@ macro_rules! laws {
                     rows.iter().map(|m| f64::from(of(m))).collect()
                 };
                 let time_s = column(|m| m.time_s);
-                // A speed of a machine: a fine step of the film at 1e4 m/s takes ever.
+                // A realistic speed: fine steps of the film at 1e4 m/s take too long.
                 let velocity_m_s: Vec<f64> = column(|m| m.velocity_m_s).iter().map(|v| v.clamp(-1.0, 1.0)).collect();
                 let acceleration_m_s2 = column(|m| m.acceleration_m_s2);
                 let angle_rad = column(|m| m.angle_rad);
@@ -256,7 +258,7 @@ laws! {
         jbf_elasto_plastic_f64_init jbf_elasto_plastic_f64_effect jbf_elasto_plastic_f64_start jbf_elasto_plastic_f64_step jbf_elasto_plastic_f64_predict;
 }
 
-/// Any law of the interface in either number.
+/// Any law of the interface in either precision.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     assert_eq!(RUNS.len(), jbf_c::SIZES.len());
     let run = bytes.choose(RUNS)?;

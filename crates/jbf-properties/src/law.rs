@@ -1,5 +1,7 @@
-//! Friction of a bare law resists: what jumps is not negative, the rest has the sign of the motion,
-//! and a bristle pulls no harder than the level it bends towards.
+//! Friction of a bare law resists the motion.
+//!
+//! The jump is not negative, the rest has the sign of the motion, and the force of a bristle does
+//! not exceed the level towards which it deflects.
 
 use crate::bytes::{between, clock, number, parameters, step_s};
 use crate::steps::seen;
@@ -12,8 +14,9 @@ use jbf_core::{Bearing, Chain, Motion, Real};
 /// Largest speed and load, SI.
 const LARGEST: f64 = 1e4;
 
-/// The laws whose bristle has a damper of its own, or whose level falls late: their force may pass
-/// the level of the moment.
+/// Laws whose force may exceed the current level.
+///
+/// Their bristle has a separate damper, or their level falls late.
 const FREER: [&str; 2] = ["lugre", "seven_parameter"];
 
 struct Along<'a, 'b>(&'a mut Unstructured<'b>);
@@ -38,7 +41,7 @@ impl<T: Real> Visitor<T> for Along<'_, '_> {
             }
             chain.step(&mut state, &motion, dt_s);
             if dt_s < T::of(SHORTEST_STEP_S) {
-                // Of no length: nothing happens.
+                // A step of zero length changes nothing.
                 continue;
             }
             seen();
@@ -52,7 +55,7 @@ impl<T: Real> Visitor<T> for Along<'_, '_> {
                 let power_w = state.force_n * v;
                 assert!(power_w >= T::ZERO, "{power_w:?} {}", told());
             } else if !FREER.contains(&L::INFO.name) {
-                // A spring that has bent keeps what it bent to.
+                // A deflected spring keeps its deflection.
                 highest = highest.max(sliding.jump);
                 let bent_n = (state.force_n - sliding.smooth).abs();
                 let rounding = T::of(1e-3) * (highest + sliding.smooth.abs());
@@ -83,7 +86,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     .unwrap_or(Ok(()))
 }
 
-/// Any law, in parameters anywhere in their bounds, along speeds that jump.
+/// Any law, with parameters anywhere within their bounds, along speeds that jump.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

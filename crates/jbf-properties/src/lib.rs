@@ -1,6 +1,7 @@
-//! Properties of `jbf-core` and `jbf-c` that hold for any input, each a function of bytes that
-//! panics where it does not hold. `cargo fuzz` hands them bytes that it breeds
-//! (`crates/jbf-core/fuzz`), `cargo test -p jbf-properties` a million strings of seeded ones.
+//! Properties of `jbf-core` and `jbf-c` that hold for any input.
+//!
+//! Each is a function of bytes that panics if the property is violated. `cargo fuzz` generates the
+//! bytes (`crates/jbf-core/fuzz`); `cargo test -p jbf-properties` uses a million seeded strings.
 
 mod bytes;
 mod chain;
@@ -20,28 +21,28 @@ pub use steps::all_seen;
 
 use arbitrary::{Result, Unstructured};
 
-/// What an input is made into, and what must hold for it.
+/// A function that builds a case from the input and checks the property.
 pub type Property = fn(&mut Unstructured<'_>) -> Result<()>;
 
-/// One property.
+/// A property.
 #[derive(Clone, Copy)]
 pub struct Entry {
-    /// Its name; that of its fuzz target too.
+    /// Its name, also that of its fuzz target.
     pub name: &'static str,
-    /// The property itself. An error means that the bytes came to their end, no more.
+    /// The property itself. An error only means that the bytes are exhausted.
     pub holds: Property,
-    /// How many thousand strings of bytes the seeded test hands it.
+    /// Number of byte strings in the seeded test, in thousands.
     pub thousands: u32,
 }
 
 macro_rules! all {
     ($($module:ident $thousands:literal,)*) => {
-        /// Every property.
+        /// All properties.
         pub const ALL: &[Entry] = &[
             $(Entry { name: stringify!($module), holds: $module::holds, thousands: $thousands },)*
         ];
         $(
-            /// The property of that name, of bytes.
+            /// The property of that name as a function of bytes.
             pub fn $module(data: &[u8]) {
                 let _ = $module::holds(&mut Unstructured::new(data));
             }
@@ -49,7 +50,7 @@ macro_rules! all {
     };
 }
 
-// So many that each takes seconds, and all of them together a minute of one core.
+// Chosen so that each takes seconds, and all together a minute on one core.
 all! {
     law 500,
     film 500,

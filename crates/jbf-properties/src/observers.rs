@@ -1,4 +1,4 @@
-//! Observers of any gain that their rule allows stay within what they were told.
+//! Observers with any valid gain stay within the bounds of their inputs.
 
 use crate::bytes::{between, number, rounding};
 use crate::steps::seen;
@@ -7,7 +7,7 @@ use jbf_core::observer::coulomb::State;
 use jbf_core::observer::{CoulombObserver, VelocityObserver};
 use jbf_core::Real;
 
-/// A speed that settles at the most that its inputs hold, and goes there without passing it.
+/// The speed converges monotonically to at most the value that its inputs sustain.
 fn velocity<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     let (gain, damping) = (between(bytes, 1e-3, 1e5)?, between(bytes, 0.0, 1e4)?);
     let (input, dt_s) = (between(bytes, 0.0, 1e5)?, between(bytes, 1e-6, 1.0)?);
@@ -28,14 +28,14 @@ fn velocity<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
         let told = || format!("{observer:?} {moved:?} {input_v:?}: {measured:?} {carried:?}");
         let within = |seen: T, bound: f64| seen.value().abs() <= bound * 1.001 + 1e-30;
         assert!(within(measured, bound), "{bound} {}", told());
-        // A product below one, rounded, may keep a little more.
+        // A rounded product below one may be slightly larger.
         bound = (keep + 1e-6) * bound + input * dt_s * most_v;
         assert!(within(carried, bound), "{bound} {}", told());
     }
     Ok(())
 }
 
-/// A level within its limit, whatever it is taught.
+/// The level stays within its limit for any input.
 fn coulomb<T: Real + Default>(bytes: &mut Unstructured<'_>) -> Result<()> {
     let exponent = if bytes.arbitrary()? {
         1.0
@@ -60,7 +60,7 @@ fn coulomb<T: Real + Default>(bytes: &mut Unstructured<'_>) -> Result<()> {
         seen();
         observer.learn(&mut state, &power, v, free);
         let level = observer.level_v(&state, &power).value();
-        // z holds the level beside k phi: it is as exact as their sum.
+        // z holds the level and k phi: it is as exact as their sum.
         let share = observer.level_v(&State::default(), &power).value();
         let bound =
             limit_v * (1.0 + 1e-5) + power_size(share) + power_size(limit_v) + power_size(first);
@@ -70,7 +70,7 @@ fn coulomb<T: Real + Default>(bytes: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Either observer, over either number.
+/// Either observer, in either precision.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     match bytes.int_in_range(0..=3)? {
         0 => velocity::<f32>(bytes),

@@ -1,4 +1,4 @@
-//! The bench's shaft under any friction: finite, passive, and of bounded work a step.
+//! The bench's shaft under any friction: finite, passive, and with bounded work per step.
 
 use crate::bytes::{between, clock, effects, number, parameters};
 use crate::steps::seen;
@@ -13,7 +13,7 @@ use jbf_core::{Bearing, Chain, Friction, Real};
 /// Largest load, N.
 const LARGEST: f64 = 1e4;
 
-/// Most times that one step may try its friction: its two ways into the root and what holds at rest.
+/// Most evaluations of friction per step: both paths to the root, and the evaluation at rest.
 const MOST_TRIALS: u32 = 56;
 
 thread_local! {

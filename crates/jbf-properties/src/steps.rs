@@ -1,4 +1,4 @@
-//! How many steps were looked at: a property that looks at none holds for nothing.
+//! Counts the steps that were checked: a property that checks none is not tested.
 
 use core::cell::Cell;
 
@@ -6,12 +6,12 @@ thread_local! {
     static SEEN: Cell<u64> = const { Cell::new(0) };
 }
 
-/// One more.
+/// Counts one step.
 pub fn seen() {
     SEEN.set(SEEN.get() + 1);
 }
 
-/// All that this thread has looked at.
+/// Number of steps that this thread has checked.
 #[must_use]
 pub fn all_seen() -> u64 {
     SEEN.get()

@@ -13,7 +13,7 @@ use rand_pcg::Pcg64Mcg;
 use std::panic::{catch_unwind, resume_unwind};
 use std::time::Instant;
 
-/// Longest input, bytes: some dozens of steps.
+/// Longest input, bytes: several dozen steps.
 const LONGEST: usize = 512;
 
 /// The input of a seed: many short ones, some long.
@@ -31,10 +31,10 @@ fn number(variable: &str) -> Option<u64> {
     Some(text.parse().expect("a number"))
 }
 
-/// Inputs of all properties together without `JBF_ALL=1`.
+/// Number of inputs of all properties together without `JBF_ALL=1`.
 const FAST_CASES: u64 = 200_000;
 
-/// Inputs of one property: all, or its share of the fast ones.
+/// Number of inputs of one property: all, or its share of the default number.
 fn usual_cases(entry: &Entry) -> u64 {
     let all = u64::from(entry.thousands) * 1000;
     if number("JBF_ALL") == Some(1) {
@@ -69,7 +69,7 @@ fn try_all(name: &str) {
     let steps = all_seen() - before;
     let took = begun.elapsed().as_secs_f64();
     println!("{name}: {cases} inputs, {steps} steps, {took:.1} s");
-    // A property that looks at nothing would hold as well.
+    // A property that checks nothing would also hold.
     assert!(cases == 1 || steps > 2 * cases, "{name}: {steps} steps");
 }
 

@@ -1,5 +1,6 @@
-//! The fingerprints of this build are the table's. `make bits` repeats it for debug, release and
-//! native builds.
+//! The fingerprints of this build equal those of the table.
+//!
+//! `make bits` repeats the test for debug, release and native builds.
 
 use jbf_trace::{check, traces, Hash, Trace, TABLE};
 use std::collections::BTreeMap;
@@ -27,15 +28,15 @@ fn every_trace_is_the_tables() {
     );
 }
 
-/// A hash that many share, or that nothing was taken into, would prove nothing.
+/// Hashes are meaningful: they differ from each other and from that of no data.
 #[test]
 fn traces_are_of_something() {
     let mut seen: BTreeMap<u64, Vec<Trace>> = BTreeMap::new();
     traces::<f64>("f64", &mut |t| seen.entry(t.hash).or_default().push(*t));
     assert!(!seen.contains_key(&Hash::default().0));
     for same in seen.values().filter(|s| s.len() > 1) {
-        // The first law's own run is also the law's chain; an effect must show. A second wave alone
-        // is the first.
+        // The first law's own run is also that of its chain; every effect must change the hash. A
+        // second wave alone equals the first.
         let mut effects: Vec<&str> = same
             .iter()
             .filter(|t| t.group == "effect")
@@ -49,7 +50,7 @@ fn traces_are_of_something() {
     }
 }
 
-/// The effect itself, or the one beside which it is a further one.
+/// The effect itself, or the first effect of the kind that it repeats.
 fn first(trace: &Trace) -> &'static str {
     let info = jbf_core::effect::CATALOGUE
         .iter()

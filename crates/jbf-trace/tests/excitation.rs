@@ -1,4 +1,5 @@
-//! The excitation of the loops does what it says: a budget over it is a worst case.
+//! The excitation of the loops has its documented properties, so that a time budget over it is a
+//! worst case.
 
 use jbf_core::compensator::Compensator;
 use jbf_core::controller::{Controller, Status};

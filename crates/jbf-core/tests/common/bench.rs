@@ -1,4 +1,4 @@
-//! A loop on the simulated bench, without noise, for tests of controllers.
+//! A control loop on the simulated bench, without noise, for tests of controllers.
 
 use super::{chain_round, law};
 use jbf_core::compensator::carried::Whole;
@@ -18,9 +18,9 @@ use jbf_core::{Chain, Clock, Real};
 
 /// Step of the loop, s.
 pub const DT_S: f64 = 0.002;
-/// Counts of the encoder.
+/// Encoder counts per radian.
 pub const COUNTS_PER_RAD: f64 = 2387.3;
-/// The thesis's drive; a newton of friction is 0.03 V here.
+/// The thesis's drive; a newton of friction corresponds to 0.03 V here.
 pub const DRIVE: Drive = Drive::THESIS.with_volts_per_n(0.03);
 /// Load, N.
 pub const LOAD_N: f64 = 104.0;
@@ -31,14 +31,14 @@ pub fn plant(effects: &[(&str, &[f64])]) -> Plant<f64, Journal<f64>> {
     Plant::new(chain, DRIVE, DT_S / 2.0).expect("the thesis's drive")
 }
 
-/// Which quantity is controlled.
+/// The controlled quantity.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Control {
     Position,
     Velocity,
 }
 
-/// The loop round a compensator, guarded.
+/// The control loop with a compensator, with guards.
 pub fn controller<T: Real, C: Compensator<T>>(
     control: Control,
     compensator: C,
@@ -66,7 +66,7 @@ pub fn controller<T: Real, C: Compensator<T>>(
     .expect("limits")
 }
 
-/// The Coulomb observer's compensator.
+/// The compensator with the Coulomb observer.
 pub fn coulomb<T: Real>() -> Coulomb<T> {
     let observer = CoulombObserver::new(0.01, 1.0, DRIVE.input_rad_s2_v, 3.0, DT_S);
     Coulomb::new(observer.expect("gains"), &DRIVE)
@@ -86,7 +86,7 @@ pub fn learning<T: Real>(control: Control) -> Learning<T> {
     Learning::new(law(Clock::Thesis), &settings).expect("gains")
 }
 
-/// The observed compensator's settings on this bench.
+/// Settings of the observed compensator on this bench.
 pub fn settings(control: Control) -> Settings {
     let s = Settings::new(&DRIVE, 60.0, 0.05, DT_S)
         .with_learning_1_s(2.0)
@@ -102,13 +102,13 @@ pub fn settings(control: Control) -> Settings {
     }
 }
 
-/// The observed compensator round a bare law.
+/// The observed compensator with a bare law.
 pub fn observed<T: Real>(control: Control) -> Observed<T, Bare<T, Journal<T>>> {
     let model = Bare::new(law(Clock::Journal), 0.0127, DRIVE.volts_per_n, LOAD_N);
     Observed::new(model, &settings(control)).expect("settings")
 }
 
-/// The observed compensator round a chain with effects.
+/// The observed compensator with a chain that has effects.
 pub fn observed_with<T: Real>(
     control: Control,
     effects: &[(&str, &[f64])],
@@ -118,18 +118,18 @@ pub fn observed_with<T: Real>(
     Observed::new(model, &settings(control)).expect("settings")
 }
 
-/// A table against speed.
+/// A table of levels against speed.
 pub fn table<T: Real>() -> Table<T, 8> {
     let levels = [0.8, 0.7, 0.6, 0.5, 0.4, 0.35, 0.3, 0.25];
     Table::new(levels.map(T::of), Axis::Speed, 0.5, 0.0).expect("table")
 }
 
-/// A lap of two seconds.
+/// A repetitive compensator with a period of two seconds.
 pub fn repetitive<T: Real>() -> Repetitive<T, 64> {
     Repetitive::new(1000, 0.5, 0.1, 0.02, 3.0, DT_S).expect("lap")
 }
 
-/// Do something with a loop round each compensator of the core.
+/// Runs a block for a loop with each compensator of the core.
 #[macro_export]
 macro_rules! with_each_compensator {
     ($t:ty, $control:expr, |$name:ident, $controller:ident| $body:block) => {{
@@ -157,7 +157,7 @@ macro_rules! with_each_compensator {
     }};
 }
 
-/// Plant and loop together.
+/// Plant and loop in one structure.
 pub struct Bench<T: Real, C: Compensator<T>> {
     pub plant: Plant<f64, Journal<f64>>,
     pub shaft: PlantState<f64, jbf_core::law::journal::State<f64>>,
@@ -183,7 +183,7 @@ impl<T: Real, C: Compensator<T>> Bench<T, C> {
         }
     }
 
-    /// One step of the loop, and of the plant under its output.
+    /// Makes one step of the loop, and of the plant with the loop's output.
     pub fn step(&mut self, value: f64, rate: f64) -> Parts<T> {
         if !self.frozen {
             let counts = (self.shaft.angle_rad * COUNTS_PER_RAD).floor() as i64 + self.shift;
@@ -207,5 +207,5 @@ impl<T: Real, C: Compensator<T>> Bench<T, C> {
     }
 }
 
-/// The bare control law, for its type.
+/// Type of the control law without compensation.
 pub type Plain = NoCompensation;

@@ -1,16 +1,17 @@
-//! A law with one coefficient, so that effects can be held against closed forms. It also
-//! shows that a law can be written outside the crate.
+//! A law with a constant coefficient, for comparison of effects with closed forms.
+//!
+//! It also shows that a law can be implemented outside the crate.
 
 use jbf_core::law::Law;
 use jbf_core::Friction;
 use jbf_core::Real;
 
-/// Friction coefficient that never changes.
+/// A constant friction coefficient.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstantLaw(pub f64);
 
 impl<T: Real> Law<T> for ConstantLaw {
-    /// The speed that the film was given last, m/s.
+    /// The last speed passed to the film, m/s.
     type State = T;
 
     fn start(&self, _load_n: T) -> T {

@@ -1,11 +1,12 @@
-//! A bare law along a speed, with any stepper.
+//! Drives a bare law along a speed with any stepper.
 
 use jbf_core::law::journal::{Journal, State};
 use jbf_core::stepper::Stepper;
 use jbf_core::Real;
 
-/// Drive `law` from `t0` to `t1` (s) in equal steps of at most `step_s`, with |U| exact at the
-/// start, the middle and the end of each.
+/// Drives `law` from `t0` to `t1` (s) in equal steps of at most `step_s`.
+///
+/// U| is exact at the start, the middle and the end of each step.
 pub fn drive<T: Real, S: Stepper>(
     law: &Journal<T>,
     stepper: &S,

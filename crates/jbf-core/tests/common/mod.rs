@@ -1,5 +1,5 @@
-//! Pieces that several tests share. Each test file is a crate of its own, so not every one
-//! uses all of it.
+//! Code shared by several tests. Each test file is a separate crate, so not every one uses all of
+//! it.
 #![allow(dead_code)]
 
 pub mod bench;
@@ -18,7 +18,7 @@ use jbf_core::{Bearing, Chain, Clock, Motion, Real};
 /// Load of Table 4.2, N.
 pub const LOAD_N: f64 = 104.0;
 
-/// Table 4.2 over any scalar.
+/// Parameters of Table 4.2 for any scalar.
 pub fn table_4_2<T: Real>() -> Parameters<T> {
     let p = Parameters::TABLE_4_2;
     Parameters {
@@ -29,12 +29,12 @@ pub fn table_4_2<T: Real>() -> Parameters<T> {
     }
 }
 
-/// The law of Table 4.2 on a clock.
+/// The law of Table 4.2 with a clock.
 pub fn law<T: Real>(clock: Clock) -> Journal<T> {
     Journal::new(&Bearing::THESIS, LOAD_N, &table_4_2(), clock).expect("Table 4.2 is valid")
 }
 
-/// A law in newtons, `(F_c + F_v |v|) sgn v` in motion: dry friction and a viscous part.
+/// A law in newtons: `(F_c + F_v |v|) sgn v` in motion, dry and viscous friction.
 pub fn newtons(kinetic_n: f64, viscous_n_s_m: f64) -> Coulomb<f64> {
     Coulomb::build(
         None,
@@ -45,12 +45,12 @@ pub fn newtons(kinetic_n: f64, viscous_n_s_m: f64) -> Coulomb<f64> {
     .expect("a sound law")
 }
 
-/// The law of Table 4.2 on the journal clock, within the thesis's rig, and effects round it.
+/// The law of Table 4.2 on the journal clock, in the thesis's rig, with effects.
 pub fn chain<T: Real>(effects: &[(&str, &[f64])]) -> Chain<T, Journal<T>> {
     chain_round(law(Clock::Journal), effects)
 }
 
-/// Any law within the thesis's rig, and effects round it.
+/// Any law in the thesis's rig, with effects.
 pub fn chain_round<T: Real, L>(law: L, effects: &[(&str, &[f64])]) -> Chain<T, L> {
     let mut all = Effects::NONE;
     for (name, values) in effects {
@@ -69,8 +69,7 @@ pub fn chain_round<T: Real, L>(law: L, effects: &[(&str, &[f64])]) -> Chain<T, L
     }
 }
 
-/// What must stand beside an effect for it to change anything: where it needs something that the
-/// drive transmits, a weight.
+/// Effects without which an effect changes nothing: a weight if it needs a transmitted force.
 pub fn company(info: &Info) -> Vec<(&'static str, &'static [f64])> {
     const WEIGHT: &[f64] = &[40.0, 0.3];
     let needs = info.needs.contains(&Need::Transmitted);

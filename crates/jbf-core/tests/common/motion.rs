@@ -1,29 +1,30 @@
-//! Motions to drive a chain with.
+//! Motions for tests of a chain.
 
 use super::random::Random;
 use super::LOAD_N;
 use jbf_core::{Bearing, Motion, Real};
 
-/// `U = offset + sum of amplitude sin(omega t + phase)`, with its exact rate and angle, under
-/// a constant load. `sign` = -1 mirrors it; a rest holds the shaft where it is for a while.
+/// `U = offset + sum of amplitude sin(omega t + phase)`, with exact rate and angle.
+///
+/// The load is constant. `sign` = -1 mirrors the motion; during a rest the shaft does not move.
 #[derive(Clone, Debug)]
 pub struct Sines {
     pub offset_m_s: f64,
     /// Amplitude in m/s, angular frequency in rad/s, phase in rad.
     pub waves: Vec<[f64; 3]>,
     pub sign: f64,
-    /// When a rest begins and how long it lasts, s.
+    /// Start and duration of a rest, s.
     pub rest_s: Option<[f64; 2]>,
 }
 
 impl Sines {
-    /// The same motion with a rest in it.
+    /// Returns the same motion with a rest.
     pub fn resting(mut self, from_s: f64, length_s: f64) -> Self {
         self.rest_s = Some([from_s, length_s]);
         self
     }
 
-    /// Two-way motion of chapter 4 at 104 N.
+    /// Motion in both directions of chapter 4 at 104 N.
     pub fn two_way(omega_rad_s: f64) -> Self {
         Self {
             offset_m_s: 0.0,
@@ -33,7 +34,7 @@ impl Sines {
         }
     }
 
-    /// One-way motion of chapter 4 at 104 N.
+    /// Motion in one direction of chapter 4 at 104 N.
     pub fn one_way(omega_rad_s: f64) -> Self {
         Self {
             offset_m_s: 0.0728,
@@ -72,12 +73,12 @@ impl Sines {
         }
     }
 
-    /// Temperature at a time, C: that of a room in which the heating comes and goes.
+    /// Temperature at a time, C: that of a room with intermittent heating.
     pub fn temperature_c(time_s: f64) -> f64 {
         31.0 + 6.0 * (0.7 * time_s).sin()
     }
 
-    /// The same under another load, N.
+    /// The motion at a time under another load, N.
     pub fn under<T: Real>(&self, load_n: f64, time_s: f64) -> Motion<T> {
         self.at(time_s).with_load_n(T::of(load_n))
     }
@@ -109,7 +110,7 @@ impl Sines {
     }
 }
 
-/// Turning at one speed from angle zero.
+/// Motion at constant speed from angle zero.
 pub fn constant<T: Real>(velocity_m_s: f64, time_s: f64) -> Motion<T> {
     Sines {
         offset_m_s: velocity_m_s,

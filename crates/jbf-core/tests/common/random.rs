@@ -1,7 +1,6 @@
-//! A small generator with a seed, so that a failure can be run again: xorshift64*
-//! (Vigna 2016).
+//! A small seeded generator, so that a failure can be repeated: xorshift64* (Vigna 2016).
 
-/// The generator.
+/// The random number generator.
 pub struct Random(u64);
 
 impl Random {
@@ -33,7 +32,7 @@ impl Random {
         self.unit() < probability
     }
 
-    /// A value within the bounds of a parameter: over all decades where the bounds allow.
+    /// Draws a value within the bounds of a parameter, over all decades where the bounds allow.
     pub fn parameter(&mut self, p: &jbf_core::effect::Parameter) -> f64 {
         if p.lower < 0.0 {
             self.uniform(p.lower, p.upper)

@@ -1,4 +1,4 @@
-//! Comma-separated reference tables, compiled in.
+//! Comma-separated reference tables, included at compile time.
 
 /// The rows of a table after its header, as numbers.
 pub fn rows<const N: usize>(text: &str) -> Vec<[f64; N]> {

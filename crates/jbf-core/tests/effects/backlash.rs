@@ -1,5 +1,4 @@
-//! A gap in the drive, against what a gap does: after each turn the journal stands for the angle
-//! of the gap, and then follows.
+//! Backlash: after each reversal the journal rests for the angle of the gap, and then follows.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;
@@ -16,8 +15,9 @@ fn signal(gap_rad: f64, sines: &Sines, steps: u32) -> Vec<f64> {
     readings(&chain, DT_S, steps, |t| sines.at(t))
 }
 
-/// `U = A sin t` turns round at pi: the drive is then on its way back through the gap until
-/// `A (1 + cos t) = gap R`; and so on after each turn.
+/// `U = A sin t` reverses at pi.
+///
+/// The drive then crosses the gap until `A (1 + cos t) = gap R`, and so on after each reversal.
 #[test]
 fn nothing_resists_until_the_gap_is_crossed() {
     let gap = 0.4;
@@ -38,8 +38,7 @@ fn nothing_resists_until_the_gap_is_crossed() {
     }
 }
 
-/// A motion that never turns round never meets the gap, and a first motion finds its flank
-/// closed.
+/// Motion without a reversal is not affected, and at the first motion the flank is in contact.
 #[test]
 fn one_way_motion_does_not_feel_it() {
     for sines in [
@@ -51,7 +50,7 @@ fn one_way_motion_does_not_feel_it() {
     }
 }
 
-/// A swing shorter than the gap moves the journal no more after its first way.
+/// A swing shorter than the gap does not move the journal after its first stroke.
 #[test]
 fn a_swing_within_the_gap_is_lost() {
     let omega = 25.0;
@@ -61,13 +60,13 @@ fn a_swing_within_the_gap_is_lost() {
         sign: 1.0,
         rest_s: None,
     };
-    // The swing is 2 x 0.127/25 m, and the first way is the whole of it.
+    // The swing is 2 x 0.127/25 m, and the first stroke has this full length.
     let gap = 2.01 * 0.127 / omega / Bearing::THESIS.radius_m;
     let got = signal(gap, &sines, 400);
     assert!(got[10] > 1.0);
     for (i, f) in got.iter().enumerate() {
         if DT_S * i as f64 > PI / omega + DT_S {
-            // It comes back to the flank that it left, and touches it as it turns.
+            // It returns to the flank that it left, and touches it at the reversal.
             let touches = (DT_S * i as f64 * omega / PI).rem_euclid(2.0) - 1.0;
             if touches.abs() > 0.05 {
                 assert_eq!(*f, 0.0, "sample {i}");
@@ -76,8 +75,9 @@ fn a_swing_within_the_gap_is_lost() {
     }
 }
 
-/// The reading of a recorded run is continuous in the gap, and its derivative by the gap is that
-/// of the ramp that stands for the jump.
+/// The reading of a recorded run is continuous in the gap.
+///
+/// Its derivative with respect to the gap is that of the ramp that replaces the jump.
 #[test]
 fn the_reading_has_no_step_in_the_gap() {
     let sines = Sines::two_way(1.0);

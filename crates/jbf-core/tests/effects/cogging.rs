@@ -1,4 +1,4 @@
-//! Magnets that look for teeth: `A sin(2 pi x/p - phi)`, moving or at rest, and no friction.
+//! Cogging: a force `A sin(2 pi x/p - phi)` in motion and at rest, which is not friction.
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -22,7 +22,7 @@ fn comes_again_with_every_pitch_of_the_way() {
     }
 }
 
-/// At rest it is what the drive holds against; friction has no more to hold with than before.
+/// At rest the drive holds against it; the holding level of friction does not change.
 #[test]
 fn is_there_at_rest() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[2.0, 0.01, 0.5])]);
@@ -35,7 +35,7 @@ fn is_there_at_rest() {
     assert_eq!(felt.jump, F_C_N);
 }
 
-/// Over whole pitches it gives back all the work that it takes.
+/// Over whole pitches its work is zero.
 #[test]
 fn does_no_work() {
     let (pitch, speed) = (0.01, 0.02);
@@ -47,7 +47,7 @@ fn does_no_work() {
     assert!((mean - F_C_N).abs() < 1e-9, "{mean}");
 }
 
-/// Far from the way's zero single precision still knows the place within a pitch.
+/// Far from position zero single precision still resolves the position within a pitch.
 #[test]
 fn does_not_lose_its_place_in_single_precision() {
     use crate::common::chain;
@@ -60,7 +60,7 @@ fn does_not_lose_its_place_in_single_precision() {
     }
 }
 
-/// It is the motor's: no gear carries it, and friction under a weight does not know it.
+/// The force arises in the motor: it is not transmitted by a gear and does not affect its friction.
 #[test]
 fn is_not_transmitted() {
     let gear: (&str, &[f64]) = ("torque_proportional", &[0.5]);

@@ -1,4 +1,4 @@
-//! A second force over a pitch adds to the first, moving and at rest.
+//! A second periodic force adds to the first, in motion and at rest.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

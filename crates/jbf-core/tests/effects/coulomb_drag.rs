@@ -1,4 +1,4 @@
-//! Coulomb drag adds F_d sgn(v), whatever the load.
+//! Coulomb drag adds F_d sgn(v), independent of the load.
 
 use crate::common::motion::Sines;
 use crate::common::{chain, readings};

@@ -1,9 +1,9 @@
-//! Derivatives carried by dual numbers against central differences, for every parameter of
-//! the law and of every effect.
+//! Derivatives from dual numbers compared with central differences, for every parameter.
 //!
-//! A central difference of step h errs by h^2 F'''/6 and by rounding over h. With h = 5e-5 of the
-//! parameter the first is 2.5e-9 of the slope times a factor of curvature, for which 4e2 is
-//! left; the second is the rounding of a thousand steps, 1e-12 of the force, over h.
+//! The parameters are those of the law and of every effect. A central difference of step h has the
+//! error h^2 F'''/6 and the rounding error divided by h. With h = 5e-5 of the parameter the first
+//! is 2.5e-9 of the slope times a factor of curvature, for which 4e2 is allowed. The second is the
+//! rounding of a thousand steps, 1e-12 of the force, divided by h.
 
 use crate::common::motion::Sines;
 use crate::common::{company, readings, table_4_2, LOAD_N};
@@ -13,7 +13,7 @@ use jbf_core::{Bearing, Chain, Clock, Dual, Motion, Real};
 
 const DT_S: f64 = 0.01;
 
-/// Not the law's own load where an effect needs another to show.
+/// A load other than the law's if the effect requires another load to be observable.
 fn load_n(info: &Info) -> f64 {
     if info.needs.contains(&Need::Loads) {
         83.5
@@ -22,7 +22,7 @@ fn load_n(info: &Info) -> f64 {
     }
 }
 
-/// Readings with the law's four parameters first, then the effect's.
+/// Readings as a function of the law's four parameters, followed by the effect's.
 fn run<T: Real>(info: &Info, p: &[T], motion: impl Fn(f64) -> Motion<T>) -> Vec<T> {
     let parameters = Parameters {
         f_m: p[0],
@@ -56,7 +56,7 @@ fn start_values(info: &Info, which: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Slopes of the readings by parameter `i`, carried.
+/// Derivatives of the readings with respect to parameter `i`, from dual numbers.
 fn carried(info: &Info, p: &[f64], i: usize, sines: &Sines) -> Vec<f64> {
     let lifted: Vec<Dual<1>> = p
         .iter()
@@ -75,25 +75,27 @@ fn carried(info: &Info, p: &[f64], i: usize, sines: &Sines) -> Vec<f64> {
         .collect()
 }
 
-/// Readings with parameter `i` moved.
+/// Readings with parameter `i` changed.
 fn moved(info: &Info, p: &[f64], i: usize, by: f64, sines: &Sines) -> Vec<f64> {
     let mut q = p.to_vec();
     q[i] += by;
     run(info, &q, |t| sines.under(load_n(info), t))
 }
 
-/// Difference quotients, the step that made them and the force that they were made from.
+/// Difference quotients, their step, and the force from which they were computed.
 struct Difference {
-    /// Each of second order: of values on both sides, ahead and behind. A kink (a touch, a
-    /// break-away, the sample at which a delay's interpolation turns) that the step passes spoils
-    /// those that look across it; the derivative is that of the side where it stands.
+    /// Quotients of second order: of values on both sides, ahead and behind.
+    ///
+    /// A kink within the step (a contact, a breakaway, a sample where the interpolation of a delay
+    /// changes) invalidates the quotients across it. The derivative is that of the side on which
+    /// the value is.
     slopes: Vec<Vec<f64>>,
     step: f64,
     peak_n: f64,
 }
 
 impl Difference {
-    /// False where the parameter does nothing.
+    /// Returns false if the parameter has no influence.
     fn check(&self, label: &str, carried: &[f64]) -> bool {
         let largest = carried.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
         let nothing = largest == 0.0 && self.slopes.iter().flatten().all(|&s| s == 0.0);
@@ -101,7 +103,7 @@ impl Difference {
             return false;
         }
         let bound = 1e-6 * largest + 4e-12 * self.peak_n / self.step;
-        // Rounding may not be what makes the test pass.
+        // The tolerance for rounding must not be the reason why the test passes.
         assert!(
             bound < 1e-3 * largest,
             "{label}: {bound:e} against slopes of {largest:e}"
@@ -119,7 +121,7 @@ impl Difference {
     }
 }
 
-/// Of second order, from values at none, one and two steps.
+/// One-sided quotient of second order, from values at zero, one and two steps.
 fn one_sided(at: &[f64], one: &[f64], two: &[f64], step: f64) -> Vec<f64> {
     let slope = |i: usize| (4.0 * one[i] - two[i] - 3.0 * at[i]) / (2.0 * step);
     (0..at.len()).map(slope).collect()
@@ -163,8 +165,9 @@ fn slopes_match_central_differences() {
     }
 }
 
-/// At a finite null a fit looks one way only, and it must see the slope there: that is how
-/// it finds that an effect is missing. The one-sided difference is of second order, too.
+/// At a finite null the derivative equals the one-sided difference of second order.
+///
+/// A fit that starts at the null needs this derivative to find that an effect is missing.
 #[test]
 fn slopes_at_a_null_match_one_sided_differences() {
     let mut seen = 0;
@@ -175,14 +178,14 @@ fn slopes_at_a_null_match_one_sided_differences() {
             };
             let mut p = start_values(info, 0);
             p[4 + k] = null;
-            // Friction jumps at a rest, and a vanishing lag follows the jump at once: no slope
-            // exists at that sample. Only what needs a rest gets one.
+            // At a rest friction jumps, and a vanishing lag follows the jump immediately: no
+            // derivative exists at that sample. Only effects that need a rest have one.
             let sines = match info.name {
                 "dwell_stiction" => Sines::two_way(1.0).resting(3.0, 1.0),
                 _ => Sines::two_way(1.0),
             };
-            // A branch is reached where the force has moved by the gap: a sample after it turned, by
-            // little.
+            // A branch is reached where the force has changed by the gap: little after the sample
+            // at which it reversed.
             let share = match info.name {
                 "sensor_hysteresis" => 5e-6,
                 _ => 5e-5,
@@ -191,7 +194,7 @@ fn slopes_at_a_null_match_one_sided_differences() {
             let [at, one, two] = [0.0, h, 2.0 * h].map(|by| moved(info, &p, 4 + k, by, &sines));
             let mut slopes = vec![one_sided(&at, &one, &two, h)];
             if parameter.lower < null {
-                // A level that is zero already goes no further down: to either side another slope.
+                // A level of zero cannot decrease further: the derivatives of the two sides differ.
                 let [one, two] = [-h, -2.0 * h].map(|by| moved(info, &p, 4 + k, by, &sines));
                 slopes.push(one_sided(&at, &one, &two, -h));
             }

@@ -1,4 +1,4 @@
-//! All of the contact's friction, dry and viscous, is `1 + a sgn v` times the law's.
+//! All friction of the contact, dry and viscous, is `1 + a sgn v` times that of the law.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

@@ -1,4 +1,4 @@
-//! A soft drive: twist, free and dry-damped oscillation, stick without drift.
+//! A compliant drive: twist, free and dry-damped oscillation, sticking without drift.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, held};
@@ -23,12 +23,12 @@ fn angles(f: f64, c: f64, dt_s: f64, steps: u32, motion: impl Fn(f64) -> Motion<
         .collect()
 }
 
-/// Let go at an angle of one hundredth of a radian from the encoder's.
+/// Release at an angle one hundredth of a radian from that of the encoder.
 fn let_go(t: f64) -> Motion<f64> {
     held(if t == 0.0 { 0.0 } else { 0.01 }, t)
 }
 
-/// Extremes of a signal: value and index where it turns.
+/// Extremes of a signal: index and value.
 fn extremes(signal: &[f64]) -> Vec<(usize, f64)> {
     (1..signal.len() - 1)
         .filter(|&i| (signal[i] - signal[i - 1]) * (signal[i + 1] - signal[i]) < 0.0)
@@ -36,7 +36,7 @@ fn extremes(signal: &[f64]) -> Vec<(usize, f64)> {
         .collect()
 }
 
-/// Turning steadily, the journal trails by n R F / k, and the damper does nothing.
+/// In steady rotation the journal lags by n R F / k, and the damper has no effect.
 #[test]
 fn trails_by_the_static_twist() {
     let f = 0.1;
@@ -50,8 +50,9 @@ fn trails_by_the_static_twist() {
     );
 }
 
-/// Without friction the journal swings with 2 pi sqrt(J/k); the midpoint rule stretches that
-/// by (w dt)^2/24 and keeps the amplitude.
+/// Without friction the journal oscillates with the period 2 pi sqrt(J/k).
+///
+/// The midpoint rule lengthens the period by (w dt)^2/24 and preserves the amplitude.
 #[test]
 fn swings_freely_with_its_own_period() {
     let period = TAU * (J / K).sqrt();
@@ -69,7 +70,7 @@ fn swings_freely_with_its_own_period() {
     assert!(((last.1 - 0.01) / (first.1 - 0.01) / decay - 1.0).abs() < 1e-3);
 }
 
-/// Under dry friction the swing loses 2 n R F / k each half period, and then sticks.
+/// With dry friction the amplitude decreases by 2 n R F / k per half period, and then it sticks.
 #[test]
 fn dry_friction_eats_a_fixed_bite_each_half_swing() {
     let f = 0.005;
@@ -85,13 +86,13 @@ fn dry_friction_eats_a_fixed_bite_each_half_swing() {
             "half swing {n}"
         );
     }
-    // It stops where the next swing could not begin: inside the dead zone bite / 2.
+    // It stops where the next swing could not begin: within the dead zone bite / 2.
     let rest = got[got.len() - 1];
     assert!((rest - 0.01).abs() <= bite / 2.0);
     assert!(got[got.len() - 5000..].iter().all(|a| *a == rest));
 }
 
-/// A torque below the sliding friction moves nothing, however long, and the load cell sees it.
+/// A torque below the sliding friction never moves the journal, and the load cell shows it.
 #[test]
 fn sticks_without_drift_and_shows_the_twist_torque() {
     let f = 0.2;

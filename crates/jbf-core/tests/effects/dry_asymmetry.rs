@@ -1,4 +1,4 @@
-//! Dry friction times `1 + a sgn v`: other levels to either side, one viscous slope.
+//! Dry friction times `1 + a sgn v`: different levels in the two directions, one viscous slope.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};
@@ -24,7 +24,7 @@ fn has_a_level_of_its_own_each_way_and_one_slope() {
     }
 }
 
-/// In motion it is a force one way; at rest it is not there.
+/// In motion the effect equals a constant force; at rest it is zero.
 #[test]
 fn in_motion_is_a_force_one_way_and_at_rest_none() {
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
@@ -40,7 +40,7 @@ fn in_motion_is_a_force_one_way_and_at_rest_none() {
     }
 }
 
-/// The Stribeck peak is dry friction, too: the same share of it.
+/// The Stribeck peak is dry friction and is scaled by the same factor.
 #[test]
 fn scales_the_peak_as_it_scales_the_level() {
     let values = [6.0, 10.0, 0.03, 1.0, 0.0];

@@ -1,4 +1,4 @@
-//! Beside a level in newtons, `mu L` in the direction of motion; never less than none.
+//! A level `mu L` in the direction of motion adds to the level in newtons; never below zero.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

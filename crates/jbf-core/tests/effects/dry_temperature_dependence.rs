@@ -1,4 +1,4 @@
-//! A level on a straight line over the temperature, `F_c (1 + a (T - T_0))`, with an end at zero.
+//! A level linear in the temperature, `F_c (1 + a (T - T_0))`, limited at zero.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};
@@ -23,7 +23,7 @@ fn the_level_follows_the_thermometer_and_the_viscous_part_does_not() {
     }
 }
 
-/// Beyond the end of its line dry friction is gone and pushes nothing along.
+/// Beyond the zero of the line dry friction is zero and does not become a driving force.
 #[test]
 fn a_level_never_falls_below_zero() {
     let effect: [(&str, &[f64]); 1] = [("dry_temperature_dependence", &[-0.02, 20.0])];

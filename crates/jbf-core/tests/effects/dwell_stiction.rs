@@ -1,5 +1,6 @@
-//! After a rest of length t_d friction is `a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0)` higher, s the
-//! distance slid since.
+//! After a rest of length t_d friction is higher by `a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0)`.
+//!
+//! s is the distance slid since the rest.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
@@ -9,10 +10,10 @@ const F: f64 = 0.1;
 const DT_S: f64 = 0.01;
 const SPEED_M_S: f64 = 0.02;
 
-/// The samples at which two rests begin and end.
+/// Samples at which two rests begin and end.
 const RESTS: [[usize; 2]; 2] = [[50, 300], [500, 580]];
 
-/// Forward, a rest, back, a shorter rest, forward.
+/// Forward, a rest, backward, a shorter rest, forward.
 fn speed(i: usize) -> f64 {
     let [first, second] = RESTS;
     match i {
@@ -39,7 +40,7 @@ fn grows_with_the_rest_and_is_torn_off_by_sliding() {
             let rest = RESTS.iter().rev().find(|rest| rest[1] < i);
             let excess = rest.map_or(0.0, |&[from, to]| {
                 let stood_s = DT_S * (to - from) as f64;
-                // The step that leaves the rest begins at zero speed: it slides half as far.
+                // The step that ends the rest begins at zero speed: its distance is half as long.
                 let slid_m = SPEED_M_S * DT_S * (i as f64 - to as f64 - 0.5);
                 a * (1.0 - (-(stood_s / t_0).powf(m)).exp()) * (-slid_m / s_0).exp()
             });

@@ -1,5 +1,6 @@
-//! A film whose clock runs `factor` times as fast lives through a run as the law's own film
-//! lives through the same speeds `factor` times as slowly.
+//! A film with a clock faster by `factor` equals the law's own film in a slower motion.
+//!
+//! The speeds of that motion change more slowly by the same factor.
 
 use crate::common::motion::Sines;
 use crate::common::{chain, readings};
@@ -24,7 +25,7 @@ fn a_faster_clock_is_a_slower_motion() {
     }
 }
 
-/// However fast its clock, in the end the film is where the law's is.
+/// The steady state does not depend on the speed of the clock.
 #[test]
 fn the_steady_state_stays() {
     let speed = |t: f64| crate::common::motion::constant::<f64>(0.05, t);

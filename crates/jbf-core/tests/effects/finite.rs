@@ -1,4 +1,4 @@
-//! No effect gives a NaN or an infinity, wherever in its bounds its parameters stand.
+//! No effect gives a NaN or an infinity for any parameters within the bounds.
 
 use crate::common::motion::Sines;
 use crate::common::random::Random;
@@ -6,7 +6,7 @@ use crate::common::{chain, readings, LOAD_N};
 use jbf_core::effect::CATALOGUE;
 use jbf_core::{Motion, Real};
 
-/// A jerky motion: jumps of speed, of load, of angle and of temperature that no machine makes.
+/// An unrealistic motion with jumps of speed, load, angle and temperature.
 fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     let speed = random.log_uniform(1e-9, 1e3) * if random.chance(0.5) { 1.0 } else { -1.0 };
     Motion::at_rest(T::of(if random.chance(0.1) {
@@ -57,7 +57,7 @@ fn finite_everywhere_in_single_precision() {
     check::<f32>(4);
 }
 
-/// A lost sample or a step of no length leaves a run as it was.
+/// A lost sample or a step of zero length does not change a run.
 #[test]
 fn a_lost_sample_changes_nothing() {
     for info in CATALOGUE {

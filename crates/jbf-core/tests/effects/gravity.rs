@@ -1,4 +1,4 @@
-//! A pendulum on the shaft: `G sin(theta - theta_0)`, moving or at rest.
+//! A pendulum on the shaft: `G sin(theta - theta_0)`, in motion or at rest.
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};

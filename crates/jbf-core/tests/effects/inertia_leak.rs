@@ -1,4 +1,4 @@
-//! A force `m_e dv/dt` beside the bearing's, also where the motion turns round.
+//! A force `m_e dv/dt` in addition to that of the bearing, also at reversals.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;

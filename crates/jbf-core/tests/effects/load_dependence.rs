@@ -1,4 +1,4 @@
-//! U_tr and K0 as powers of the load: the thesis's tables, and the law itself with other numbers.
+//! U_tr and K0 as powers of the load: the thesis's tables, and the law with other parameters.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, readings, LOAD_N};
@@ -6,8 +6,10 @@ use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock};
 
-/// With the exponents of Tables 4.2 and 4.3 the law of 104 N becomes, under 83.5 N, the law that
-/// the thesis fitted there; on either clock, with and without the journal's inertia.
+/// With the exponents of Tables 4.2 and 4.3 the law of 104 N becomes, under 83.5 N, that of Table
+/// 4.3.
+///
+/// This holds for either clock, with and without the inertia of the journal.
 #[test]
 fn one_table_becomes_the_other() {
     let share: f64 = 83.5 / LOAD_N;
@@ -42,7 +44,7 @@ fn one_table_becomes_the_other() {
     }
 }
 
-/// Under the rig's own load any exponents change nothing.
+/// Under the rig's own load the exponents have no influence.
 #[test]
 fn one_load_says_nothing() {
     let law = Journal::new(

@@ -1,5 +1,4 @@
-//! The effects, over the whole catalogue where a rule holds for all, and against closed forms
-//! one by one.
+//! Rules that hold for all effects of the catalogue, and a closed form for each effect.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -49,7 +48,7 @@ mod warm_up;
 mod wear_in;
 mod zero_load_dependence;
 
-/// A new effect comes with a closed form: a file of its name here, named above, with a test.
+/// Every effect has a closed form: a file with its name here, named above, that contains a test.
 #[test]
 fn every_effect_has_a_closed_form() {
     let here = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/effects");

@@ -1,4 +1,4 @@
-//! At its null an effect is not there: the run equals the bare law's to the bit.
+//! At its null an effect is absent: the run equals that of the bare law to the bit.
 
 use crate::common::motion::Sines;
 use crate::common::random::Random;
@@ -6,7 +6,7 @@ use crate::common::{chain, company, readings};
 use jbf_core::effect::{Info, Need, CATALOGUE};
 use jbf_core::{Motion, Real};
 
-/// Parameters of an effect with its null in place, the others anywhere in their bounds.
+/// Parameters of an effect at its null, the others anywhere within their bounds.
 fn at_null(info: &Info, random: &mut Random) -> Vec<f64> {
     info.parameters
         .iter()
@@ -53,7 +53,7 @@ fn null_is_absent_to_the_bit_in_single_precision() {
     check::<f32>();
 }
 
-/// What asks for a temperature changes nothing, to the bit, where none was recorded.
+/// An effect that requires a temperature changes nothing, to the bit, if none was recorded.
 #[test]
 fn without_a_temperature_its_effects_are_absent() {
     let sines = Sines::two_way(1.0);
@@ -74,7 +74,7 @@ fn without_a_temperature_its_effects_are_absent() {
     }
 }
 
-/// Away from its null every effect does something, so that the test above can fail.
+/// Away from its null every effect changes the readings, so that the test above can fail.
 #[test]
 fn away_from_its_null_every_effect_shows() {
     for info in CATALOGUE {

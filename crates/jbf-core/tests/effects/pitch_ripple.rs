@@ -1,4 +1,4 @@
-//! Friction times `1 + a cos(2 pi x/p - phi)`: a level and a slope that go with the place.
+//! Friction times `1 + a cos(2 pi x/p - phi)`: level and slope vary with the position.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -25,7 +25,7 @@ fn scales_friction_with_the_place_within_a_pitch() {
     }
 }
 
-/// A pitch of one turn is the ripple once a turn.
+/// With a pitch of one turn the effect equals `position_ripple`.
 #[test]
 fn at_the_pitch_of_a_turn_is_the_ripple_once_a_turn() {
     let turn = TAU * Bearing::THESIS.radius_m;
@@ -43,7 +43,7 @@ fn at_the_pitch_of_a_turn_is_the_ripple_once_a_turn() {
     }
 }
 
-/// A drive that stands feels nothing of it; how much it holds goes with the place.
+/// At rest there is no force; the holding level varies with the position.
 #[test]
 fn at_rest_it_changes_what_holds_and_nothing_else() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("pitch_ripple", &[0.5, 0.01, 0.0])]);

@@ -1,4 +1,4 @@
-//! A second ripple multiplies what the first leaves.
+//! A second ripple multiplies the friction of the first.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

@@ -1,4 +1,4 @@
-//! A ripple rises and falls once a turn, largest at theta_0.
+//! A ripple with one period per turn, largest at theta_0.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 fn once_a_turn_and_largest_at_theta_0() {
     let (depth, theta_0, f) = (0.3, 0.8, 0.1);
     let chain = chain_round(ConstantLaw(f), &[("position_ripple", &[depth, theta_0])]);
-    // 1000 steps a turn, two turns.
+    // 1000 steps per turn, two turns.
     let speed = 0.05;
     let dt = TAU * 0.0127 / speed / 1000.0;
     let readings = readings(&chain, dt, 2000, |t| constant::<f64>(speed, t));
@@ -22,17 +22,17 @@ fn once_a_turn_and_largest_at_theta_0() {
     assert!((TAU * at as f64 / 1000.0 - theta_0).abs() < TAU / 1000.0);
     assert!((largest / (f * LOAD_N) - (1.0 + depth)).abs() < 1e-5);
     assert!((smallest / (f * LOAD_N) - (1.0 - depth)).abs() < 1e-5);
-    // The mean over a turn is the friction without ripple, and the next turn is the same.
+    // The mean over a turn is the friction without ripple, and the next turn is equal.
     assert!((turn.iter().sum::<f64>() / 1000.0 - f * LOAD_N).abs() < 1e-9);
     for (a, b) in turn.iter().zip(&readings[1000..]) {
         assert!((a - b).abs() < 1e-9);
     }
-    // One maximum a turn: the signal crosses its mean twice.
+    // One maximum per turn: the signal crosses its mean twice.
     let above: Vec<bool> = turn.iter().map(|r| *r > f * LOAD_N).collect();
     assert_eq!(above.windows(2).filter(|w| w[0] != w[1]).count(), 2);
 }
 
-/// At every angle, and of dry and viscous friction alike.
+/// At every angle, and for dry and viscous friction alike.
 #[test]
 fn follows_the_cosine_of_the_angle() {
     let (f_c, f_v) = (6.0, 40.0);

@@ -1,4 +1,4 @@
-//! A reversal at constant friction is an exponential in the distance slid, at any step.
+//! A reversal at constant friction is an exponential in the distance slid, for any step.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
@@ -12,7 +12,7 @@ const F: f64 = 0.2;
 const SIGMA_1_M: f64 = 3e3;
 const SPEED_M_S: f64 = 1e-3;
 
-/// From rest forward until the bristles slide, then back: readings over friction.
+/// From rest forward until the bristles slide, then back: readings relative to friction.
 fn reversal(dt_s: f64, forward: u32, back: u32) -> Vec<f64> {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
     let turn = dt_s * (f64::from(forward) + 0.5);
@@ -36,7 +36,7 @@ fn start_and_reversal_are_exponentials_in_distance() {
         let forward = (40.0 * length / (SPEED_M_S * dt_s)).ceil() as u32;
         let got = reversal(dt_s, forward, forward);
         for (i, r) in got.iter().enumerate().take(forward as usize) {
-            // The first step starts from rest and slides half as far.
+            // The first step starts from rest: its distance is half as long.
             let s = SPEED_M_S * dt_s * (i as f64 - 0.5).max(0.0);
             assert!(
                 (r - (1.0 - (-s / length).exp())).abs() < 1e-12,
@@ -44,7 +44,8 @@ fn start_and_reversal_are_exponentials_in_distance() {
             );
         }
         for (i, r) in got.iter().enumerate().skip(forward as usize + 1) {
-            // The speed crosses zero in the middle of a step: a quarter of it is slid back.
+            // The speed crosses zero in the middle of a step, so a quarter of the step is slid
+            // backward.
             let steps = i as f64 - f64::from(forward) - 1.0;
             let s = SPEED_M_S * dt_s * (steps + 0.25);
             assert!(
@@ -55,7 +56,7 @@ fn start_and_reversal_are_exponentials_in_distance() {
     }
 }
 
-/// A contact at rest keeps its deflection: no slow creep back.
+/// A contact at rest keeps its deflection and does not creep back.
 #[test]
 fn rest_keeps_the_deflection() {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
@@ -77,7 +78,7 @@ fn rest_keeps_the_deflection() {
     assert!(got[6..].iter().all(|r| *r == got[6]));
 }
 
-/// A run that begins in motion begins with the bristles bent to the full.
+/// A run that begins in motion begins with fully deflected bristles.
 #[test]
 fn a_run_that_begins_in_motion_begins_sliding() {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
@@ -89,7 +90,7 @@ fn a_run_that_begins_in_motion_begins_sliding() {
     }
 }
 
-/// Beside a law in newtons only the dry part bends: on Coulomb's law, Dahl's with exponent 1.
+/// With a law in newtons only the dry part deflects: with Coulomb's law it is Dahl's, exponent 1.
 #[test]
 fn on_coulombs_law_it_is_dahls() {
     let (kinetic_n, stiffness_n_m, viscous_n_s_m) = (6.0, 3e4, 400.0);
@@ -111,14 +112,15 @@ fn on_coulombs_law_it_is_dahls() {
     }
 }
 
-/// A turn inside a step from one speed to another: the zero lies where a straight line between them
-/// has it, and only what is slid beyond it bends the bristles back.
+/// For a reversal within a step the zero is found by linear interpolation between the speeds.
+///
+/// Only the distance slid after it deflects the bristles backward.
 #[test]
 fn a_turn_between_unlike_speeds_is_where_the_line_crosses_zero() {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
     let dt_s = 0.01;
     for share in [0.2, 0.5, 0.75, 0.9] {
-        // Speeds whose line crosses zero at that share of the step.
+        // Speeds whose linear interpolation crosses zero at that share of the step.
         let (before, after) = (SPEED_M_S * share, -SPEED_M_S * (1.0 - share));
         let got = readings(&chain, dt_s, 20, |t| {
             constant::<f64>(if t < 10.5 * dt_s { before } else { after }, t)

@@ -1,4 +1,4 @@
-//! The reading is the force and a straight line in time, zero where the run begins.
+//! The reading is the force plus a linear function of time that is zero at the start of the run.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;

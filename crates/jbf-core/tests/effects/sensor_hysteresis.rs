@@ -1,4 +1,4 @@
-//! Play in the force path: two branches, 2 w apart, and a level between them.
+//! Play in the force path: two branches at a distance of 2 w, and a level between them.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
@@ -15,7 +15,7 @@ fn smooth<T: Real>(force_n: T) -> Signal<T> {
     }
 }
 
-/// What a cell with this play reads along some forces.
+/// Readings of a cell with this play for a sequence of forces.
 fn read<T: Real>(half_width_n: T, forces_n: &[T]) -> Vec<T> {
     let cell = SensorHysteresis::new(&[half_width_n]).expect("within bounds");
     let rig = Rig {
@@ -30,8 +30,10 @@ fn read<T: Real>(half_width_n: T, forces_n: &[T]) -> Vec<T> {
     found
 }
 
-/// Viscous friction of a speed that rises, falls below zero and rises: the branch F - w, the level
-/// from a peak down by 2 w, the branch F + w.
+/// Viscous friction of a speed that rises, falls below zero and rises again.
+///
+/// The reading follows the branch F - w, then stays constant from a peak until the force is 2 w
+/// lower, then follows the branch F + w.
 #[test]
 fn goes_from_branch_to_branch_across_the_gap() {
     let (w, slope, n) = (0.4, 40.0, 628);
@@ -58,7 +60,7 @@ fn goes_from_branch_to_branch_across_the_gap() {
     assert!(touched > 20, "the level is {touched} samples long");
 }
 
-/// A jump that is larger than the gap leaves w of it on either side, from its first instant on.
+/// A jump larger than the gap leaves a difference of w on either side, from its first instant on.
 #[test]
 fn passes_a_jump_at_a_sample_exactly() {
     let (f, w, dt) = (0.1, 1.5, 0.05);
@@ -76,7 +78,7 @@ fn passes_a_jump_at_a_sample_exactly() {
         let expected = match i {
             0 => 0.0,
             1..=39 => level - w,
-            // At the instant of the reversal there is no friction, and of that the play keeps w.
+            // At the instant of the reversal there is no friction, and the play holds w.
             40 => w,
             41..=79 => w - level,
             _ => -w,
@@ -85,7 +87,7 @@ fn passes_a_jump_at_a_sample_exactly() {
     }
 }
 
-/// A touch of zero that lasts no time moves nothing: friction is there on both of its sides.
+/// A zero of no duration changes nothing: friction exists on both sides of it.
 #[test]
 fn an_instant_moves_nothing() {
     let (f, w, dt) = (0.1, 1.5, 0.05);
@@ -98,7 +100,7 @@ fn an_instant_moves_nothing() {
     }
 }
 
-/// What is smaller than the gap is not seen; and the cell never reads further off than w.
+/// A change smaller than the gap is not visible, and the reading never differs by more than w.
 #[test]
 fn hides_what_is_smaller_than_the_gap() {
     let ripple: Vec<f64> = (0..200)
@@ -112,7 +114,9 @@ fn hides_what_is_smaller_than_the_gap() {
     }
 }
 
-/// It knows no time: the same forces at any pace give the same readings, and odd ones odd.
+/// The effect is rate-independent and odd.
+///
+/// The same forces at any rate give the same readings, and opposite forces give opposite readings.
 #[test]
 fn knows_no_time_and_is_odd() {
     let forces: Vec<f64> = (0..300)
@@ -131,8 +135,10 @@ fn knows_no_time_and_is_odd() {
     }
 }
 
-/// At no width the force itself with all its slopes, and by the width the branch on which it moves:
-/// also where the force stands and only a slope of it goes on.
+/// At zero width the derivative is that of the force.
+///
+/// The derivative with respect to the width is that of the branch on which the force moves. This
+/// also holds where the force is constant and only its derivative continues.
 #[test]
 fn at_its_null_the_slope_is_the_branch() {
     let w = Dual::<2>::parameter(0.0, 0);
@@ -160,7 +166,9 @@ fn at_its_null_the_slope_is_the_branch() {
     }
 }
 
-/// Away from it the moving end of the gap, and between the ends the slope that is held.
+/// At a positive width the derivative is that of the moving end of the gap.
+///
+/// Between the ends the derivative is held.
 #[test]
 fn slopes_are_those_of_the_end_that_moves() {
     let w = Dual::<2>::parameter(0.5, 0);
@@ -182,8 +190,9 @@ fn slopes_are_those_of_the_end_that_moves() {
     }
 }
 
-/// The force reaches the cell through the gap before the cell bends: the branches of a bent cell are
-/// the bent branches.
+/// The force passes the play before the nonlinearity of the cell.
+///
+/// The branches of a nonlinear cell are the transformed branches of the linear one.
 #[test]
 fn is_crossed_before_the_cell_bends() {
     let (w, c) = (0.6, 4e-3);

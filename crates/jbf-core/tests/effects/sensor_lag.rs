@@ -1,11 +1,12 @@
-//! A low pass of the first order, against its answer to a step and to a sine.
+//! A first-order low-pass filter, compared with its response to a step and to a sine.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain, chain_round, readings, LOAD_N};
 
-/// The force jumps between two samples; the filter takes it as a ramp over that step, whose
-/// middle is where the ideal jump is. The two answers differ by (dt/tau)^2/24.
+/// The force jumps between two samples; the filter treats it as a ramp over that step.
+///
+/// The ideal jump is at the middle of the ramp. The two responses differ by (dt/tau)^2/24.
 #[test]
 fn answers_a_step_with_an_exponential() {
     let (f, tau, dt) = (0.1, 0.3, 0.005);
@@ -28,8 +29,10 @@ fn answers_a_step_with_an_exponential() {
     }
 }
 
-/// Where a sample falls on the reversal itself, the jump of the force is there, not spread
-/// over a step: the ideal answer, to rounding. The same where the motion starts or stops.
+/// If a sample is at the reversal itself, the jump of the force is at that sample.
+///
+/// The response is then the ideal one except for rounding. The same applies to the start and end of
+/// a motion.
 #[test]
 fn answers_a_jump_at_a_sample_exactly() {
     let (f, tau, dt) = (0.1, 0.3, 0.05);
@@ -65,7 +68,7 @@ fn a_short_lag_shifts() {
     }
 }
 
-/// Longer than the run, it hardly moves from its first reading.
+/// A lag longer than the run hardly changes the first reading.
 #[test]
 fn a_long_lag_holds_the_first_reading() {
     let sines = Sines::one_way(1.0);

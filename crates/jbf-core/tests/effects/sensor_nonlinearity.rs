@@ -1,4 +1,4 @@
-//! A cell's line with a cubic term, against forces whose cube is known.
+//! A cell characteristic with a cubic term, compared with forces whose cube is known.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::Sines;
@@ -18,7 +18,7 @@ fn adds_its_cube_to_every_reading() {
     let plain = readings(&chain_round(newtons(6.0, 40.0), &[]), 0.01, 700, |t| {
         sines.at::<f64>(t)
     });
-    // Either sign, of a wrist watch's force and of a press's.
+    // Either sign, and two magnitudes.
     for c in [2e-3, -5e-4] {
         let bent = chain_round(newtons(6.0, 40.0), &[("sensor_nonlinearity", &[c])]);
         let got = readings(&bent, 0.01, 700, |t| sines.at::<f64>(t));
@@ -29,7 +29,9 @@ fn adds_its_cube_to_every_reading() {
     }
 }
 
-/// It bends both sides of a jump, before the filter: a lagged bent cell rests at the bent force.
+/// Both sides of a jump are transformed before the filter.
+///
+/// A nonlinear cell with lag settles at the transformed force.
 #[test]
 fn bends_before_the_filter_and_the_zero() {
     let (f, c, b, tau, dt) = (0.1, 5e-3, 0.7, 0.3, 0.05);
@@ -52,7 +54,7 @@ fn bends_before_the_filter_and_the_zero() {
     }
 }
 
-/// More force never reads as less, nor as anything that is no number.
+/// The reading never decreases with the force, and is always finite.
 #[test]
 fn stays_monotone_and_finite() {
     for c in [-1e6, -3e-3, -1e-12, 0.0, 1e-12, 3e-3, 1e6] {
@@ -68,7 +70,7 @@ fn stays_monotone_and_finite() {
             assert!(read(c as f32, force).is_finite(), "{c} {force}");
         }
     }
-    // At its turning point and beyond the line is level, without a step.
+    // From its turning point on the characteristic is constant, without a step.
     let (c, turning) = (-1.0 / 300.0, 10.0);
     assert!((read(c, turning) - 20.0 / 3.0).abs() < 1e-14);
     assert!((read(c, 1.001 * turning) - read(c, 0.999 * turning)).abs() < 1e-4);
@@ -82,7 +84,7 @@ fn knows_its_slopes() {
     let r = read(c, force);
     assert!((r.slope[0] + 512.0).abs() < 1e-12);
     assert!((r.slope[1] - (1.0 + 3.0 * 2e-3 * 64.0)).abs() < 1e-15);
-    // Level beyond the turning point: the force moves nothing, c does.
+    // Beyond the turning point the derivative with respect to the force is zero, that to c is not.
     let c = Dual::<2>::parameter(-1.0 / 300.0, 0);
     let r = read(c, Dual::parameter(-30.0, 1));
     let beside = |by: f64| read(-1.0 / 300.0 + by, -30.0);
@@ -91,7 +93,7 @@ fn knows_its_slopes() {
     assert_eq!(r.slope[1], 0.0);
 }
 
-/// Of what happens within a step each instant is bent by itself.
+/// Each instant within a step is transformed separately.
 #[test]
 fn remembers_nothing() {
     let cell = SensorNonlinearity::new(&[0.01]).expect("within bounds");

@@ -1,10 +1,10 @@
-//! The film feels `U / (1 + (|U|/U_c)^n)`: half the speed at U_c, whatever the steepness.
+//! The effective film speed is `U / (1 + (|U|/U_c)^n)`: half the speed at U_c for every n.
 
 use crate::common::chain_round;
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
 
-/// The speed that the film feels when the journal turns at `speed`, m/s.
+/// Effective film speed at the journal speed `speed`, m/s.
 fn felt(u_c: f64, n: f64, speed: f64) -> f64 {
     let chain = chain_round(ConstantLaw(0.1), &[("shear_thinning", &[u_c, n])]);
     let mut state = chain.start(&constant(speed, 0.0));

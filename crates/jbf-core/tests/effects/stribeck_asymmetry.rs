@@ -1,4 +1,4 @@
-//! `+ c exp(-(|v|/v_s)^n)`: at low speed another level each way, at speed the same.
+//! `+ c exp(-(|v|/v_s)^n)`: different levels in the two directions at low speed only.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -22,7 +22,7 @@ fn raises_one_peak_and_lowers_the_other() {
     }
 }
 
-/// A peak higher than the level leaves the other way no friction, and no push.
+/// If the peak exceeds the level, friction in the other direction is zero and never drives.
 #[test]
 fn no_way_is_pushed() {
     let sines = Sines::two_way(1.0);
@@ -35,7 +35,7 @@ fn no_way_is_pushed() {
     assert!((1..got.len()).filter(|&i| back(i)).all(|i| got[i] == 0.0));
 }
 
-/// At rest, where the motion may go either way, neither peak is there.
+/// At rest, where both directions are possible, neither peak is present.
 #[test]
 fn at_rest_holds_as_without_it() {
     let chain = chain_round(

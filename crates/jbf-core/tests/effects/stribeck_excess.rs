@@ -1,4 +1,4 @@
-//! Friction is `a exp(-(|v|/v_s)^n)` higher at low speed, the same both ways.
+//! Friction is higher by `a exp(-(|v|/v_s)^n)` at low speed, equally in both directions.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;

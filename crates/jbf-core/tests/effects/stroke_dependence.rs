@@ -1,4 +1,4 @@
-//! Dry friction times `1 + s(x)`: Fourier's waves over the stroke, written here by their angles.
+//! Dry friction times `1 + s(x)`: Fourier terms over the stroke, written here by their angles.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -10,7 +10,7 @@ const F_V_N_S_M: f64 = 40.0;
 const MIDDLE_M: f64 = 0.1;
 const HALF_M: f64 = 0.1;
 
-/// The dry level over its mean, at `x` m.
+/// The dry level relative to its mean, at `x` m.
 fn share(a: [f64; 6], x: f64) -> f64 {
     let u = ((x - MIDDLE_M) / HALF_M).clamp(-1.0, 1.0);
     let waves = [
@@ -30,7 +30,7 @@ fn values(a: [f64; 6]) -> [f64; 8] {
 
 #[test]
 fn scales_the_dry_level_with_the_place_and_nothing_else() {
-    // From 0 to 0.254 m: beyond the upper end of the stroke, too.
+    // From 0 to 0.254 m: this includes positions beyond the upper end of the stroke.
     let sines = Sines::two_way(1.0);
     for a in [
         [0.3, -0.2, 0.05, 0.1, -0.07, 0.04],
@@ -48,14 +48,14 @@ fn scales_the_dry_level_with_the_place_and_nothing_else() {
     }
 }
 
-/// The level that holds a drive at rest at a place, N.
+/// The level that holds a drive at rest at a position, N.
 fn level_n(a: [f64; 6], x: f64) -> f64 {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("stroke_dependence", &values(a))]);
     let state = chain.start(&held::<f64>(x / Bearing::THESIS.radius_m, 0.0));
     chain.felt(&state).jump
 }
 
-/// None of the waves does the work of the dry level or of another.
+/// The terms are orthogonal to the dry level and to each other.
 #[test]
 fn the_waves_have_no_mean_and_nothing_in_common() {
     let n = 2000;
@@ -74,14 +74,14 @@ fn the_waves_have_no_mean_and_nothing_in_common() {
     }
 }
 
-/// Over the ends goes neither a step nor a corner.
+/// There is neither a step nor a corner at the ends.
 #[test]
 fn is_smooth_over_the_ends() {
     let a = [0.3, -0.2, 0.05, 0.1, -0.07, 0.04];
     let h = 1e-6;
     for end in [MIDDLE_M - HALF_M, MIDDLE_M + HALF_M] {
         let slope = |x: f64| (level_n(a, x + h) - level_n(a, x - h)) / (2.0 * h);
-        // The slope falls to zero as a line over the way, some 2 N/m^2 times 1e3.
+        // The slope falls linearly to zero over the distance, some 2 N/m^2 times 1e3.
         assert!(slope(end).abs() < 0.02, "{}", slope(end));
         assert!((level_n(a, end - h) - level_n(a, end + h)).abs() < 1e-6);
         assert!(slope(end + 0.3 * (end - MIDDLE_M)).abs() < 1e-9);
@@ -89,7 +89,7 @@ fn is_smooth_over_the_ends() {
     assert!((level_n(a, MIDDLE_M + h) - level_n(a, MIDDLE_M - h)).abs() > 1e-5);
 }
 
-/// Of waves that would make friction push there is none left.
+/// If the terms would make friction negative, it is zero.
 #[test]
 fn the_level_is_never_below_zero() {
     assert_eq!(level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], 0.0), 0.0);

@@ -6,7 +6,7 @@ use crate::common::{chain, readings};
 use jbf_core::effect::{Info, CATALOGUE};
 use jbf_core::page::Mirror;
 
-/// Parameters of the mirrored machine. Few effects know left from right; their pages say so.
+/// Parameters of the mirrored machine. Few effects depend on the direction; their pages state it.
 fn mirrored(info: &Info, values: &[f64]) -> Vec<f64> {
     let turned = info.parameters.iter().zip(values);
     turned
@@ -32,7 +32,7 @@ fn mirrored_motion_gives_mirrored_friction() {
             let back = chain::<f64>(&[(info.name, &mirrored(info, &values))]);
             let there = readings(&there, 0.01, 500, |t| motion.at(t));
             let back = readings(&back, 0.01, 500, |t| motion.mirrored().at(t));
-            // Sign changes are exact in binary arithmetic, so nothing is left to rounding.
+            // Sign changes are exact in binary arithmetic, so there is no rounding error.
             for (a, b) in there.iter().zip(&back) {
                 assert_eq!(*a, -*b, "{} {values:?}", info.name);
             }
@@ -40,7 +40,7 @@ fn mirrored_motion_gives_mirrored_friction() {
     }
 }
 
-/// Without turning theta_0 as well the ripple is not odd: the exception is real.
+/// Without a mirrored theta_0 the ripple is not odd: the exception is necessary.
 #[test]
 fn a_ripple_is_not_odd_in_the_motion_alone() {
     let rippled = chain::<f64>(&[("position_ripple", &[0.5, 1.0])]);

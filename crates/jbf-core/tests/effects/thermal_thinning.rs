@@ -1,4 +1,4 @@
-//! At constant friction power the oil's log viscosity falls by `beta q tau P` in the end.
+//! At constant friction power the oil's log viscosity finally falls by `beta q tau P`.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::constant;
@@ -13,7 +13,7 @@ fn warms_along_the_closed_form() {
         let mut state = chain.start(&constant::<f64>(speed, 0.0));
         let steps = (10.0 * tau / dt) as u32;
         for i in 1..=steps {
-            // The film is given the viscosity of the step's start.
+            // The film uses the viscosity at the start of the step.
             let from = dt * f64::from(i - 1);
             chain.step(&mut state, &constant(speed, dt * f64::from(i)), dt);
             let thinned = -(state.law / speed).ln();
@@ -27,8 +27,9 @@ fn warms_along_the_closed_form() {
     }
 }
 
-/// Thin oil is no friction coefficient: the steady point moves down the Stribeck curve to the
-/// speed that the film feels.
+/// Thinner oil does not change the coefficient directly.
+///
+/// The steady point moves down the Stribeck curve to the effective speed of the film.
 #[test]
 fn warm_oil_acts_as_a_lower_speed() {
     use crate::common::{chain, law};

@@ -1,10 +1,10 @@
-//! A pure delay, against what it is: the same signal, later.
+//! A pure delay: the same signal, later.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain, chain_round, readings, LOAD_N};
 
-/// A delay of whole steps gives the bare readings of so many steps before.
+/// A delay of whole steps shifts the bare readings by this number of steps.
 #[test]
 fn whole_steps_shift_the_record() {
     let sines = Sines::two_way(1.0);
@@ -21,7 +21,7 @@ fn whole_steps_shift_the_record() {
     }
 }
 
-/// Less than a step: between the neighbours, on a straight line.
+/// For a delay below one step the reading is interpolated linearly between the neighbours.
 #[test]
 fn part_of_a_step_lies_between_the_neighbours() {
     let sines = Sines::one_way(1.0);
@@ -35,7 +35,7 @@ fn part_of_a_step_lies_between_the_neighbours() {
     }
 }
 
-/// It does not round: a jump stays a jump, where a low pass of the same delay makes a tail.
+/// A jump remains a jump, while a low-pass filter of the same delay smooths it.
 #[test]
 fn a_jump_stays_a_jump() {
     let (f, tau, dt) = (0.1, 0.2, 0.01);
@@ -53,8 +53,9 @@ fn a_jump_stays_a_jump() {
     }
 }
 
-/// After the low pass and before the zero of the load cell: a delayed low pass is a low pass
-/// delayed.
+/// The delay acts after the low-pass filter and before the zero offset of the load cell.
+///
+/// Filter and delay commute.
 #[test]
 fn delay_and_low_pass_commute() {
     let sines = Sines::one_way(1.0);

@@ -1,4 +1,4 @@
-//! Effects in company: two that can be composed by hand, every pair, all at once.
+//! Combinations of effects: two that can be composed by hand, every pair, and all at once.
 
 use crate::common::motion::Sines;
 use crate::common::{chain, chain_round, company, law, readings};
@@ -11,7 +11,7 @@ fn starts(info: &Info) -> Vec<f64> {
     info.parameters.iter().map(|p| p.starts[0]).collect()
 }
 
-/// Effects at their starts, and what must stand beside some that are looked at.
+/// Readings with effects at their starting values, and further effects that some of them require.
 fn run<T: Real>(which: &[&Info], beside: &[(&str, &[f64])]) -> Vec<T> {
     let values: Vec<Vec<f64>> = which.iter().map(|info| starts(info)).collect();
     let effects: Vec<(&str, &[f64])> = which
@@ -24,8 +24,9 @@ fn run<T: Real>(which: &[&Info], beside: &[(&str, &[f64])]) -> Vec<T> {
     readings(&chain::<T>(&effects), 0.01, 700, |t| sines.under(83.5, t))
 }
 
-/// The instrument comes after the drag: a low pass, written here anew, over the force of a
-/// chain with drag alone gives what the chain with both gives.
+/// The instrument acts after the drag.
+///
+/// A low-pass filter, implemented here, of the force with drag equals the chain with both effects.
 #[test]
 fn the_instrument_sees_the_drag() {
     let (tau, dt) = (0.1_f64, 0.01_f64);
@@ -38,7 +39,7 @@ fn the_instrument_sees_the_drag() {
         700,
         |t| sines.at(t),
     );
-    // Substeps of the ramp between samples, by the trapezoidal rule.
+    // Substeps of the ramp between samples, with the trapezoidal rule.
     let n = 200;
     let h = dt / f64::from(n);
     let mut r = force[0];
@@ -53,8 +54,9 @@ fn the_instrument_sees_the_drag() {
     }
 }
 
-/// The chain has one order; the order of naming does not matter, and neither effect of a
-/// pair is lost.
+/// The order of effects in the chain does not depend on the order in which they are named.
+///
+/// Neither effect of a pair is lost.
 #[test]
 fn pairs_run_in_the_order_of_the_chain() {
     for (i, a) in CATALOGUE.iter().enumerate() {
@@ -78,7 +80,7 @@ fn pairs_run_in_the_order_of_the_chain() {
     }
 }
 
-/// Everything that goes with a law, round it.
+/// Readings with every effect that is compatible with a law.
 fn all_round<T: Real, L: Named<T>>(law: L) -> Vec<T> {
     let page = law::CATALOGUE.iter().find(|page| page.name == L::INFO.name);
     let page = page.expect("a law of the catalogue");
@@ -108,7 +110,7 @@ fn all_at_once_stay_finite_and_agree_in_both_precisions() {
     agree(&all_round(dry::<f64>()), &all_round(dry::<f32>()));
 }
 
-/// Dry friction in newtons, with a viscous part.
+/// Dry friction in newtons with a viscous part.
 fn dry<T: Real>() -> Coulomb<T> {
     let values = [6.0, 6.0, 20.0].map(T::of);
     Coulomb::build(None, None, &values, Clock::Journal).expect("a sound law")

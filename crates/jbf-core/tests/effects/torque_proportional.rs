@@ -1,5 +1,4 @@
-//! Gears under a weight and a mass: what they lose is a share of what they carry, whichever way the
-//! power flows.
+//! Gears under a weight and a mass lose a share of the transmitted force in both power directions.
 
 use crate::common::motion::{held, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -9,7 +8,7 @@ const WEIGHT: [f64; 2] = [30.0, 0.4];
 const MASS_KG: f64 = 50.0;
 const SHARE: f64 = 0.2;
 
-/// What the drive carries at a time of the two-way sine, N.
+/// Transmitted force at a time of the sine, N.
 fn carried_n(t: f64) -> f64 {
     let theta = 10.0 * (1.0 - t.cos());
     WEIGHT[0] * (theta - WEIGHT[1]).sin() + MASS_KG * 0.127 * t.cos()
@@ -31,7 +30,7 @@ fn loses_one_share_of_what_it_carries_both_ways() {
     for (i, f) in got.iter().enumerate().skip(1) {
         let t = 0.01 * i as f64;
         let (carried, way) = (carried_n(t), t.sin().signum());
-        // Driving it takes 1 + mu times the load, driven back it gives 1 - mu times.
+        // Driving requires 1 + mu times the load; driven back it returns 1 - mu times the load.
         let factor = if carried * way > 0.0 {
             drives += 1;
             1.0 + SHARE
@@ -45,7 +44,7 @@ fn loses_one_share_of_what_it_carries_both_ways() {
     assert!(drives > 200 && driven > 200, "{drives} {driven}");
 }
 
-/// At rest the drive holds up to the level of both; a share of one locks it against its weight.
+/// At rest the drive holds up to the sum of both levels; a share of 1 locks it against its weight.
 #[test]
 fn at_rest_it_holds_by_the_load() {
     for share in [0.0, 0.5, 1.0] {
@@ -74,7 +73,7 @@ fn excludes_drag() {
     assert_eq!(with, without);
 }
 
-/// On an inclined axis the weight is a constant, and adds to what accelerates the mass.
+/// On an inclined axis the weight is constant and adds to the inertial force of the mass.
 #[test]
 fn includes_a_constant_weight() {
     let (sines, weight) = (Sines::two_way(1.0), 4.0);
@@ -95,7 +94,7 @@ fn includes_a_constant_weight() {
     }
 }
 
-/// A bristle takes this level's place, too: past a reversal it slopes as the law's own does.
+/// With a bristle this level also deflects: after a reversal it rises as the law's own does.
 #[test]
 fn bends_with_a_bristle() {
     let sines = Sines::two_way(1.0);

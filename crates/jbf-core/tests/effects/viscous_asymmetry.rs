@@ -1,4 +1,4 @@
-//! Viscous friction `F_v v + b |v|`: other slopes to either side; the dry level is the law's.
+//! Viscous friction `F_v v + b |v|`: different slopes by direction; the dry level is unchanged.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

@@ -1,4 +1,4 @@
-//! Beside a viscous slope, `c L v`.
+//! A term `c L v` in addition to the viscous slope.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

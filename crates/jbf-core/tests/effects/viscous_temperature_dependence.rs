@@ -1,4 +1,4 @@
-//! A viscous slope by Vogel's relation, `F_v exp(B/(T - C) - B/(T_0 - C))`.
+//! A viscous slope with Vogel's relation, `F_v exp(B/(T - C) - B/(T_0 - C))`.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};

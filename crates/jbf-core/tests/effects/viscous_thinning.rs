@@ -1,4 +1,5 @@
-//! Viscous friction `F_v v / (1 + w |v|)`: half of the straight line at `1/w`; the dry level stays.
+//! Viscous friction `F_v v / (1 + w |v|)`: half of the straight line at `1/w`; the dry level is
+//! unchanged.
 
 use crate::common::motion::Sines;
 use crate::common::{chain_round, newtons, readings};
@@ -15,7 +16,7 @@ fn flattens_the_viscous_part_alone() {
         let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
         for (i, f) in got.iter().enumerate().skip(1) {
             let v = 0.127 * (0.01 * i as f64).sin();
-            // A harmonic sum of a straight line and a level.
+            // Harmonic sum of a straight line and a level.
             let viscous = 1.0 / (1.0 / (F_V_N_S_M * v.abs()) + 1.0 / (F_V_N_S_M * v_c));
             let expected = (F_C_N + viscous) * v.signum();
             assert!((f - expected).abs() < 1e-12, "{v_c} {i}: {f} {expected}");

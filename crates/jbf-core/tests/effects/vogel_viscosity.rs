@@ -1,4 +1,4 @@
-//! Vogel's relation against ASTM D341's (Walther's), and a warm film against the law of thin oil.
+//! Vogel's relation compared with that of ASTM D341 (Walther), and a warm film with thinner oil.
 
 use crate::common::constant_law::ConstantLaw;
 use crate::common::motion::{constant, Sines};
@@ -9,7 +9,7 @@ use jbf_core::{Bearing, Clock, Motion};
 const C_C: f64 = -95.0;
 const REFERENCE_C: f64 = 40.0;
 
-/// What the effect makes of a viscosity at a temperature.
+/// Factor of the viscosity at a temperature.
 fn factor(b_k: f64, celsius: f64) -> f64 {
     let effect: [(&str, &[f64]); 1] = [("vogel_viscosity", &[b_k, C_C, REFERENCE_C])];
     let chain = chain_round(ConstantLaw(0.1), &effect);
@@ -28,8 +28,10 @@ fn thins_as_vogel_says() {
     assert_eq!(factor(900.0, REFERENCE_C), 1.0);
 }
 
-/// An oil of 46 mm^2/s at 40 C and 6.8 mm^2/s at 100 C: between and about them the viscosity is the
-/// one of `log log (nu + 0.7) = A - B log T` (ASTM D341), to a few per cent.
+/// Vogel's relation agrees with Walther's within a few per cent.
+///
+/// The oil has 46 mm^2/s at 40 C and 6.8 mm^2/s at 100 C. The reference is `log log (nu + 0.7) = A
+/// - B log T` (ASTM D341) between and about these temperatures.
 #[test]
 fn agrees_with_walther_on_an_oil_of_grade_46() {
     let walther = |celsius: f64| {
@@ -49,8 +51,9 @@ fn agrees_with_walther_on_an_oil_of_grade_46() {
     }
 }
 
-/// Warm, the film of one oil is that of a thinner one: other viscosity, other transition speed,
-/// their product the same.
+/// The warm film of one oil equals that of a thinner oil.
+///
+/// The thinner oil has another viscosity and another transition speed with the same product.
 #[test]
 fn two_oils_are_one_model() {
     let (b, warm) = (850.0, 63.0);

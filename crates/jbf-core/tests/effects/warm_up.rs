@@ -1,4 +1,4 @@
-//! A drive that begins cold: all its friction times `1 + a exp(-t/tau)`, moving or not.
+//! A drive that begins cold: all friction times `1 + a exp(-t/tau)`, in motion or at rest.
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};
@@ -23,7 +23,7 @@ fn falls_by_the_clock() {
     }
 }
 
-/// Time spent at rest warms as well: what running-in over the distance slid does not do.
+/// Time at rest counts as well, in contrast to running-in over the distance slid.
 #[test]
 fn a_rest_counts() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("warm_up", &[0.5, 3.0])]);

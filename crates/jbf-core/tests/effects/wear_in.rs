@@ -1,4 +1,4 @@
-//! Only the contact's own friction runs in, along an exponential in the distance slid.
+//! Only the friction of the contact runs in, exponentially in the distance slid.
 
 use crate::common::motion::constant;
 use crate::common::{chain_round, newtons, readings};
@@ -23,13 +23,15 @@ fn falls_with_the_distance_slid() {
     }
 }
 
-/// Back and forth both count, and a rest counts nothing. The speed is a triangle with its corners
-/// and its zeros at samples, so that the distance is a parabola.
+/// Both directions count, and a rest does not.
+///
+/// The speed is a triangle with its corners and zeros at samples, so that the distance is a
+/// parabola.
 #[test]
 fn both_ways_count_and_rests_do_not() {
     let (a, s_0, dt) = (0.8, 0.02, 0.01);
     let chain = chain_round(newtons(F_C_N, 0.0), &[("wear_in", &[a, s_0])]);
-    // Up to 0.1 m/s and back to zero in 1 s, then the other way, then 1 s of rest.
+    // Up to 0.1 m/s and back to zero in 1 s, then in the other direction, then 1 s of rest.
     let speed = |t: f64| match t {
         t if t < 0.5 => 0.2 * t,
         t if t < 1.5 => 0.2 * (1.0 - t),

@@ -1,4 +1,4 @@
-//! A force `k L` beside the friction, whichever way the motion goes, and at rest.
+//! A force `k L` in addition to friction, independent of the direction and also at rest.
 
 use crate::common::motion::{constant, Sines};
 use crate::common::{chain_round, newtons, readings};

@@ -1,4 +1,4 @@
-//! Each law against what a pencil gives.
+//! Each law compared with a closed form.
 
 use super::support::{along, axis, in_newtons, moving, sine, starts};
 use jbf_core::effect::Effects;
@@ -6,7 +6,7 @@ use jbf_core::law::coulomb::Coulomb;
 use jbf_core::law::{steady_n, Named};
 use jbf_core::Clock;
 
-/// A long slide at one speed ends on the steady curve, for every law and both ways.
+/// A long slide at one speed ends on the steady curve, for every law and in both directions.
 #[test]
 fn a_long_slide_ends_on_the_steady_curve() {
     for law in in_newtons() {
@@ -23,7 +23,8 @@ fn a_long_slide_ends_on_the_steady_curve() {
                 &mut expected,
             )
             .expect("valid");
-            // From rest, so that bristles have to bend first: a millimetre is a hundred of theirs.
+            // From rest, so that bristles deflect first: a millimetre is a hundred times their
+            // deflection.
             let steps = 2000;
             let dt = (0.05 / v.abs()).max(1.0) / f64::from(steps);
             let at = |t: f64| moving(t, if t > 0.0 { v } else { 0.0 }, v * t);
@@ -63,8 +64,9 @@ fn the_stribeck_curve_is_its_formula() {
     }
 }
 
-/// Dahl's reversal: from sliding one way to the other, the force follows the closed form of the
-/// way slid, whatever the speed and the step.
+/// After a reversal Dahl's force follows the closed form in the distance slid.
+///
+/// This holds for every speed and step.
 #[test]
 fn dahl_turns_round_in_its_closed_form() {
     let (fc, sigma) = (8.0, 2e5);
@@ -76,7 +78,8 @@ fn dahl_turns_round_in_its_closed_form() {
             let at = |t: f64| moving(t, if t < 1e-12 { speed } else { -speed }, 0.0);
             let force = along::<f64>("dahl", &values, dt, steps, at);
             assert_eq!(force[0], fc);
-            // The first step turns half way through: it slides nowhere. The others go back.
+            // The first step reverses in the middle, so its net distance is zero. The others go
+            // backward.
             for (i, f) in force.iter().enumerate().skip(2) {
                 let s = speed * dt * (i as f64 - 1.0) + 0.25 * speed * dt;
                 let k = sigma / fc;
@@ -102,8 +105,8 @@ fn dahl_turns_round_in_its_closed_form() {
     }
 }
 
-/// LuGre at one speed from rest: `sigma_0 z = level (1 - exp(-sigma_0 s/level))`, and the damping
-/// on top of it.
+/// LuGre at constant speed from rest: `sigma_0 z = level (1 - exp(-sigma_0 s/level))`, plus
+/// damping.
 #[test]
 fn lugre_bends_in_its_closed_form() {
     let (fc, fs, vs, s0, s1, vd, fv): (f64, f64, f64, f64, f64, f64, f64) =
@@ -112,11 +115,11 @@ fn lugre_bends_in_its_closed_form() {
     let v = 0.004;
     let level = fc + (fs - fc) * (-(v / vs) * (v / vs)).exp();
     let damping = s1 * (-(v / vd) * (v / vd)).exp();
-    // At this speed from the first sample on the bristle is bent; a reversal unbends it.
+    // At constant speed from the first sample on the bristle is deflected; a reversal relaxes it.
     let dt = 1e-3;
     let at = |t: f64| moving::<f64>(t, if t < 1e-12 { 0.0 } else { v }, 0.0);
     let force = along::<f64>("lugre", &values, dt, 400, at);
-    // After the first step, in which the speed rises from zero, the bristle starts where it is.
+    // After the first step, in which the speed rises from zero, the bristle starts from its state.
     let first = (force[1] - fv * v - damping * v) / (1.0 - damping * v / level);
     for (i, f) in force.iter().enumerate().skip(1) {
         let way = v * dt * (i as f64 - 1.0);
@@ -126,7 +129,7 @@ fn lugre_bends_in_its_closed_form() {
     }
 }
 
-/// Static friction holds a slider at rest behind a soft drive up to F_s, and lets go at F_c.
+/// Static friction holds a slider behind a compliant drive up to F_s; then it slides at F_c.
 #[test]
 fn coulomb_sticks_to_f_s_and_slides_at_f_c() {
     let law = <Coulomb<f64> as Named<f64>>::build(None, None, &[6.0, 9.0, 0.0], Clock::Journal)
@@ -161,8 +164,9 @@ fn coulomb_sticks_to_f_s_and_slides_at_f_c() {
     assert!((broke_at - 0.9).abs() < 0.02, "{broke_at}");
 }
 
-/// Under a rigid drive static friction of the Coulomb law cannot be seen, and a reversal in
-/// passing is no rest.
+/// Under a rigid drive the static friction of the Coulomb law is not observable.
+///
+/// A reversal without dwell is not a rest.
 #[test]
 fn coulomb_static_friction_needs_a_rest_and_a_soft_drive() {
     let there = along::<f64>("coulomb", &[6.0, 9.0, 1.0], 0.01, 500, sine(0.05, 2.0));

@@ -1,13 +1,14 @@
-//! Derivatives carried by dual numbers against central differences, for every parameter of every
+//! Derivatives from dual numbers compared with central differences, for every parameter of every
 //! law.
 //!
-//! Differences meet the moments at which a contact breaks away: those move with the parameters
-//! from one step to the next, so a few samples there have no difference quotient.
+//! The instants of breakaway move with the parameters from one step to the next, so a few samples
+//! there have no difference quotient.
 
 use super::support::{along, in_newtons, sine, starts};
 use jbf_core::{Dual, Real};
 
-/// The delay of the seven-parameter model is no whole number of these, where a slope has a kink.
+/// The delay of the seven-parameter model, where a slope has a kink, is not a multiple of this
+/// step.
 const DT_S: f64 = 1.1e-3;
 const STEPS: u32 = 4000;
 
@@ -29,7 +30,7 @@ fn slopes_match_central_differences() {
         if law.name == "dahl" {
             values[2] = 1.3;
         }
-        // Amplitudes that bend and slide; the speed passes the Stribeck speed.
+        // Amplitudes with deflection and sliding; the speed passes the Stribeck speed.
         for (amplitude, omega) in [(3e-4, 7.0), (0.02, 3.0)] {
             for i in 0..values.len() {
                 if law.name == "coulomb" && i == 1 {

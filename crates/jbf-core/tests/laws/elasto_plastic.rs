@@ -1,4 +1,4 @@
-//! The elasto-plastic law: its closed form, and what does not drift.
+//! The elasto-plastic law: its closed form, and the absence of drift.
 
 use super::support::{along, axis, gap, moving, sine};
 use jbf_core::effect::Effects;
@@ -10,8 +10,9 @@ const F_C: f64 = 8.0;
 const SIGMA: f64 = 2e5;
 const SPEED: f64 = 0.01;
 
-/// From sliding one way to the other: a straight line to the breakaway, then an exponential,
-/// whatever the step.
+/// After a reversal the force is a straight line to the breakaway, then an exponential.
+///
+/// This holds for every step.
 #[test]
 fn it_turns_round_in_its_closed_form() {
     for share in [0.0, 0.3, 0.7, 0.999] {
@@ -20,8 +21,8 @@ fn it_turns_round_in_its_closed_form() {
             let at = |t: f64| moving(t, if t < 1e-12 { SPEED } else { -SPEED }, 0.0);
             let force = along::<f64>("elasto_plastic", &[F_C, SIGMA, share, 0.0], dt, steps, at);
             assert_eq!(force[0], F_C);
-            // The first step turns half way through: a quarter of it each way, and the first
-            // quarter slides.
+            // The first step reverses in the middle: a quarter of it in each direction, and the
+            // first quarter slides.
             for (i, f) in force.iter().enumerate().skip(1) {
                 let way = SPEED * dt * (i as f64 - 1.0) + 0.25 * SPEED * dt;
                 let elastic = (1.0 + share) * F_C / SIGMA;
@@ -40,8 +41,10 @@ fn it_turns_round_in_its_closed_form() {
     }
 }
 
-/// Creeps up to a force, then swings about it by little: how far the force has gone after many
-/// swings that each come back to the same place.
+/// Drift of the force under small swings.
+///
+/// The position creeps up to a force and then oscillates; each swing returns to the same position.
+/// Returns the change of the force after many swings.
 fn drift(name: &str, values: &[f64], level: f64) -> f64 {
     let (reach, swing) = (level * F_C / SIGMA, 0.1 * F_C / SIGMA);
     let omega = std::f64::consts::TAU;
@@ -76,14 +79,14 @@ fn small_swings_below_breakaway_leave_nothing_behind() {
     }
 }
 
-/// Beyond the breakaway it does drift: the model's own limit.
+/// Beyond the breakaway the model drifts: its known limitation.
 #[test]
 fn small_swings_beyond_breakaway_drift() {
     let own = drift("elasto_plastic", &[F_C, SIGMA, 0.3, 0.0], 0.9);
     assert!(own > 0.01 * F_C, "{own}");
 }
 
-/// A breakaway close to the level is a spring and a slider; a very stiff one is Coulomb's.
+/// With a breakaway close to the level it is a spring and a slider; if very stiff, Coulomb's law.
 #[test]
 fn its_limits_are_other_laws() {
     let (dt, steps) = (2.03e-3, 3000);
@@ -101,8 +104,9 @@ fn its_limits_are_other_laws() {
     assert!(gap(&stiff, &rigid) < 1e-9, "{}", gap(&stiff, &rigid));
 }
 
-/// `z' = v (1 - alpha sgn(v) z/z_ss)` with alpha as the page says, in steps a thousand times finer,
-/// under a load that changes the level on the way: the law and `dry_load_dependence` together.
+/// `z' = v (1 - alpha sgn(v) z/z_ss)` with the documented alpha, in steps a thousand times finer.
+///
+/// A varying load changes the level: the law is combined with `dry_load_dependence`.
 #[test]
 fn under_a_load_it_follows_its_equation() {
     let (share, mu) = (0.6, 0.4);

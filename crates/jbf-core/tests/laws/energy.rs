@@ -1,9 +1,9 @@
-//! Friction takes work round every closed loop.
+//! Friction dissipates work over every closed loop.
 
 use super::support::{along, anywhere, in_newtons, sine};
 use crate::common::random::Random;
 
-/// Work (J) over the last period of a sine of a place.
+/// Work (J) over the last period of a sinusoidal position.
 fn loop_work(name: &str, values: &[f64], amplitude_m: f64) -> (f64, f64) {
     let omega = 2.0;
     let steps = 2000;
@@ -21,8 +21,9 @@ fn loop_work(name: &str, values: &[f64], amplitude_m: f64) -> (f64, f64) {
     (work, size)
 }
 
-/// LuGre is passive where `sigma_1(v) |v| < 4 sigma_0 g(v)` at every speed (Olsson 1996), which
-/// the peak of the left side, at `v_d/sqrt(2)`, decides.
+/// LuGre is passive if `sigma_1(v) |v| < 4 sigma_0 g(v)` at every speed (Olsson 1996).
+///
+/// The maximum of the left side, at `v_d/sqrt(2)`, is decisive.
 fn passive(name: &str, p: &[f64]) -> bool {
     name != "lugre" || p[4] * p[5] * (-0.5_f64).exp() / 2.0_f64.sqrt() < 4.0 * p[0].min(p[1])
 }
@@ -30,7 +31,7 @@ fn passive(name: &str, p: &[f64]) -> bool {
 #[test]
 fn a_closed_loop_takes_work() {
     let mut random = Random::new(5);
-    // The seven-parameter model may give a little back: its level falls late, on a bent spring.
+    // The seven-parameter model may return a little: its level falls late, with a deflected spring.
     for law in in_newtons().filter(|law| law.name != "seven_parameter") {
         for _ in 0..150 {
             let values = anywhere(law, &mut random);
@@ -39,7 +40,7 @@ fn a_closed_loop_takes_work() {
             }
             let amplitude = random.log_uniform(1e-7, 0.1);
             let (work, size) = loop_work(law.name, &values, amplitude);
-            // An elastic loop takes none: rounding and the quadrature may show.
+            // An elastic loop dissipates nothing: rounding and quadrature errors may appear.
             assert!(
                 work > -2e-3 * size,
                 "{} {values:?} {amplitude}: {work} of {size}",
@@ -49,7 +50,7 @@ fn a_closed_loop_takes_work() {
     }
 }
 
-/// Dahl's loop in sliding: nearly the rectangle 4 F_c A.
+/// Dahl's loop in sliding is nearly the rectangle 4 F_c A.
 #[test]
 fn a_wide_loop_is_a_rectangle() {
     let (work, _) = loop_work("dahl", &[8.0, 1e8, 1.0, 0.0], 0.05);

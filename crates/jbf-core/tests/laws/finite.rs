@@ -1,5 +1,6 @@
-//! No law gives a NaN or an infinity, wherever in its bounds its parameters stand, and a value
-//! outside them is refused by name.
+//! No law gives a NaN or an infinity for any parameters within the bounds.
+//!
+//! A value outside the bounds is rejected with its name.
 
 use super::support::{along, anywhere, in_newtons, moving, starts};
 use crate::common::motion::Sines;
@@ -9,7 +10,7 @@ use jbf_core::law::{steady_n, with_law, Named, Visitor, CATALOGUE};
 use jbf_core::{Clock, Dual, Motion, Real};
 use std::cell::RefCell;
 
-/// A jerky motion: jumps of speed and of place that no machine makes.
+/// An unrealistic motion with jumps of speed and position.
 fn jerk<T: Real>(random: &mut Random, time_s: f64) -> Motion<T> {
     let speed = random.log_uniform(1e-9, 1e3) * if random.chance(0.5) { 1.0 } else { -1.0 };
     Motion::at_rest(T::ONE)
@@ -66,7 +67,7 @@ fn finite_everywhere_with_derivatives() {
     );
 }
 
-/// Ways and speeds so small that their products with a law's numbers round to zero.
+/// Distances and speeds so small that their products with the law's parameters round to zero.
 #[test]
 fn finite_at_speeds_below_the_smallest_normal_number() {
     for law in in_newtons() {

@@ -1,9 +1,9 @@
-//! Where one law becomes another.
+//! Limits in which one law becomes another.
 
 use super::support::{along, gap, sine};
 
 const STEPS: u32 = 3000;
-/// No sample comes within a few of a stiff bristle's ways of a reversal.
+/// No sample is within a few deflections of a stiff bristle after a reversal.
 const DT_S: f64 = 2.03e-3;
 
 #[test]
@@ -44,7 +44,7 @@ fn a_stiff_seven_parameter_without_fall_is_coulomb() {
     assert!(gap(&seven, &rigid) < 2e-6, "{}", gap(&seven, &rigid));
 }
 
-/// A Dahl exponent towards zero is a spring that slips: the elasto-plastic contact.
+/// With a Dahl exponent towards zero the law is a spring that slips: the elasto-plastic contact.
 #[test]
 fn a_ductile_dahl_is_elasto_plastic() {
     let dahl = along::<f64>("dahl", &[8.0, 1e5, 0.01, 0.0], DT_S, STEPS, sine(2e-4, 3.0));

@@ -1,4 +1,4 @@
-//! The laws in newtons: rules that hold for all over the catalogue, and closed forms one by one.
+//! The laws in newtons: rules for all laws of the catalogue, and closed forms for each.
 
 #[path = "../common/mod.rs"]
 mod common;

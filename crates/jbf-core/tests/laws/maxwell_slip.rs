@@ -1,4 +1,4 @@
-//! Maxwell slip: the virgin curve, Masing's rules, and what turns are remembered.
+//! Maxwell slip: the virgin curve, Masing's rules, and the memory of reversals.
 
 use super::support::{along, axis, gap, moving, sine};
 use jbf_core::effect::Effects;
@@ -13,8 +13,7 @@ fn values(exponent: f64) -> [f64; 4] {
     [F_C, SIGMA, exponent, 0.0]
 }
 
-/// Forces at places (m) that the contact is taken to one after the other from an unbent rest, by
-/// way of a smooth stroke each.
+/// Forces at a sequence of positions (m), from a relaxed rest, with a smooth stroke to each.
 fn at_places<T: jbf_core::Real>(name: &str, values: &[T], places: &[f64]) -> Vec<T> {
     const STEPS: u32 = 200;
     let mut whole = vec![0.0];
@@ -24,8 +23,8 @@ fn at_places<T: jbf_core::Real>(name: &str, values: &[T], places: &[f64]) -> Vec
         let leg = (t as usize).min(turns.len() - 2);
         let share = t - leg as f64;
         let way = turns[leg + 1] - turns[leg];
-        // A place that sets out and arrives at rest, of constant acceleration and deceleration:
-        // steps along a straight line of the speed miss none of the way.
+        // Each stroke starts and ends at rest, with constant acceleration and deceleration: steps
+        // with linear speed reproduce the distance exactly.
         let (speed, done) = if share <= 0.5 {
             (4.0 * share, 2.0 * share * share)
         } else {
@@ -53,7 +52,7 @@ fn virgin(exponent: f64, place_m: f64) -> f64 {
     F_C * (1.0 - (1.0 - m * s).max(0.0).powf(1.0 / m))
 }
 
-/// The elements follow the closed curve, from above, to the share of F_c that their number leaves.
+/// The elements follow the closed curve from above, within the share of F_c due to their number.
 #[test]
 fn the_virgin_curve_is_dahls() {
     let leaves = [
@@ -76,7 +75,7 @@ fn the_virgin_curve_is_dahls() {
     }
 }
 
-/// At a reversal every element sticks: the slope is sigma_0 whatever the shape.
+/// At a reversal every element sticks: the slope is sigma_0 for every shape.
 #[test]
 fn a_reversal_is_as_stiff_as_said() {
     for exponent in [0.01, 0.3, 1.0 - 1e-4, 1.0, 1.0 + 1e-4, 2.0] {
@@ -91,7 +90,7 @@ fn a_reversal_is_as_stiff_as_said() {
     }
 }
 
-/// Masing: after a turn at x_0, F_0 the force is `F_0 - 2 V((x_0 - x)/2)`, V the virgin curve.
+/// Masing: after a reversal at x_0, F_0 the force is `F_0 - 2 V((x_0 - x)/2)`, V the virgin curve.
 #[test]
 fn a_branch_is_the_virgin_curve_twice_as_large() {
     for exponent in [0.1, 0.5, 1.0] {
@@ -111,8 +110,9 @@ fn a_branch_is_the_virgin_curve_twice_as_large() {
     }
 }
 
-/// An inner loop closes on the point where it began, one within another too, and behind it the
-/// force goes on as if the loops had not been. Dahl's law drifts.
+/// An inner loop closes at the point where it began, also within another loop.
+///
+/// After it the force continues as without the loops. Dahl's law drifts.
 #[test]
 fn inner_loops_close_and_are_wiped_out() {
     let unit = F_C / SIGMA;
@@ -135,7 +135,7 @@ fn inner_loops_close_and_are_wiped_out() {
     assert!(dahl.iter().all(|x| *x > 1e-3 * F_C), "{dahl:?}");
 }
 
-/// The same in single precision, where positions of many turns add up.
+/// Inner loops also close in single precision, where positions of many reversals accumulate.
 #[test]
 fn inner_loops_close_in_single_precision() {
     let unit = F_C / SIGMA;
@@ -149,7 +149,7 @@ fn inner_loops_close_in_single_precision() {
     assert!(f64::from(open) < 1e-3 * F_C, "{open}");
 }
 
-/// A load that swings about a mean below F_c for long moves nothing: each cycle is the one before.
+/// A load oscillating below F_c causes no ratchetting: each cycle equals the one before.
 #[test]
 fn it_does_not_ratchet() {
     let unit = F_C / SIGMA;
@@ -163,8 +163,9 @@ fn it_does_not_ratchet() {
     }
 }
 
-/// A very stiff one is Coulomb's; with a small exponent it is the elasto-plastic law whose breakaway
-/// is its level.
+/// If very stiff the law is Coulomb's; with a small exponent it is elasto-plastic.
+///
+/// The breakaway of that elasto-plastic law is its level.
 #[test]
 fn its_limits_are_other_laws() {
     let (dt, steps) = (2.03e-3, 3000);
@@ -182,8 +183,10 @@ fn its_limits_are_other_laws() {
     );
 }
 
-/// With `stribeck_excess` it is GMS: each element written out, stuck or at its share of the level of
-/// the moment, in steps a hundred times finer.
+/// With `stribeck_excess` the law is GMS.
+///
+/// The reference has explicit elements, each stuck or at its share of the current level, in steps a
+/// hundred times finer.
 #[test]
 fn under_a_stribeck_level_it_is_gms() {
     let (exponent, a, v_s) = (1.0, 3.0, 2e-4);
@@ -197,7 +200,7 @@ fn under_a_stribeck_level_it_is_gms() {
     let speed = |t: f64| 2.4e-4 * (2.0 * t).cos() + 2.8e-4 * (7.0 * t).cos();
     let level = |v: f64| F_C + a * (-(v / v_s) * (v / v_s)).exp();
     let at = |t: f64| moving::<f64>(t, speed(t), place(t));
-    // Of an exponential curve the springs up to the share u carry u (1 - ln u).
+    // In an exponential curve the springs up to the share u carry u (1 - ln u).
     let carried = |j: f64| {
         let u = (j / 16.0).powf(1.5);
         if u > 0.0 {
@@ -236,14 +239,16 @@ fn under_a_stribeck_level_it_is_gms() {
     assert!(fine < 5e-3 * F_C && fine < 0.5 * coarse, "{coarse} {fine}");
 }
 
-/// The continuum that the elements stand for (Dahl's curve by Masing's rules, with a stack of turns)
-/// along a motion that turns at many amplitudes.
+/// The law follows the continuum that its elements approximate.
+///
+/// The reference is Dahl's curve with Masing's rules and a stack of reversals, along a motion that
+/// reverses at many amplitudes.
 #[test]
 fn it_follows_a_stack_of_turns() {
     let exponent = 0.5;
     let at =
         |t: f64| 4e-5 * ((1.3 * t).sin() + 0.7 * (3.1 * t + 1.0).sin()) * (0.3 * t).sin().powi(2);
-    // A run that begins at rest begins unbent.
+    // A run that begins at rest begins without deflection.
     let slope = |t: f64| {
         if t > 0.0 {
             (at(t + 1e-6) - at(t - 1e-6)) / 2e-6
@@ -256,7 +261,7 @@ fn it_follows_a_stack_of_turns() {
     let force = along::<f64>("maxwell_slip", &law, dt, steps, |t| {
         moving(t, slope(t), at(t))
     });
-    // Turns not yet wiped out: place, force, and the direction of the branch that left each.
+    // Reversals not yet wiped out: position and force.
     let mut turns: Vec<(f64, f64)> = vec![];
     let (mut place, mut now, mut last): (f64, f64, f64) = (at(0.0), 0.0, 0.0);
     let origin = place;
@@ -267,11 +272,11 @@ fn it_follows_a_stack_of_turns() {
         if last != 0.0 && way != last {
             turns.push((place, now));
         }
-        // A branch that passes the turn before its own closes the loop: both are forgotten.
+        // A branch that passes the reversal before its own closes the loop: both are removed.
         while turns.len() > 1 && way * (next - turns[turns.len() - 2].0) > 0.0 {
             turns.truncate(turns.len() - 2);
         }
-        // So does the first branch at the mirror of the turn that it left.
+        // So does the first branch at the mirror image of its reversal.
         if turns.len() == 1 && (next - origin).abs() > (turns[0].0 - origin).abs() {
             turns.clear();
         }
@@ -282,6 +287,6 @@ fn it_follows_a_stack_of_turns() {
         (place, last) = (next, way);
         worst = worst.max((f - now).abs());
     }
-    // What the elements leave of a virgin curve, from turn to turn.
+    // Difference between the elements and a virgin curve, from reversal to reversal.
     assert!(worst < 0.01 * F_C, "{worst}");
 }

@@ -1,4 +1,4 @@
-//! Which effects go with which law.
+//! Compatibility of effects and laws.
 
 use jbf_core::effect::{self, Need};
 use jbf_core::law;

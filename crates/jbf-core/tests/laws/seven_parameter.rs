@@ -10,7 +10,7 @@ const TAU_L: f64 = 0.05;
 const GAMMA: f64 = 1.5;
 const VALUES: [f64; 7] = [K_T, F_C, 0.0, F_S, V_S, TAU_L, GAMMA];
 
-/// Slide, rest for `rest_s`, creep off again; the largest force after the rest.
+/// Slide, rest for `rest_s`, creep again; returns the largest force after the rest.
 fn breakaway(rest_s: f64) -> f64 {
     let (dt, stop) = (1e-3, 1.0);
     let speed = |t: f64| {
@@ -30,15 +30,16 @@ fn breakaway(rest_s: f64) -> f64 {
     force[after..].iter().fold(0.0, |m: f64, &f| m.max(f))
 }
 
-/// Breakaway rises as `F_c + F_sa + (F_inf - F_sa) t/(t + gamma)`; at the stop from well above v_s
-/// hardly any Stribeck friction is left.
+/// Breakaway rises as `F_c + F_sa + (F_inf - F_sa) t/(t + gamma)`.
+///
+/// At the stop from a speed well above v_s hardly any Stribeck friction remains.
 #[test]
 fn breakaway_rises_with_dwell() {
     let arrival = F_S / (1.0 + (0.05 / V_S).powi(2));
     let mut last = 0.0;
     for rest in [0.2, 0.5, 1.5, 5.0, 50.0] {
         let peak = breakaway(rest);
-        let t2 = rest + 0.02; // bending up to breakaway takes some ms more
+        let t2 = rest + 0.02; // deflection up to breakaway takes some ms more
         let expected = F_C + arrival + (F_S - arrival) * t2 / (t2 + GAMMA);
         assert!(peak > last);
         assert!(
@@ -49,7 +50,7 @@ fn breakaway_rises_with_dwell() {
     }
 }
 
-/// The speed jumps from slow to fast: friction drops `tau_L` later, to the sample.
+/// When the speed jumps from slow to fast, friction drops `tau_L` later, exact to the sample.
 #[test]
 fn the_drop_comes_late_by_the_delay() {
     for dt in [1e-4, 1e-3, 2e-3] {
@@ -60,7 +61,7 @@ fn the_drop_comes_late_by_the_delay() {
         let fast = F_C + F_S / (1.0 + (0.1 / V_S).powi(2));
         for (i, f) in force.iter().enumerate() {
             let t = dt * i as f64;
-            // Two points of the delay line round the jump: one step, or a sixtieth of tau_L.
+            // Two points of the delay line around the jump: one step, or a sixtieth of tau_L.
             let blur = 2.0 * dt.max(TAU_L / 60.0);
             if t < jump + TAU_L - blur {
                 assert!((f - slow).abs() < 1e-9, "dt {dt}, {t} s: {f} {slow}");
@@ -71,7 +72,7 @@ fn the_drop_comes_late_by_the_delay() {
     }
 }
 
-/// Before breakaway it is a spring.
+/// Before breakaway the contact is a spring.
 #[test]
 fn it_starts_as_a_spring() {
     let force = along::<f64>("seven_parameter", &VALUES, 1e-3, 200, |t| {

@@ -1,17 +1,18 @@
-//! What the step costs: laws of the way alone are exact for any step along the same way, the
-//! others fall with its square.
+//! Discretisation errors of the laws.
+//!
+//! Laws that depend on the distance alone are exact for any step along the same path; the errors of
+//! the others fall with the square of the step.
 
 use super::support::{along, sine, starts};
 use jbf_core::law::CATALOGUE;
 
-/// Root mean square over the last of four periods of the difference to a run with steps
-/// sixty-four times shorter.
+/// RMS difference to a run with steps sixty-four times shorter, over the last of four periods.
 fn error(name: &str, per_period: u32, amplitude: f64) -> f64 {
     let law = CATALOGUE.iter().find(|l| l.name == name).expect("known");
     let omega = 5.0;
     let run = |n: u32| {
         let dt = std::f64::consts::TAU / omega / f64::from(n);
-        // A quarter of a step late, so that no sample falls on a reversal.
+        // Shifted by a quarter of a step, so that no sample is at a reversal.
         let at = sine(amplitude, omega);
         let shift = 0.25 * std::f64::consts::TAU / omega / 100.0;
         along::<f64>(name, &starts(law), dt, 4 * n, |t| at(t + shift))
@@ -33,7 +34,7 @@ fn lugre_is_of_second_order() {
 
 #[test]
 fn dahl_errs_by_the_way_alone() {
-    // The way of a straight line in speed; nothing of the law's own.
+    // The error is that of the distance with linear speed; the law adds none.
     let errors = [500, 1000].map(|n| error("dahl", n, 2e-4));
     assert!(
         errors[0] < 1e-3 && errors[0] / errors[1] > 3.0,

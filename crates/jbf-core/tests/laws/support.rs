@@ -11,7 +11,7 @@ pub fn in_newtons() -> impl Iterator<Item = &'static Info> {
     CATALOGUE.iter().filter(|law| !law.needs_bearing)
 }
 
-/// A linear axis: a rotary one of radius 1 m.
+/// A linear axis, represented by a rotary one of radius 1 m.
 pub fn axis<T: Real, L>(law: L, effects: Effects<T>) -> Chain<T, L> {
     let rig = Rig {
         radius_m: T::ONE,
@@ -39,7 +39,7 @@ impl<T: Real, F: Fn(f64) -> Motion<T>> Visitor<T> for Along<F> {
     }
 }
 
-/// Readings (N) of the law of that name: the first sample, then `steps` steps of `dt_s`.
+/// Readings (N) of the named law: the first sample, then `steps` steps of `dt_s`.
 pub fn along<T: Real>(
     name: &str,
     values: &[T],
@@ -56,17 +56,17 @@ pub fn along<T: Real>(
         .unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-/// Its starting values.
+/// The starting values of a law.
 pub fn starts(law: &Info) -> Vec<f64> {
     law.parameters.iter().map(|p| p.starts[0]).collect()
 }
 
-/// Values anywhere in its bounds.
+/// Random values within the bounds of a law.
 pub fn anywhere(law: &Info, random: &mut Random) -> Vec<f64> {
     law.parameters.iter().map(|p| random.parameter(p)).collect()
 }
 
-/// A speed at a time, with place and nothing else.
+/// A motion at a time with speed and position only.
 pub fn moving<T: Real>(time_s: f64, velocity_m_s: f64, place_m: f64) -> Motion<T> {
     Motion::at_rest(T::ONE)
         .with_time_s(T::of(time_s))
@@ -75,7 +75,7 @@ pub fn moving<T: Real>(time_s: f64, velocity_m_s: f64, place_m: f64) -> Motion<T
         .with_angle_rad(T::of(place_m))
 }
 
-/// A sine of a place, amplitude in m.
+/// A sinusoidal position, amplitude in m.
 pub fn sine<T: Real>(amplitude_m: f64, omega_rad_s: f64) -> impl Fn(f64) -> Motion<T> {
     move |t| {
         let (sin, cos) = (omega_rad_s * t).sin_cos();
@@ -83,7 +83,7 @@ pub fn sine<T: Real>(amplitude_m: f64, omega_rad_s: f64) -> impl Fn(f64) -> Moti
     }
 }
 
-/// Largest difference of two signals.
+/// Largest difference between two signals.
 pub fn gap(a: &[f64], b: &[f64]) -> f64 {
     let pairs = a.iter().zip(b);
     pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)

@@ -155,8 +155,7 @@ def answer(task: Task) -> Answer:
 def judged(task: Task, found: jbf.Diagnosis) -> str:
     """Assess a diagnosis.
 
-    The result is `right`, `tied`, `named falsely`, `unexplained`, `missed`, or `not told` for a
-    foreign effect.
+    The result is one of the outcomes in the columns of `table`.
     """
     if task.foreign:
         return "right" if found.verdict == "unexplained" else "not told"

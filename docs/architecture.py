@@ -34,7 +34,7 @@ FLOORS: list[list[tuple[str, str]]] = [
     [("comparison", "record - prediction in;\nwhere it fails out")],
     [("estimation", "model x runs in;\nparameters with errors out")],
     [
-        ("", ""),  # `importing`, to the right, is not below the packages above
+        ("", ""),  # placeholder: `importing` does not belong below the packages above
         ("models", "law + effects + parameters in;\nprediction out"),
         ("importing", "strangers' files, a map in;\nruns, rig, ledger out"),
     ],

@@ -17,9 +17,7 @@ _LEAKS = (
 
 
 def clean_environment() -> dict[str, str]:
-    """The environment of this process, without variables for source trees, environments or
-    flags.
-    """
+    """This process's environment, without variables for source trees, environments or flags."""
     return {k: v for k, v in os.environ.items() if not k.startswith(_LEAKS)}
 
 

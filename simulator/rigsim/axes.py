@@ -70,7 +70,7 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "dry_temperature_dependence": {"a": Spread(0.006, 0.015, "1/K", 1.0, signed=True)},
     "viscous_temperature_dependence": {"B": Spread(400.0, 1000.0, "K", 1.0)},
 }
-"""Parameter ranges at strength 1, where the noise can be large."""
+"""Parameter ranges at strength 1, at which an effect is several times as large as the noise."""
 OF_TEMPERATURE = ("dry_temperature_dependence", "viscous_temperature_dependence")
 """Effects that can be observed only if the temperature changes."""
 

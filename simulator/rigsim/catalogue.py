@@ -1,8 +1,8 @@
 """The effects by name: parameters, null values, and random draws of typical size.
 
 A `Spread` defines the range of a parameter at strength 1 and the power of the strength by which it
-scales. At strength 1 the RMS of an effect is between the noise and a few times the noise in at
-least one run of the standard campaign.
+scales. At strength 1 the RMS of an effect is of the order of the noise, or up to a few times that,
+in at least one run of the standard campaign.
 """
 
 from __future__ import annotations

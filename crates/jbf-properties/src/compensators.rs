@@ -39,7 +39,7 @@ pub struct Loop {
     pub dt_s: f64,
 }
 
-/// Any compensator except the observed one; its settings may be valid or invalid.
+/// Any compensator except the observed one; invalid settings are skipped.
 fn plain<T: Real>(
     bytes: &mut Unstructured<'_>,
     rig: &Loop,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from jbf.comparison.patterns import Failure, find_failures
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.jumps import active_effects, samples_beside_jumps
+from jbf.estimation.jumps import active_effects, samples_near_jumps
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.samples import Samples
 from jbf.models.catalogue import parameters_of, transition_speed
@@ -98,7 +98,7 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     predictions = predicted(model, campaign)
     pages = parameters_of(model.law, tuple(model.effects))
     effects = active_effects(model.effects, pages, model.values)
-    samples = samples_beside_jumps(campaign.samples, campaign.prepared, predictions, effects)
+    samples = samples_near_jumps(campaign.samples, campaign.prepared, predictions, effects)
     residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]
     noise = noise_floor(campaign.prepared, samples)
     runs = tuple(

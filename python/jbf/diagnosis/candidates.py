@@ -26,10 +26,10 @@ from jbf.estimation.held_out_ranges import Beyond, runs_beyond
 from jbf.estimation.initial_state import begins_anywhere
 from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.left_out import (
-    LeftOut,
+    HeldOutPart,
     errors_by_run,
-    halves_left_out,
-    left_out,
+    held_out_halves,
+    held_out_parts,
     only_witnesses,
 )
 from jbf.estimation.likelihood import effective_share, likelihood_gain
@@ -89,13 +89,13 @@ class Candidates:
     def names(self) -> list[str]:
         """Effects that are compatible with the law and that these records could show."""
         pages = (e for e in catalogue().values() if why_not(e, self.law) is None)
-        return [e.name for e in pages if self.campaign.lacking(e) is None]
+        return [e.name for e in pages if self.campaign.missing_requirement(e) is None]
 
     @cached_property
     def not_tried(self) -> dict[str, str]:
         """Effects that fit the law but are not testable in these records, with the reason."""
         pages = [e for e in catalogue().values() if why_not(e, self.law) is None]
-        reasons = {e.name: self.campaign.lacking(e) for e in pages}
+        reasons = {e.name: self.campaign.missing_requirement(e) for e in pages}
         return {name: reason for name, reason in reasons.items() if reason is not None}
 
     def fitted(self, effects: Iterable[str]) -> Fitted:
@@ -320,13 +320,16 @@ class Candidates:
         richer = (*present, name)
         before, after = self.converge(present), self.converge(richer)
         halved = sorted(only_witnesses(self.fitted(richer).problem, after))
-        left, richer_left = self.left_out(present, halved), self.left_out(richer, halved)
+        left, richer_left = (
+            self.held_out_parts(present, halved),
+            self.held_out_parts(richer, halved),
+        )
         names = tuple(self.campaign.samples.runs[i] for i in halved)
         return Confirmation.of(before, after, left, richer_left, names, self.campaign.prepared)
 
-    def left_out(
+    def held_out_parts(
         self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
-    ) -> list[LeftOut]:
+    ) -> list[HeldOutPart]:
         """Held-out predictions of each run.
 
         Parameters
@@ -339,12 +342,12 @@ class Candidates:
             Whether these parts are alternate parts; halves by default.
         """
         solution, fitted = self.converge(effects), self.fitted(effects)
-        if not fitted.left_out:
-            fitted.left_out = left_out(fitted.problem, solution)
-        found = [p for part in fitted.left_out if (p := part.without(halved)).runs]
+        if not fitted.held_out:
+            fitted.held_out = held_out_parts(fitted.problem, solution)
+        found = [p for part in fitted.held_out if (p := part.without(halved)).runs]
         for run in halved:
             if (run, alternate) not in fitted.halves:
-                own = halves_left_out(fitted.problem, solution, run, alternate=alternate)
+                own = held_out_halves(fitted.problem, solution, run, alternate=alternate)
                 fitted.halves[run, alternate] = own
             found += fitted.halves[run, alternate]
         return found
@@ -354,13 +357,13 @@ class Candidates:
         """The runs that exceed the range of all others; empty for a single run."""
         return runs_beyond(self.campaign)
 
-    def left_out_rms(self, effects: Sequence[str]) -> float:
+    def held_out_rms(self, effects: Sequence[str]) -> float:
         """Held-out RMS, N.
 
         Runs are held out of the fit one at a time. For runs that exceed the range of all others,
         parts are held out.
         """
-        parts = self.left_out(effects, [b.run for b in self.beyond], alternate=True)
+        parts = self.held_out_parts(effects, [b.run for b in self.beyond], alternate=True)
         errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
 

@@ -11,10 +11,10 @@ from scipy import special
 
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.strokes import stroke_of
-from jbf.estimation.left_out import LeftOut, errors_by_run
+from jbf.estimation.left_out import HeldOutPart, errors_by_run
 from jbf.estimation.predictive import mean_square, surprise
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.samples import least_weights
+from jbf.estimation.samples import common_samples
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -61,8 +61,8 @@ class Confirmation:
         cls,
         simpler: Solution,
         richer: Solution,
-        left: Sequence[LeftOut],
-        richer_left: Sequence[LeftOut],
+        left: Sequence[HeldOutPart],
+        richer_left: Sequence[HeldOutPart],
         halved: Names = (),
         prepared: Sequence[Prepared] = (),
     ) -> Confirmation:
@@ -80,7 +80,7 @@ class Confirmation:
             The runs, whose strokes are the units where there are too few runs.
         """
         # Compare on common samples: a model may exclude those next to its jumps.
-        counted = least_weights(simpler.samples, richer.samples).counted
+        counted = common_samples(simpler.samples, richer.samples).counted
         errors = [
             errors_by_run(simpler, left, apart=True, counted=counted),
             errors_by_run(richer, richer_left, apart=True, counted=counted),
@@ -169,14 +169,14 @@ def _rms(errors: Array) -> float:
 def _density_share(
     simpler: Solution,
     richer: Solution,
-    left: Sequence[LeftOut],
-    richer_left: Sequence[LeftOut],
+    left: Sequence[HeldOutPart],
+    richer_left: Sequence[HeldOutPart],
 ) -> float:
     """Gain in held-out log predictive density as a share of the gain in the fit.
 
     Both gains use the same samples and the same whitening.
     """
-    samples, noise = least_weights(simpler.samples, richer.samples), richer.noise
+    samples, noise = common_samples(simpler.samples, richer.samples), richer.noise
     before, _ = mean_square(simpler, samples, noise)
     after, count = mean_square(richer, samples, noise)
     after = max(after, 1e-300)

@@ -9,13 +9,13 @@ from jbf.diagnosis.candidates import RANKING_EVALUATIONS, Candidates, many_peaks
 from jbf.estimation.campaign import SMOOTHS_FORCE, Campaign
 from jbf.estimation.likelihood import (
     effective_share,
-    gain_of_most,
     likelihood_gain,
     next_step_gain,
+    robust_gain,
     share_of_gain,
 )
 from jbf.estimation.noise_at import noise_at
-from jbf.estimation.samples import least_weights
+from jbf.estimation.samples import common_samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
@@ -48,7 +48,7 @@ def evidence(
     price = price_of(candidates, richer.free - simpler.free)
     if gain > price:
         # A gain that is due to a few samples may only reflect errors of these samples.
-        of_most = gain_of_most(richer, simpler)
+        of_most = robust_gain(richer, simpler)
         gain = gain if of_most > price else max(of_most, 0.0)
     if _filters_motion(candidates, richer, simpler):
         gain = min(gain, price)
@@ -66,7 +66,7 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
         return 0.0
     if _filters_motion(candidates, richer, simpler):
         return 0.0
-    gain = min(likelihood_gain(richer, simpler), gain_of_most(richer, simpler))
+    gain = min(likelihood_gain(richer, simpler), robust_gain(richer, simpler))
     return gain - price_of(candidates, richer.free - simpler.free)
 
 
@@ -75,7 +75,7 @@ def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution)
     explains no more than the errors of the motion contribute."""
     if not SMOOTHS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
-    samples = least_weights(richer.samples, simpler.samples)
+    samples = common_samples(richer.samples, simpler.samples)
     explained = samples.rms(simpler.residuals) ** 2 - samples.rms(richer.residuals) ** 2
     share = candidates.policy.least_share(candidates.campaign.motion_share)
     return bool(explained < share * samples.rms(simpler.residuals) ** 2)
@@ -83,7 +83,7 @@ def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution)
 
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
     """Whether two models differ by less than the quantisation error of a mean reading."""
-    samples = least_weights(richer.samples, simpler.samples)
+    samples = common_samples(richer.samples, simpler.samples)
     ways = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
     return bool(samples.rms(ways) < campaign.steps_rms_n(simpler.rms_n))
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from jbf.diagnosis.level import Directions
 from jbf.estimation.approach import Approach
-from jbf.estimation.left_out import LeftOut
+from jbf.estimation.left_out import HeldOutPart
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 
@@ -40,7 +40,7 @@ class Fitted:
         Possible gain by the linear model, in twice the log likelihood; infinite once it was ranked.
     peaks_searched
         True once its other peaks were searched.
-    left_out
+    held_out
         Held-out predictions of the runs; empty until they are required.
     halves
         Held-out predictions of two halves of a run, by (run, alternate).
@@ -56,8 +56,8 @@ class Fitted:
     least: float = np.inf
     promised: float = np.inf
     peaks_searched: bool = False
-    left_out: list[LeftOut] = field(default_factory=list)
-    halves: dict[tuple[int, bool], list[LeftOut]] = field(default_factory=dict)
+    held_out: list[HeldOutPart] = field(default_factory=list)
+    halves: dict[tuple[int, bool], list[HeldOutPart]] = field(default_factory=dict)
 
     def found(self) -> Solution:
         """The present solution."""
@@ -68,7 +68,7 @@ class Fitted:
         """Accept a better solution of the same problem and discard results of the earlier one."""
         if better is not self.solution:
             self.solution = better
-            self.left_out, self.halves = [], {}
+            self.held_out, self.halves = [], {}
 
     def named_values(self) -> dict[str, float]:
         """Parameter values by name."""

@@ -26,7 +26,7 @@ from jbf.estimation.left_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.run_start import settled_again
-from jbf.estimation.samples import least_weights
+from jbf.estimation.samples import common_samples
 from jbf.models.catalogue import may_come
 
 
@@ -136,7 +136,7 @@ def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
         if best is None or (
             len(grown) < len(best)
             # A tied candidate has not been confirmed by held-out runs.
-            and candidates.left_out_rms(grown) <= candidates.left_out_rms(best)
+            and candidates.held_out_rms(grown) <= candidates.held_out_rms(best)
         ):
             best = grown
     assert best is not None
@@ -168,7 +168,7 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     candidates.rank_all(pairs, base)
     best = max(pairs, key=lambda pair: likelihood_gain(candidates.rank(pair), base))
     whole = candidates.converge(best)
-    if candidates.left_out_rms(best) > candidates.left_out_rms(present) / policy.no_worse:
+    if candidates.held_out_rms(best) > candidates.held_out_rms(present) / policy.no_worse:
         return present
     if evidence(candidates, whole, base) <= 0.0 and full_gain(candidates, whole, base) <= 0.0:
         return present
@@ -200,7 +200,7 @@ def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> S
     """Create a step of the ledger: a model, its errors, and the candidates tried with it."""
     solution = candidates.converge(effects)
     noise_n = noise_floor(candidates.campaign.prepared, solution.samples)
-    left_out_n = candidates.left_out_rms(effects)
+    left_out_n = candidates.held_out_rms(effects)
     beyond = _extrapolations(candidates, effects)
     return Step(effects, solution.rms_n, left_out_n, noise_n, trials, beyond)
 
@@ -210,7 +210,7 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
     if not candidates.beyond:
         return ()
     unit, names = candidates.campaign.rig.quantities, candidates.campaign.samples.runs
-    errors = errors_by_run(candidates.converge(effects), candidates.left_out(effects))
+    errors = errors_by_run(candidates.converge(effects), candidates.held_out_parts(effects))
     found = []
     for beyond in candidates.beyond:
         own = errors.get(beyond.run, np.zeros(0))
@@ -237,7 +237,7 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     found = []
     for name, problem in fitted.items():
         richer = problem.found()
-        samples = least_weights(richer.samples, away)
+        samples = common_samples(richer.samples, away)
         with_it, without = (replace(s, samples=samples) for s in (richer, base))
         better = with_it.rms_n < policy.refused_rms * without.rms_n
         gains = evidence_alone(candidates, with_it, without, anywhere=True) > policy.weak

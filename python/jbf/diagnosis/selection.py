@@ -298,7 +298,7 @@ def start_model(candidates: Candidates) -> Names:
     for name in present:
         rest = tuple(e for e in present if e != name)
         simpler = candidates.refit_from(rest, present)
-        worse = candidates.left_out_rms(rest) > policy.no_worse * candidates.left_out_rms(present)
+        worse = candidates.held_out_rms(rest) > policy.no_worse * candidates.held_out_rms(present)
         if not (worse or needed(candidates, present, name, simpler)):
             present = rest
     return present

@@ -57,7 +57,7 @@ def best_predicting(candidates: Candidates, present: Names, named: Names) -> Nam
     """The model with or without the confounders, whichever has the smaller held-out error."""
     if named == present:
         return present
-    whole, less = (candidates.left_out_rms(names) for names in (present, named))
+    whole, less = (candidates.held_out_rms(names) for names in (present, named))
     return present if whole < less else named
 
 

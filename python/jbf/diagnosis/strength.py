@@ -17,7 +17,7 @@ from jbf.estimation.likelihood import effective_share
 from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.noise import estimate_noise
 from jbf.estimation.problem import Problem
-from jbf.estimation.samples import least_weights
+from jbf.estimation.samples import common_samples
 from jbf.models.catalogue import Parameter
 
 Array = npt.NDArray[np.float64]
@@ -111,7 +111,7 @@ class RunsAtHand:
         problem = model.problem.thinned
         values = model.values(times)
         gaps = [a - b for a, b in zip(problem.predict(values), self.now, strict=True)]
-        own = least_weights(problem.samples_at(values), self.samples)
+        own = common_samples(problem.samples_at(values), self.samples)
         if own is self.samples:
             return gaps, None
         shares = [

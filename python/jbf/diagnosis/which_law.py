@@ -22,7 +22,7 @@ from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_rate import check_film
 from jbf.estimation.initial_state import memories
-from jbf.estimation.left_out import left_out as held_out
+from jbf.estimation.left_out import held_out_parts
 from jbf.estimation.run_start import settled_campaign
 from jbf.estimation.samples import Samples
 from jbf.models.catalogue import find_law, laws
@@ -167,12 +167,12 @@ def _within(campaign: Campaign, law: str, clock: Clock) -> HeldOut | None:
     try:
         candidates = Candidates(settled_campaign(own, law, clock), law, clock)
         beside = tuple(effect for effect in TERMS if effect in candidates.names)
-        return left_out(candidates, beside)
+        return held_out_errors(candidates, beside)
     except Unfinished:
         return None
 
 
-def left_out(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
+def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
     """Errors of prediction of every run by a fit to the others.
 
     For a law with a bristle they include the samples of the initial-state transient. Another law
@@ -183,7 +183,7 @@ def left_out(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
     if find_law(problem.law).has_bristle:
         samples = _with_starts(samples, Samples.of(problem.campaign.prepared))
     every = [np.zeros(len(c)) for c in samples.counted]
-    for part in held_out(problem, solution):
+    for part in held_out_parts(problem, solution):
         for i, left, residual in zip(part.runs, part.left, part.residuals, strict=True):
             every[i][left] = residual[left]
     white = every if samples.motion is None else samples.innovations(every, solution.noise)
@@ -256,7 +256,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     policy, whole = candidates.policy, candidates.campaign
     kept = tuple(effect for effect in effects if effect in TERMS)
     most = len(candidates.fitted(effects).problem.open)
-    left, names, counts = [left_out(candidates, effects)], [""], [most]
+    left, names, counts = [held_out_errors(candidates, effects)], [""], [most]
     for name in followed(whole, clock)[0]:
         own = replace(whole, work=whole.work.part(LAW_SHARE))
         other = Candidates(own, name, clock, policy)
@@ -266,7 +266,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
         # A law with a much larger fit error is not a better predictor.
         far = policy.leader_rms * candidates.converge(effects).rms_n
         try:
-            errors = left_out(other, kept) if other.converge(kept).rms_n < far else None
+            errors = held_out_errors(other, kept) if other.converge(kept).rms_n < far else None
         except Unfinished:
             continue
         if errors is not None:

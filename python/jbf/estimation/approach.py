@@ -18,7 +18,7 @@ from jbf.estimation.likelihood import unexplained_square
 from jbf.estimation.noise import WHITE
 from jbf.estimation.noise_at import noise_at
 from jbf.estimation.problem import Lines, Problem
-from jbf.estimation.search import Found, Method, Visited, search
+from jbf.estimation.search import Method, SearchResult, Visited, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
 
@@ -184,7 +184,7 @@ class Approach:
         """
         problem, few, visited = self.problem, self.few, self.visited
         some, starts = few.campaign.samples, self.starts
-        best = Found(starts[0], False, "")
+        best = SearchResult(starts[0], False, "")
         if len(starts) > 1:
             trials = starts[:followed]
             peaks = any(find_effect(name).peaks for name in problem.effects)

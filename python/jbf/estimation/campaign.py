@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.converter import curve_rms_n, noise_before
-from jbf.estimation.noise_floor import most_noise
+from jbf.estimation.noise_floor import noise_upper_bound
 from jbf.estimation.prepared import NoMotion, Prepared, coasting
 from jbf.estimation.samples import Samples
 from jbf.estimation.work import Work
@@ -126,7 +126,7 @@ class Campaign:
             )
         samples = Samples.of(prepared)
         work = Work.of(sum(len(p.friction_n) for p in prepared))
-        noise = most_noise(prepared, samples)
+        noise = noise_upper_bound(prepared, samples)
         return cls(rig, prepared, samples, noise, tuple(without_motion), work)
 
     @property
@@ -194,7 +194,7 @@ class Campaign:
         low, high = self.temperature_range_c
         return high - low
 
-    def lacking(self, effect: Effect) -> str | None:
+    def missing_requirement(self, effect: Effect) -> str | None:
         """Why these runs cannot show an effect, as text; None if they meet all its requirements."""
         needs = effect.needs
         if coasting(self.rig) is not None and effect.name in NEEDS_RECORDED_FORCE:

@@ -84,14 +84,14 @@ def noise_before(step_n: float, moves_n: Array) -> float:
         return 0.0
     same = float(np.mean(np.abs(moves_n) < 0.5 * step_n))
 
-    def more_often(noise: float) -> float:
+    def excess(noise: float) -> float:
         return _same(noise) - same
 
-    if more_often(1e-3) <= 0.0:
+    if excess(1e-3) <= 0.0:
         return 0.0
-    if more_often(MOST_NOISE) >= 0.0:
+    if excess(MOST_NOISE) >= 0.0:
         return MOST_NOISE * step_n
-    return step_n * float(optimize.brentq(more_often, 1e-3, MOST_NOISE))
+    return step_n * float(optimize.brentq(excess, 1e-3, MOST_NOISE))
 
 
 def _same(noise: float) -> float:

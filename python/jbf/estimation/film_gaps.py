@@ -31,7 +31,7 @@ EDGE = 1e-3
 """Fraction of a gap in which a simulated motion changes its speed."""
 
 
-def behind_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
+def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
     """Mask of the samples at which a run still remembers unrecorded motion, one a run.
 
     Parameters

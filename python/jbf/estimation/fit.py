@@ -115,7 +115,7 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
     for p in campaign.prepared:
         require_record(campaign.rig, p.run, effects)
     for name in effects:
-        reason = campaign.lacking(find_effect(name))
+        reason = campaign.missing_requirement(find_effect(name))
         if reason is not None:
             raise InputError(
                 problem=f"the effect {name} cannot be found in these runs: {reason}",

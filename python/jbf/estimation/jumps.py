@@ -80,7 +80,7 @@ def jumps(prediction: Array) -> Array:
     return found
 
 
-def samples_beside_jumps(
+def samples_near_jumps(
     samples: Samples,
     prepared: Sequence[Prepared],
     predictions: Sequence[Array],
@@ -99,15 +99,15 @@ def samples_beside_jumps(
         prepared, samples.counted, samples.weight, predictions, strict=True
     ):
         if moves:
-            c, w = _beside_jumps(p, c, w, prediction)
+            c, w = _without_jumps(p, c, w, prediction)
         if spreads:
-            c, w = _behind_reversals(p, c, w, prediction)
+            c, w = _without_reversals(p, c, w, prediction)
         counted.append(c)
         weight.append(w)
     return replace(samples, counted=tuple(counted), weight=tuple(weight))
 
 
-def _beside_jumps(
+def _without_jumps(
     p: Prepared, counted: Mask, weight: Array, prediction: Array
 ) -> tuple[Mask, Array]:
     change = jumps(prediction)
@@ -115,7 +115,7 @@ def _beside_jumps(
     return kept, weight * _share(0.5 * change, _noise_n(p, kept, prediction))
 
 
-def _behind_reversals(
+def _without_reversals(
     p: Prepared, counted: Mask, weight: Array, prediction: Array
 ) -> tuple[Mask, Array]:
     noise_n = _noise_n(p, counted, prediction)

@@ -45,7 +45,7 @@ INSENSITIVE = 1e-4
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class HeldOutPart:
     """Samples that a fit did not use, and the residuals of their runs.
 
     Attributes
@@ -54,7 +54,7 @@ class LeftOut:
         Indices of the runs.
     left
         Mask of the held-out samples, one a run.
-    told
+    determined
         Which parameters the fitted samples determine, shape (k,); the others were held.
     residuals
         Record minus prediction of all samples of each run, N.
@@ -62,39 +62,39 @@ class LeftOut:
 
     runs: tuple[int, ...]
     left: tuple[Mask, ...]
-    told: Mask
+    determined: Mask
     residuals: tuple[Array, ...]
 
-    def without(self, runs: Collection[int]) -> LeftOut:
+    def without(self, runs: Collection[int]) -> HeldOutPart:
         """Return the held-out samples except those of the given runs."""
         kept = [k for k, i in enumerate(self.runs) if i not in runs]
-        return LeftOut(
+        return HeldOutPart(
             tuple(self.runs[k] for k in kept),
             tuple(self.left[k] for k in kept),
-            self.told,
+            self.determined,
             tuple(self.residuals[k] for k in kept),
         )
 
 
-def left_out_rms(problem: Problem, solution: Solution, *, apart: bool = False) -> float:
-    """Held-out RMS: RMS of `left_out_by_run`, N."""
-    left = np.concatenate(left_out_by_run(problem, solution, apart=apart))
+def held_out_rms(problem: Problem, solution: Solution, *, apart: bool = False) -> float:
+    """Held-out RMS: RMS of `held_out_by_run`, N."""
+    left = np.concatenate(held_out_by_run(problem, solution, apart=apart))
     return float(np.sqrt(np.sum(left**2) / max(len(left), 1)))
 
 
-def left_out_residuals(problem: Problem, solution: Solution) -> Array:
-    """Concatenated `left_out_by_run` of all runs."""
-    return np.concatenate(left_out_by_run(problem, solution))
+def held_out_residuals(problem: Problem, solution: Solution) -> Array:
+    """Concatenated `held_out_by_run` of all runs."""
+    return np.concatenate(held_out_by_run(problem, solution))
 
 
-def left_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False) -> list[Array]:
-    """Return `errors_by_run` for the held-out runs (`left_out`)."""
-    return list(errors_by_run(solution, left_out(problem, solution), apart=apart).values())
+def held_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False) -> list[Array]:
+    """Return `errors_by_run` for the held-out runs (`held_out_parts`)."""
+    return list(errors_by_run(solution, held_out_parts(problem, solution), apart=apart).values())
 
 
 def errors_by_run(
     solution: Solution,
-    parts: Sequence[LeftOut],
+    parts: Sequence[HeldOutPart],
     *,
     apart: bool = False,
     counted: Sequence[Mask] | None = None,
@@ -122,7 +122,7 @@ def errors_by_run(
     return {i: errors[i][counted[i]] for i in sorted(errors)}
 
 
-def left_out(problem: Problem, solution: Solution) -> list[LeftOut]:
+def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     """Hold out each run in turn, or groups of runs if there are more than `MOST_FITS`.
 
     A parameter that the remaining runs do not determine is held at its null (or its starting
@@ -132,14 +132,14 @@ def left_out(problem: Problem, solution: Solution) -> list[LeftOut]:
     count = len(problem.campaign.prepared)
     if count == 1:
         return _halves(problem, solution)
-    told = _Told.of(problem, solution)
+    information = _RunInformation.of(problem, solution)
     parts = []
     for group in _groups(problem.campaign):
         rest = [k for k in range(count) if k not in group]
-        residuals = _predicted(problem, solution, told, group, rest)
+        residuals = _predicted(problem, solution, information, group, rest)
         whole = tuple(np.ones(len(r), dtype=bool) for r in residuals)
-        unknown = _unknown(told.known, told.known[rest].sum(axis=0))
-        parts.append(LeftOut(tuple(group), whole, ~unknown, tuple(residuals)))
+        unknown = _unknown(information.known, information.known[rest].sum(axis=0))
+        parts.append(HeldOutPart(tuple(group), whole, ~unknown, tuple(residuals)))
     return parts
 
 
@@ -159,9 +159,9 @@ def only_witnesses(problem: Problem, solution: Solution) -> frozenset[int]:
     )
 
 
-def halves_left_out(
+def held_out_halves(
     problem: Problem, solution: Solution, run: int, *, alternate: bool = False
-) -> list[LeftOut]:
+) -> list[HeldOutPart]:
     """Hold out two halves of one run in turn; each fit uses the other half and all other runs.
 
     Parameters
@@ -185,7 +185,7 @@ def halves_left_out(
         part = _of(problem, problem.campaign, held)
         values = _fitted(part, kept, _at(problem, solution, held), solution)
         residuals = tuple(problem.residuals(values, [run]))
-        parts.append(LeftOut((run,), (half,), ~unknown, residuals))
+        parts.append(HeldOutPart((run,), (half,), ~unknown, residuals))
     return parts
 
 
@@ -202,7 +202,7 @@ def _unknown(known: Array, rest: Array) -> Mask:
 
 
 @dataclass(frozen=True)
-class _Told:
+class _RunInformation:
     """Information of each run on the parameters, from the derivatives at a solution.
 
     Attributes
@@ -220,7 +220,7 @@ class _Told:
     innovations: list[int]
 
     @classmethod
-    def of(cls, problem: Problem, solution: Solution) -> _Told:
+    def of(cls, problem: Problem, solution: Solution) -> _RunInformation:
         factors, innovations = [], []
         for i in range(len(problem.campaign.prepared)):
             jacobian, residual = solution.jacobian[i], solution.residuals[i]
@@ -242,14 +242,18 @@ class _Told:
 
 
 def _predicted(
-    problem: Problem, solution: Solution, told: _Told, group: list[int], rest: list[int]
+    problem: Problem,
+    solution: Solution,
+    information: _RunInformation,
+    group: list[int],
+    rest: list[int],
 ) -> list[Array]:
     """Residuals, N, of runs that were held out of the fit."""
-    held = _held(problem, _unknown(told.known, told.known[rest].sum(axis=0)))
+    held = _held(problem, _unknown(information.known, information.known[rest].sum(axis=0)))
     start = _at(problem, solution, held)
     step: Array | None = None
     if not held:
-        way, square = told.step(rest)
+        way, square = information.step(rest)
         there = problem.encode(solution.values) + way
         step = problem.decode(there, solution.values)
         inside = np.allclose(problem.encode(step), there, rtol=0.0, atol=1e-9)
@@ -325,13 +329,13 @@ def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
     return np.array([held.get(name, value) for name, value in known])
 
 
-def _halves(problem: Problem, solution: Solution) -> list[LeftOut]:
+def _halves(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     """Hold out two halves of a single run, consisting of alternate parts, in turn."""
     first = alternate_parts(len(solution.samples.counted[0]))
     parts = []
     for half in (~first, first):
         kept = solution.samples.within([~half])
         values = search(problem, kept, solution.values, solution.noise, EVALUATIONS).values
-        told = np.ones(solution.free, dtype=bool)
-        parts.append(LeftOut((0,), (half,), told, tuple(problem.residuals(values))))
+        determined = np.ones(solution.free, dtype=bool)
+        parts.append(HeldOutPart((0,), (half,), determined, tuple(problem.residuals(values))))
     return parts

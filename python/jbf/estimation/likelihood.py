@@ -17,7 +17,7 @@ from jbf.estimation.noise import LONGEST_MEMORY_S, Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.robust import clipped_square, robust_size
 from jbf.estimation.rows import triangular
-from jbf.estimation.samples import Samples, least_weights
+from jbf.estimation.samples import Samples, common_samples
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -30,7 +30,7 @@ def likelihood_gain(richer: Solution, simpler: Solution) -> float:
     """Log-likelihood gain; each sample has the smaller of the weights of the two models."""
     if richer.samples is simpler.samples:
         return simpler.cost - richer.cost
-    shared = least_weights(richer.samples, simpler.samples)
+    shared = common_samples(richer.samples, simpler.samples)
     richer_cost, simpler_cost = (
         shared.cost(solution.residuals, solution.noise) for solution in (richer, simpler)
     )
@@ -56,7 +56,7 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
     variance of the score in the direction in which the two solutions differ.
     """
     share = effective_share(richer)
-    samples = least_weights(richer.samples, simpler.samples)
+    samples = common_samples(richer.samples, simpler.samples)
     left, ways = [], []
     for i in range(len(samples.runs)):
         own, before = (
@@ -67,12 +67,12 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
     return min(share, 1.0 / sure_inflation(ways, left, samples.steps_s))
 
 
-def gain_of_most(richer: Solution, simpler: Solution) -> float:
+def robust_gain(richer: Solution, simpler: Solution) -> float:
     """Log-likelihood gain in which the influence of each sample is bounded.
 
     Residuals are clipped at a few robust standard deviations of those of the richer solution.
     """
-    samples = least_weights(richer.samples, simpler.samples)
+    samples = common_samples(richer.samples, simpler.samples)
     own, before = (
         np.concatenate(
             [_whitened(samples, r, richer.noise, i) for i, r in enumerate(solution.residuals)]

@@ -17,7 +17,7 @@ from jbf.estimation.noise_at import noise_at
 from jbf.estimation.peaks import other_peaks
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
-from jbf.estimation.search import Found, search
+from jbf.estimation.search import SearchResult, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect, find_law
 
@@ -49,7 +49,7 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         after the first search.
     """
     every = problem.campaign.samples if samples is None else samples
-    end, noise = Found(near.values, near.converged, near.message), near.noise
+    end, noise = SearchResult(near.values, near.converged, near.message), near.noise
     if not near.converged:
         end = search(problem, every, end.values, WHITE, MAX_EVALUATIONS)
         noise = noise_at(problem, every, end.values)

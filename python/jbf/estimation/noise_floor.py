@@ -32,16 +32,16 @@ def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     if not noisy:
         return 0.0
     prepared, samples = [prepared[i] for i in noisy], samples.only(noisy)
-    floor, seen = _white(prepared, samples), _seen(prepared, samples)
+    floor, seen = _white(prepared, samples), _total_noise(prepared, samples)
     if seen is None:
         return floor
     # Coloured noise gives few independent samples, so a clear excess is required.
     return seen if seen > 1.04 * floor and seen < 3.0 * floor else floor
 
 
-def most_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
+def noise_upper_bound(prepared: Sequence[Prepared], samples: Samples) -> float | None:
     """Upper limit of the noise including its coloured part, N; None if it cannot be estimated."""
-    seen = _seen(prepared, samples)
+    seen = _total_noise(prepared, samples)
     return None if seen is None else max(seen, _white(prepared, samples))
 
 
@@ -69,7 +69,7 @@ def _dithered(p: Prepared) -> tuple[Array, float]:
     return p.friction_n + even, step**2 / 12.0
 
 
-def _seen(prepared: Sequence[Prepared], samples: Samples) -> float | None:
+def _total_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
     """Total noise, N, from repeated periods and rests; None if there are too few samples."""
     whole, weight = 0.0, 0
     for p, counted in zip(prepared, samples.counted, strict=True):

@@ -91,11 +91,11 @@ def known_pitches(rig: Rig) -> tuple[float, ...]:
 
 
 def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
-    place, rest, speed = _what_is_left(campaign)
+    place, rest, speed = _remaining_force(campaign)
     if len(place) < PADDING * KNOTS:
         return ()
     span = float(np.ptp(place))
-    fine = max(_way_a_sample(campaign), span / MOST_BINS)
+    fine = max(_sample_spacing(campaign), span / MOST_BINS)
     count = int(span / fine)
     if count < LEAST_PERIODS * BINS_A_PITCH:
         return ()
@@ -129,7 +129,7 @@ def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
     return found
 
 
-def _what_is_left(campaign: Campaign) -> tuple[Array, Array, Array]:
+def _remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
     """Position, m, remaining force, N, and speed, m/s, of the moving samples.
 
     The remaining force is the part that speed, acceleration and angle do not explain.
@@ -153,7 +153,9 @@ def _without_the_known(campaign: Campaign) -> tuple[Array, Array, Array]:
     for p, m in pairs:
         known = _known_of(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
         scales.append(np.sum(known**2, axis=0))
-        rows = _less_means(np.column_stack([known, p.friction_n[m]]), p.motion.velocity_m_s[m])
+        rows = _centred_by_direction(
+            np.column_stack([known, p.friction_n[m]]), p.motion.velocity_m_s[m]
+        )
         factors.append(np.linalg.qr(rows, mode="r"))
     scale = np.maximum(np.sqrt(np.sum(scales, axis=0) / len(speed)), 1e-300)
     factor = np.concatenate(factors)
@@ -162,7 +164,7 @@ def _without_the_known(campaign: Campaign) -> tuple[Array, Array, Array]:
     for p, m in pairs:
         known = _known_of(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
         left = p.friction_n[m] - (known / scale) @ solution
-        rest.append(_less_means(left[:, None], p.motion.velocity_m_s[m])[:, 0])
+        rest.append(_centred_by_direction(left[:, None], p.motion.velocity_m_s[m])[:, 0])
     return place, np.concatenate(rest), speed
 
 
@@ -172,7 +174,7 @@ def _known_of(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knot
     return np.stack([slope, np.cos(angle), np.sin(angle), *_hats(speed, knots)], axis=1)
 
 
-def _less_means(rows: Array, speed: Array) -> Array:
+def _centred_by_direction(rows: Array, speed: Array) -> Array:
     """Rows minus their means in each direction of motion."""
     found: Array = rows.copy()
     for way in (speed > 0.0, speed < 0.0):
@@ -202,7 +204,7 @@ def _hats(speed: Array, knots: Knots) -> list[Array]:
     return found
 
 
-def _way_a_sample(campaign: Campaign) -> float:
+def _sample_spacing(campaign: Campaign) -> float:
     """Usual distance between samples, m."""
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     steps = [

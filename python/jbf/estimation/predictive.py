@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.left_out import INSENSITIVE, LeftOut
+from jbf.estimation.left_out import INSENSITIVE, HeldOutPart
 from jbf.estimation.noise import Noise
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
@@ -41,10 +41,10 @@ class _Rows:
     square: float
     pull: Array
     products: Array
-    told: Mask
+    determined: Mask
 
     @classmethod
-    def of(cls, part: LeftOut, solution: Solution, samples: Samples, noise: Noise) -> _Rows:
+    def of(cls, part: HeldOutPart, solution: Solution, samples: Samples, noise: Noise) -> _Rows:
         own = [solution.jacobian[i] for i in part.runs]
         e, j = samples.only(part.runs).stacked(part.residuals, own, noise)
         # Select after the whitening: the first innovation of a half depends on the sample before
@@ -52,12 +52,12 @@ class _Rows:
         weight = [samples.weight[i] > 0.0 for i in part.runs]
         left = np.concatenate([m[w] for m, w in zip(part.left, weight, strict=True)])
         e, j = e[left], j[left]
-        return cls(float(e @ e), j.T @ e, j.T @ j, part.told)
+        return cls(float(e @ e), j.T @ e, j.T @ j, part.determined)
 
 
 def surprise(
     solution: Solution,
-    parts: Sequence[LeftOut],
+    parts: Sequence[HeldOutPart],
     samples: Samples,
     noise: Noise,
     variance: float,
@@ -83,12 +83,12 @@ def surprise(
 
 
 def _of(rows: _Rows, whole: Array, size: Array, variance: float) -> float:
-    told = rows.told
-    scale = np.outer(size[told], size[told])
+    determined = rows.determined
+    scale = np.outer(size[determined], size[determined])
     # A parameter that no other run determines has a prior of a hundred times its final error.
-    known = whole[np.ix_(told, told)] / scale + INSENSITIVE * np.eye(len(scale))
-    before = known - rows.products[np.ix_(told, told)] / scale
-    pull = rows.pull[told] / size[told]
+    known = whole[np.ix_(determined, determined)] / scale + INSENSITIVE * np.eye(len(scale))
+    before = known - rows.products[np.ix_(determined, determined)] / scale
+    pull = rows.pull[determined] / size[determined]
     square = rows.square - float(pull @ np.linalg.solve(known, pull))
     _, after_det = np.linalg.slogdet(known)
     _, before_det = np.linalg.slogdet(before)

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.initial_state import begins_anywhere, memories, remembering
-from jbf.estimation.jumps import active_effects, moves_jumps, samples_beside_jumps, spreads_jumps
+from jbf.estimation.jumps import active_effects, moves_jumps, samples_near_jumps, spreads_jumps
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.rows import MOST_HELD, OnDemand, every_so_many, groups_of, triangular
@@ -53,7 +53,7 @@ class Best:
         self.values: Array | None = None
         self.square = np.inf
 
-    def seen(self, values: Array, square: float) -> None:
+    def update(self, values: Array, square: float) -> None:
         """Store values if their sum of squares is the smallest so far."""
         if square < self.square:
             self.values, self.square = values, square
@@ -222,7 +222,7 @@ class Problem:
         if begins:
             left = [p.friction_n - f for p, f in zip(prepared, predicted, strict=True)]
             samples = self._settled(samples, values, samples.rms(left))
-        return samples_beside_jumps(samples, prepared, predicted, effects)
+        return samples_near_jumps(samples, prepared, predicted, effects)
 
     def _settled(self, samples: Samples, values: Array, noise_n: float) -> Samples:
         """Samples without the initial-state transient of their run."""

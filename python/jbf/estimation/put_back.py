@@ -75,7 +75,7 @@ def put_back(
         note = f"flat here: these runs tell only that it is not {home:.3g}"
         for share in SHARES:
             there = found.values.copy()
-            there[i] = _on_the_way(page, value, home, share)
+            there[i] = _moved_towards(page, value, home, share)
             residuals = _same(problem, solution, there)
             if residuals is not None:
                 note = NEVER_MOVED if share == 1.0 else note
@@ -120,7 +120,7 @@ def _home(problem: Problem, name: str, values: Array) -> float:
     return page.starts[0] if page.null is None else page.null
 
 
-def _on_the_way(page: Parameter, value: float, home: float, share: float) -> float:
+def _moved_towards(page: Parameter, value: float, home: float, share: float) -> float:
     """Move a value by a fraction of the distance to `home`, in the search variable.
 
     An infinite `home` is reached only with a fraction of one.

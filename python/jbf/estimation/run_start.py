@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_gaps import behind_gaps
+from jbf.estimation.film_gaps import samples_affected_by_gaps
 from jbf.estimation.film_rate import check_film
 from jbf.estimation.initial_state import REMEMBERED, begins_anywhere, memories, remembering
 from jbf.estimation.noise_floor import noise_floor
@@ -94,7 +94,7 @@ def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Cam
     campaign = problem.campaign
     noise_n = noise_floor(campaign.prepared, campaign.samples)
     masks = unsettled(problem, values, noise_n)
-    behind = behind_gaps(problem, values, REMEMBERED * noise_n)
+    behind = samples_affected_by_gaps(problem, values, REMEMBERED * noise_n)
     if not any(m.any() for m in (*masks, *behind)):
         return campaign
     kept = campaign.without(masks).without(behind)

@@ -232,7 +232,7 @@ class Samples:
         ]
 
 
-def least_weights(a: Samples, b: Samples) -> Samples:
+def common_samples(a: Samples, b: Samples) -> Samples:
     """Combine the samples of two models of the same runs, with the smaller of their weights."""
     if a is b:
         return a

@@ -90,7 +90,7 @@ class Visited:
 
 
 @dataclass(frozen=True)
-class Found:
+class SearchResult:
     """Result of a search: parameter values, whether it converged, and the reason for its end."""
 
     values: Array
@@ -110,7 +110,7 @@ def search(
     evaluations: int,
     method: Method = "dogbox",
     visited: Visited | None = None,
-) -> Found:
+) -> SearchResult:
     """Minimise the squared innovations from one starting point.
 
     Parameters
@@ -134,7 +134,7 @@ def search(
             keeps = visited is not None and problem.few_numbers
             lines = problem.linearise(values) if keeps else None
             r, j, count = problem.gauss_newton_rows(values, samples, noise, lines)
-            problem.best.seen(values, float(r @ r) / max(count, 1))
+            problem.best.update(values, float(r @ r) / max(count, 1))
             place = Place(problem.encode(values), values, values[problem.open], r, j, count)
             if visited is None:
                 memory.places.clear()
@@ -172,10 +172,10 @@ def search(
         )
     except _Joined:
         least = min(way, key=lambda place: place.square)
-        return Found(least.values, False, "joined another search")
+        return SearchResult(least.values, False, "joined another search")
     if visited is not None:
         memory.ended.append(way)
-    return Found(problem.decode(found.x, start), bool(found.status > 0), str(found.message))
+    return SearchResult(problem.decode(found.x, start), bool(found.status > 0), str(found.message))
 
 
 def _key(values: Array) -> bytes:

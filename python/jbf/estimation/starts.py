@@ -132,7 +132,7 @@ def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
     return replace(page, upper=upper)
 
 
-def _within_the_way(page: Parameter, campaign: Campaign) -> Parameter:
+def _limited_by_travel(page: Parameter, campaign: Campaign) -> Parameter:
     """Limit a pitch by the travel: a longer pitch does not repeat often enough for a ripple."""
     upper = min(page.upper, longest_pitch(campaign))
     return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
@@ -179,7 +179,7 @@ def with_starts(
             page = _inside(page, rules[page.start](sizes))
         if in_newtons and page.start in CAMPAIGN_RULES:
             if page.start in PITCHES:
-                page = _within_the_way(page, campaign)
+                page = _limited_by_travel(page, campaign)
             page = _inside(page, CAMPAIGN_RULES[page.start](campaign))
         if page.start in RULES_OF_ANY_LAW:
             page = _inside(page, RULES_OF_ANY_LAW[page.start](campaign))

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.left_out import left_out_residuals
+from jbf.estimation.left_out import held_out_residuals
 from jbf.estimation.minimum import MAX_EVALUATIONS
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
@@ -48,8 +48,8 @@ def best_weighting(problem: Problem, plain: Solution) -> Solution:
         apart = [a - b for a, b in zip(plain.residuals, robust.residuals, strict=True)]
         if plain.samples.rms(apart) < ELSEWHERE * plain.rms_n:
             continue
-        left = left_out_residuals(problem, best) if left is None else left
-        other = left_out_residuals(problem, robust)
+        left = held_out_residuals(problem, best) if left is None else left
+        other = held_out_residuals(problem, robust)
         if _better(other, left):
             best, left = robust, other
     return best

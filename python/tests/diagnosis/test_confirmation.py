@@ -27,7 +27,7 @@ def test_p_value_of_a_confirmation_is_that_of_a_one_sided_t_test_over_runs() -> 
     tried = candidates(8, 0.03)
     found = tried.confirmation((), OFFSET)
     without, with_it = (
-        errors_by_run(tried.converge(effects), tried.left_out(effects))
+        errors_by_run(tried.converge(effects), tried.held_out_parts(effects))
         for effects in ((), (OFFSET,))
     )
     ratios = [np.log(np.mean(without[i] ** 2) / np.mean(with_it[i] ** 2)) for i in without]

@@ -8,7 +8,7 @@ import jbf
 import numpy as np
 import pytest
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.which_law import left_out
+from jbf.diagnosis.which_law import held_out_errors
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum
 from jbf.estimation.problem import Problem
@@ -87,7 +87,7 @@ def test_held_out_errors_of_a_law_include_samples_of_the_initial_state_transient
         runs.append(jbf.Run.from_arrays(time, speed, force, name=f"run{k}"))
     campaign = Campaign.prepare(jbf.Rig(), runs)
     elastic = Candidates(campaign.without([time < 1.0] * 3), "dahl", "journal")
-    errors = left_out(elastic, ()).errors
+    errors = held_out_errors(elastic, ()).errors
     for e, counted in zip(errors, campaign.samples.counted, strict=True):
         assert np.array_equal(np.isfinite(e), counted)
 

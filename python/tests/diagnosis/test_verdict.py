@@ -84,7 +84,7 @@ def test_confirmation_has_held_out_errors_with_and_without_the_effect() -> None:
     assert found.before_n == pytest.approx(before, rel=0.03)
     assert found.after_n == pytest.approx(after, rel=0.05)
     assert found.better == pytest.approx(0.8)
-    assert found.after_n == pytest.approx(candidates.left_out_rms((OFFSET,)))
+    assert found.after_n == pytest.approx(candidates.held_out_rms((OFFSET,)))
     assert 0.5 < found.density < 1.0
 
 

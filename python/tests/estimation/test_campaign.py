@@ -99,26 +99,31 @@ def test_temperature_range_covers_all_runs_and_is_missing_if_one_has_no_temperat
     assert (some.temperature_range_c, some.temperatures_k) == (None, None)
 
 
-def lacking(effect: str, *runs: Run) -> str | None:
-    return prepared(*runs).lacking(find_effect(effect))
+def missing_requirement(effect: str, *runs: Run) -> str | None:
+    return prepared(*runs).missing_requirement(find_effect(effect))
 
 
 def test_effect_is_excluded_if_loads_do_not_differ_or_a_run_has_no_position() -> None:
     loaded = [make(load_n=np.full(N, load)) for make, load in ((run, 80.0), (other, 120.0))]
-    assert lacking("zero_load_dependence", *loaded) is None
-    assert "one load" in str(lacking("zero_load_dependence", loaded[0]))
-    assert lacking("stroke_dependence", run(position_m=PATH), other(position_m=PATH)) is None
-    assert "position" in str(lacking("stroke_dependence", run(position_m=PATH), other()))
-    assert "angle" in str(lacking("position_ripple", run()))
-    assert lacking("sensor_offset", run()) is None
+    assert missing_requirement("zero_load_dependence", *loaded) is None
+    assert "one load" in str(missing_requirement("zero_load_dependence", loaded[0]))
+    assert (
+        missing_requirement("stroke_dependence", run(position_m=PATH), other(position_m=PATH))
+        is None
+    )
+    assert "position" in str(
+        missing_requirement("stroke_dependence", run(position_m=PATH), other())
+    )
+    assert "angle" in str(missing_requirement("position_ripple", run()))
+    assert missing_requirement("sensor_offset", run()) is None
 
 
 @pytest.mark.parametrize(("span_k", "enough"), [(1.9, False), (2.1, True)])
 def test_temperature_effect_requires_a_range_of_two_kelvin(span_k: float, enough: bool) -> None:
     effect = next(e for e in jbf.effects().values() if "temperatures" in e.needs)
     campaign = prepared(run(temperature_c=np.linspace(20.0, 20.0 + span_k, N)))
-    assert (campaign.lacking(effect) is None) == enough
-    assert "temperature_c" in str(prepared(run()).lacking(effect))
+    assert (campaign.missing_requirement(effect) is None) == enough
+    assert "temperature_c" in str(prepared(run()).missing_requirement(effect))
 
 
 def test_quantisation_rms_follows_from_step_and_noise_of_the_readings() -> None:

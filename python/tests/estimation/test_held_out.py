@@ -18,13 +18,13 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import (
     INSENSITIVE,
     MOST_FITS,
-    LeftOut,
+    HeldOutPart,
     errors_by_run,
-    halves_left_out,
-    left_out,
-    left_out_by_run,
-    left_out_residuals,
-    left_out_rms,
+    held_out_by_run,
+    held_out_halves,
+    held_out_parts,
+    held_out_residuals,
+    held_out_rms,
     only_witnesses,
 )
 from jbf.estimation.minimum import minimum
@@ -84,12 +84,12 @@ def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) 
     # The colour of the noise of the common solution changes the regression slightly. A
     # single step in the logarithm of the friction would have an error of half of the noise.
     atol = (0.03 if off_n == 0.0 else 0.3) * NOISE_N
-    for found, wanted in zip(left_out_by_run(problem, solution), expected, strict=True):
+    for found, wanted in zip(held_out_by_run(problem, solution), expected, strict=True):
         np.testing.assert_allclose(found, wanted, atol=atol)
     together = np.concatenate(expected)
-    np.testing.assert_allclose(left_out_residuals(problem, solution), together, atol=atol)
+    np.testing.assert_allclose(held_out_residuals(problem, solution), together, atol=atol)
     rms_n = float(np.sqrt(np.mean(together**2)))
-    assert left_out_rms(problem, solution) == pytest.approx(rms_n, rel=0.01)
+    assert held_out_rms(problem, solution) == pytest.approx(rms_n, rel=0.01)
 
 
 def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> None:
@@ -98,8 +98,8 @@ def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> 
     count = len(run.time_s)
     odd = (np.arange(count) * 10 // count) % 2 == 1
     problem, solution = solved([replace(run, friction_n=run.friction_n + odd)])
-    assert left_out_rms(problem, solution) == pytest.approx(np.hypot(1.0, NOISE_N), rel=0.03)
-    first, second = left_out(problem, solution)
+    assert held_out_rms(problem, solution) == pytest.approx(np.hypot(1.0, NOISE_N), rel=0.03)
+    first, second = held_out_parts(problem, solution)
     np.testing.assert_array_equal(first.left[0], odd)
     np.testing.assert_array_equal(second.left[0], ~odd)
     assert (first.runs, second.runs) == ((0,), (0,))
@@ -110,7 +110,7 @@ def test_fourteen_runs_are_held_out_in_twelve_groups_whatever_their_order() -> N
     runs = [wandering(f"{p['seed']:02d}", coulomb, noise_n=NOISE_N, **p) for p in plan]
     groups = []
     for some in (runs, runs[::-1]):
-        parts = left_out(*solved(some))
+        parts = held_out_parts(*solved(some))
         assert len(parts) == MOST_FITS
         groups.append([sorted(some[i].name for i in part.runs) for part in parts])
     assert groups[0] == groups[1]
@@ -121,7 +121,7 @@ def test_runs_of_one_speed_are_held_out_in_different_groups() -> None:
     """Two fast and twelve slow runs: every fit contains at least one of the fast runs."""
     fast = {0, 12}
     runs = [staged(3.0 if k in fast else 1.0, f"{k:02d}", k) for k in range(14)]
-    for part in left_out(*solved(runs)):
+    for part in held_out_parts(*solved(runs)):
         assert not fast.issubset(part.runs)
 
 
@@ -160,10 +160,10 @@ def test_parameter_is_at_its_null_if_only_the_held_out_run_determines_it(others:
     value = solution.values[problem.names.index("pushed.k_n")]
     assert value == pytest.approx(PUSH_N, rel=0.01)
     missed = np.sqrt(NOISE_N**2 + PUSH_N**2 / 4.0)
-    assert left_out_rms(problem, solution) == pytest.approx(missed, rel=0.02)
-    first = next(part for part in left_out(problem, solution) if part.runs == (0,))
+    assert held_out_rms(problem, solution) == pytest.approx(missed, rel=0.02)
+    first = next(part for part in held_out_parts(problem, solution) if part.runs == (0,))
     names = [problem.names[i] for i in problem.open]
-    assert first.told.tolist() == [name != "pushed.k_n" for name in names]
+    assert first.determined.tolist() == [name != "pushed.k_n" for name in names]
 
 
 @pytest.mark.usefixtures("push_effect")
@@ -181,8 +181,8 @@ def test_run_with_nearly_all_information_on_a_parameter_is_its_only_source(
 def test_halves_of_the_only_informative_run_predict_each_other(factor: float, off_n: float) -> None:
     """The push is three times as large in one half: the error of each half is the difference."""
     problem, solution = solved(pushed_runs(0.0, factor), "pushed")
-    parts = halves_left_out(problem, solution, 0)
-    assert all(part.told.all() for part in parts)
+    parts = held_out_halves(problem, solution, 0)
+    assert all(part.determined.all() for part in parts)
     errors = errors_by_run(solution, parts)[0]
     assert len(errors) == np.count_nonzero(solution.samples.counted[0])
     assert np.std(errors) == pytest.approx(np.hypot(off_n, NOISE_N), rel=0.1)
@@ -196,8 +196,8 @@ def test_parameter_is_at_its_null_if_the_remaining_half_does_not_determine_it() 
     run = replace(first, friction_n=force, extra={"push": early})
     problem, solution = solved([run, *others], "pushed")
     k = problem.open.index(problem.names.index("pushed.k_n"))
-    without_first, without_second = halves_left_out(problem, solution, 0)
-    assert (without_first.told[k], without_second.told[k]) == (False, True)
+    without_first, without_second = held_out_halves(problem, solution, 0)
+    assert (without_first.determined[k], without_second.determined[k]) == (False, True)
     half = without_first.left[0]
     missed = without_first.residuals[0][half]
     assert np.std(missed) == pytest.approx(np.hypot(PUSH_N, NOISE_N), rel=0.05)
@@ -209,9 +209,9 @@ def test_held_out_error_of_each_sample_is_from_the_fit_without_that_sample() -> 
     first, every = np.arange(count) < count // 2, np.ones(count, dtype=bool)
     ramp, determined = np.arange(count, dtype=float), np.ones(solution.free, dtype=bool)
     parts = [
-        LeftOut((1,), (first,), determined, (ramp,)),
-        LeftOut((0,), (every,), determined, (10.0 + ramp,)),
-        LeftOut((1,), (~first,), determined, (-ramp,)),
+        HeldOutPart((1,), (first,), determined, (ramp,)),
+        HeldOutPart((0,), (every,), determined, (10.0 + ramp,)),
+        HeldOutPart((1,), (~first,), determined, (-ramp,)),
     ]
     counted = [every & (ramp > 2.0), every & (ramp < count - 5.0)]
     errors = errors_by_run(solution, parts, counted=counted)
@@ -223,8 +223,8 @@ def test_held_out_error_of_each_sample_is_from_the_fit_without_that_sample() -> 
 def test_held_out_part_without_a_run_keeps_the_residuals_of_its_other_runs() -> None:
     ramp, every = np.arange(10.0), np.ones(10, dtype=bool)
     determined = np.ones(1, dtype=bool)
-    first = LeftOut((0,), (every,), determined, (10.0 + ramp,))
-    second = LeftOut((1,), (every,), determined, (ramp,))
+    first = HeldOutPart((0,), (every,), determined, (10.0 + ramp,))
+    second = HeldOutPart((1,), (every,), determined, (ramp,))
     remaining = first.without((0,)), second.without((3,))
     assert [part.runs for part in remaining] == [(), (1,)]
     np.testing.assert_array_equal(remaining[1].residuals[0], ramp)
@@ -241,8 +241,8 @@ def test_random_effects_of_runs_are_removed_from_held_out_errors_on_request() ->
     samples = replace(problem.campaign.samples, between=between)
     values = problem.starts(problem.fixed)[0]
     solution = problem.solution(values, samples, WHITE)
-    assert left_out_rms(problem, solution) == pytest.approx(np.hypot(2.0, NOISE_N), rel=0.02)
-    assert left_out_rms(problem, solution, apart=True) == pytest.approx(NOISE_N, rel=0.05)
+    assert held_out_rms(problem, solution) == pytest.approx(np.hypot(2.0, NOISE_N), rel=0.02)
+    assert held_out_rms(problem, solution, apart=True) == pytest.approx(NOISE_N, rel=0.05)
 
 
 COUNT, RUNS = 400, 5
@@ -253,7 +253,7 @@ Linear = tuple[list[Array], list[Array], list[Array]]
 """Derivatives by the parameters of law and effect, and noise; one array for each run."""
 
 
-def fitted(design: Sequence[Array], force: Sequence[Array]) -> tuple[Solution, list[LeftOut]]:
+def fitted(design: Sequence[Array], force: Sequence[Array]) -> tuple[Solution, list[HeldOutPart]]:
     """Least-squares solutions of all runs, and without each run."""
 
     def values(runs: Sequence[int]) -> Array:
@@ -268,7 +268,7 @@ def fitted(design: Sequence[Array], force: Sequence[Array]) -> tuple[Solution, l
     parts = []
     for i in range(RUNS):
         rest = values([k for k in range(RUNS) if k != i])
-        parts.append(LeftOut((i,), (EVERY,), determined, (force[i] - design[i] @ rest,)))
+        parts.append(HeldOutPart((i,), (EVERY,), determined, (force[i] - design[i] @ rest,)))
     return solution, parts
 
 

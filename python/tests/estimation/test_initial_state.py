@@ -12,7 +12,7 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_gaps import behind_gaps
+from jbf.estimation.film_gaps import samples_affected_by_gaps
 from jbf.estimation.initial_state import REMEMBERED, Memory, memories, remembering
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
@@ -190,7 +190,7 @@ def test_no_samples_are_excluded_at_starts_or_gaps_for_a_law_without_a_state() -
     problem = Problem(campaign, "coulomb", "journal", ())
     assert not any(m.any() for m in unsettled(problem, problem.starts({})[0], 0.1))
     problem = Problem(Campaign.prepare(Rig(), [with_gap(7.0, 8.11)]), "coulomb", "journal", ())
-    assert not behind_gaps(problem, problem.starts({})[0], LEAST_N)[0].any()
+    assert not samples_affected_by_gaps(problem, problem.starts({})[0], LEAST_N)[0].any()
 
 
 def reading_with_play(force_n: Array, start_n: float) -> Array:
@@ -296,19 +296,19 @@ def test_samples_whose_film_depends_on_the_motion_in_a_gap_are_excluded(
     run = with_gap(7.0, last_s, at_s, up)
     problem, values = journal_problem(run)
     wrong = np.abs(problem.residuals(values)[0]) > 1.2 * least_n
-    (mask,) = behind_gaps(problem, values, least_n)
+    (mask,) = samples_affected_by_gaps(problem, values, least_n)
     assert wrong.any()
     assert mask[wrong].all()
     set_aside = run.time_s[mask]
     assert last_s < set_aside.min() < last_s + 0.1
     assert set_aside.max() - set_aside.min() < 3.0
-    assert behind_gaps(problem, values, 1e3)[0].sum() == 0
+    assert samples_affected_by_gaps(problem, values, 1e3)[0].sum() == 0
 
 
 @pytest.mark.parametrize(("first_s", "last_s"), [(3.0, 4.0), (12.0, 13.0), (8.01, 8.05)])
 def test_gap_at_constant_speed_or_of_two_rows_is_ignored(first_s: float, last_s: float) -> None:
     problem, values = journal_problem(with_gap(first_s, last_s))
-    assert not behind_gaps(problem, values, LEAST_N)[0].any()
+    assert not samples_affected_by_gaps(problem, values, LEAST_N)[0].any()
 
 
 @pytest.mark.parametrize(("missing", "gap"), [(3, False), (4, True)])
@@ -318,7 +318,7 @@ def test_four_missing_rows_count_as_a_gap_and_three_do_not(missing: int, gap: bo
     kept[401 : 401 + missing] = False
     run = Run.from_arrays(TIME, step_of_speed(8.0, True), np.ones(len(TIME)), name="a").select(kept)
     problem, values = journal_problem(run)
-    assert bool(behind_gaps(problem, values, 1e-4)[0].any()) == gap
+    assert bool(samples_affected_by_gaps(problem, values, 1e-4)[0].any()) == gap
 
 
 def test_samples_after_a_gap_are_excluded_if_errors_exceed_a_fifth_of_the_noise() -> None:
@@ -327,7 +327,7 @@ def test_samples_after_a_gap_are_excluded_if_errors_exceed_a_fifth_of_the_noise(
     campaign = Campaign.prepare(Rig.thesis(), [replace(run, friction_n=run.friction_n + noise)])
     settled = settled_campaign(campaign, "journal", "journal")
     gone = run.time_s[campaign.samples.counted[0] & ~settled.samples.counted[0]]
-    (behind,) = behind_gaps(*journal_problem(run), REMEMBERED * noise_n)
+    (behind,) = samples_affected_by_gaps(*journal_problem(run), REMEMBERED * noise_n)
     found, expected = gone[gone > 8.0], run.time_s[behind]
     assert (found[0], found[-1]) == pytest.approx((expected[0], expected[-1]), abs=0.15)
 
@@ -335,6 +335,6 @@ def test_samples_after_a_gap_are_excluded_if_errors_exceed_a_fifth_of_the_noise(
 def test_samples_excluded_after_a_gap_do_not_depend_on_the_zero_of_time() -> None:
     run = with_gap(7.0, 8.11)
     later = Run.from_arrays(run.time_s + 1000.0, run.velocity_m_s, run.friction_n, name="later")
-    masks = [behind_gaps(*journal_problem(r), LEAST_N)[0] for r in (run, later)]
+    masks = [samples_affected_by_gaps(*journal_problem(r), LEAST_N)[0] for r in (run, later)]
     assert masks[0].any()
     np.testing.assert_array_equal(*masks)

@@ -18,7 +18,7 @@ from jbf.estimation.jumps import (
     active_effects,
     jumps,
     moves_jumps,
-    samples_beside_jumps,
+    samples_near_jumps,
     spreads_jumps,
 )
 from jbf.estimation.prepared import Prepared
@@ -111,13 +111,13 @@ def test_weight_at_a_moved_jump_is_the_share_of_noise(noise_n: float, before: fl
     """Half of the change, 20 N, is added to the noise in squares; tests exclude these samples."""
     campaign_, force = square_wave(noise_n)
     samples = replace(campaign_.samples, weight=(np.full(len(force), before),))
-    found = samples_beside_jumps(samples, campaign_.prepared, [force], ["time_delay"])
+    found = samples_near_jumps(samples, campaign_.prepared, [force], ["time_delay"])
     adjacent = np.isin(np.arange(len(force)), [249, 250])
     np.testing.assert_array_equal(found.counted[0], ~adjacent)
     np.testing.assert_array_equal(found.weight[0][~adjacent], before)
     expected = before * noise_n / np.hypot(noise_n, 20.0)
     np.testing.assert_allclose(found.weight[0][adjacent], expected, rtol=1e-9)
-    assert samples_beside_jumps(samples, campaign_.prepared, [force], ["sensor_offset"]) is samples
+    assert samples_near_jumps(samples, campaign_.prepared, [force], ["sensor_offset"]) is samples
 
 
 def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_error() -> None:
@@ -132,7 +132,7 @@ def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_erro
     run = Run.from_arrays(t, v, force + noise_n * random.standard_normal(len(t)), name="a")
     campaign_ = Campaign.prepare(Rig(), [run])
     (p,) = campaign_.prepared
-    found = samples_beside_jumps(campaign_.samples, [p], [force], ["sensor_lag"])
+    found = samples_near_jumps(campaign_.samples, [p], [force], ["sensor_lag"])
     counted = campaign_.samples.counted[0]
     rms_n = float(np.sqrt(np.mean((force - p.friction_n)[counted] ** 2)))
     error_n = instant_errors_n(p, force, 0.5 * rms_n)

@@ -48,13 +48,13 @@ def test_clipped_gain_from_one_outlier_is_bounded() -> None:
     followed = solution_of([drawn[:600], drawn[600:]], samples)
     missed = solution_of([off[:600], off[600:]], samples)
     assert likelihood.likelihood_gain(followed, missed) > 2000.0
-    assert 0.0 < likelihood.gain_of_most(followed, missed) < 1.1 * 3.5**2
+    assert 0.0 < likelihood.robust_gain(followed, missed) < 1.1 * 3.5**2
     level = solution_of([drawn[:600] + 0.5, drawn[600:] + 0.5], samples)
-    assert likelihood.gain_of_most(followed, level) == pytest.approx(250.0, rel=0.15)
-    assert likelihood.gain_of_most(level, followed) < -180.0
+    assert likelihood.robust_gain(followed, level) == pytest.approx(250.0, rel=0.15)
+    assert likelihood.robust_gain(level, followed) < -180.0
     halves = [solution_of([0.5 * r for r in s.residuals], samples) for s in (followed, missed)]
-    whole = likelihood.gain_of_most(followed, missed)
-    assert likelihood.gain_of_most(*halves) == pytest.approx(whole)
+    whole = likelihood.robust_gain(followed, missed)
+    assert likelihood.robust_gain(*halves) == pytest.approx(whole)
 
 
 def test_robust_size_is_the_median_absolute_value_over_0_6745() -> None:

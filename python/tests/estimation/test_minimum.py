@@ -11,7 +11,7 @@ from coulomb_problems import HELD, STEP_S, autoregressive, coulomb_problem
 from jbf import Run
 from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import left_out_rms
+from jbf.estimation.left_out import held_out_rms
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.minimum import MOST_FORGIVEN, minimum, search_peaks, settle
 from jbf.estimation.noise import Noise
@@ -177,7 +177,7 @@ def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error
     plain = minimum(problem, [HELD])
     found = best_weighting(problem, plain)
     assert not any(w[early].any() for w in found.samples.weight)
-    assert left_out_rms(problem, found) < 0.97 * left_out_rms(problem, plain)
+    assert held_out_rms(problem, found) < 0.97 * held_out_rms(problem, plain)
     # Iteratively reweighted least squares by NumPy, with either kind of weights.
     ends = [iteratively_reweighted(problem, weights) for weights in (huber, student)]
     assert min(np.max(np.abs(found.values[[0, 2]] / end - 1.0)) for end in ends) < 1e-3

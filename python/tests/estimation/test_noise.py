@@ -20,7 +20,7 @@ from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
 from jbf.estimation.noise_at import noise_at
-from jbf.estimation.noise_floor import most_noise, noise_floor
+from jbf.estimation.noise_floor import noise_floor, noise_upper_bound
 from linear_campaigns import mass
 from scipy import optimize, signal
 
@@ -198,7 +198,7 @@ def floor_of(rig: Rig, runs: list[Run]) -> float:
 
 def largest_of(*runs: Run) -> float | None:
     prepared = Campaign.prepare(Rig(), list(runs))
-    return most_noise(prepared.prepared, prepared.samples)
+    return noise_upper_bound(prepared.prepared, prepared.samples)
 
 
 def with_rests(noise: Array, name: str = "rests") -> Run:

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf.estimation.left_out import INSENSITIVE, LeftOut
+from jbf.estimation.left_out import INSENSITIVE, HeldOutPart
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.predictive import mean_square, surprise
 from jbf.estimation.samples import Samples
@@ -32,17 +32,17 @@ def linear_model(rng: np.random.Generator, weighted: bool = False) -> Solution:
     return Solution((), np.zeros(3), residuals, jacobian, WHITE, 0.0, True, "", samples)
 
 
-def held_out(run: int, errors: Array, determined: Sequence[bool] = ALL) -> LeftOut:
+def held_out(run: int, errors: Array, determined: Sequence[bool] = ALL) -> HeldOutPart:
     every = np.ones(len(errors), dtype=bool)
-    return LeftOut((run,), (every,), np.array(determined), (errors,))
+    return HeldOutPart((run,), (every,), np.array(determined), (errors,))
 
 
-def gaussian(solution: Solution, part: LeftOut) -> float:
+def gaussian(solution: Solution, part: HeldOutPart) -> float:
     """Minus twice the log density of the errors in a part of a run, without the constant."""
     (run,), (left,) = part.runs, part.left
     weight = solution.samples.weight
     slopes = zip(solution.jacobian, weight, strict=True)
-    j = [(slope * w[:, None])[:, part.told] for slope, w in slopes]
+    j = [(slope * w[:, None])[:, part.determined] for slope, w in slopes]
     every = np.concatenate(j) / np.linalg.norm(np.concatenate(j), axis=0)
     own = (j[run] / np.linalg.norm(np.concatenate(j), axis=0))[left]
     information = every.T @ every - own.T @ own + INSENSITIVE * np.eye(own.shape[1])
@@ -90,7 +90,9 @@ def test_half_of_a_run_is_predicted_from_the_other_half_and_the_other_runs() -> 
     solution = linear_model(rng)
     errors = [rng.standard_normal(n) for n in COUNTS]
     first = np.arange(COUNTS[0]) < 15
-    halves = [LeftOut((0,), (half,), np.ones(3, bool), (errors[0],)) for half in (first, ~first)]
+    halves = [
+        HeldOutPart((0,), (half,), np.ones(3, bool), (errors[0],)) for half in (first, ~first)
+    ]
     parts = [*halves, held_out(1, errors[1]), held_out(2, errors[2])]
     found = surprise(solution, parts, solution.samples, WHITE, VARIANCE)
     assert found == pytest.approx(sum(gaussian(solution, p) for p in parts), rel=1e-9)

@@ -24,7 +24,7 @@ from jbf.diagnosis.terms.shifts import (
 )
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.joint_lateness import drift_step, lateness_step
-from jbf.estimation.jumps import samples_beside_jumps
+from jbf.estimation.jumps import samples_near_jumps
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
@@ -137,7 +137,7 @@ def _gain(found: Shifted, other: Solution, share: float) -> float:
     prepared = found.campaign.prepared
     forces = [p.friction_n - r for p, r in zip(prepared, here.residuals, strict=True)]
     # Samples that the other model excludes next to jumps are excluded here as well.
-    samples = samples_beside_jumps(here.samples, prepared, forces, other.effects)
+    samples = samples_near_jumps(here.samples, prepared, forces, other.effects)
     after = samples.without_deviations(here.residuals, here.noise)
     before = other.samples.without_deviations(other.residuals, other.noise)
     ratio = other.samples.rms(before) / max(samples.rms(after), 1e-300)

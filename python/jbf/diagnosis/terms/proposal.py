@@ -10,7 +10,7 @@ from scipy import special
 
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import left_out_by_run
+from jbf.estimation.left_out import held_out_by_run
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.noise_at import noise_at
@@ -130,7 +130,7 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
     """
     fits = ((proposal.problem, proposal.solution), (model.reference_problem, model.reference))
     rms = [
-        np.array([np.sqrt(np.mean(e**2)) if len(e) else np.nan for e in left_out_by_run(*fit)])
+        np.array([np.sqrt(np.mean(e**2)) if len(e) else np.nan for e in held_out_by_run(*fit)])
         for fit in fits
     ]
     ratio = np.log(np.maximum(rms[0], 1e-300) / np.maximum(rms[1], 1e-300))

@@ -36,7 +36,7 @@ reversal.
 """
 
 
-def worth(left: Array) -> float:
+def bounded_square(left: Array) -> float:
     """Sum of squares of the unexplained part of a change, in units of the noise variance.
 
     The contribution of each sample is limited to `MOST`.
@@ -70,7 +70,7 @@ class Change:
         """Orthonormal columns that span `shown`."""
         return spanned(self.shown)
 
-    def beside(self, other: Change, runs: RunsAtHand, columns: slice = EVERY) -> Array:
+    def on_shared_samples(self, other: Change, runs: RunsAtHand, columns: slice = EVERY) -> Array:
         """`shown` on the samples that another effect also uses, for selected columns."""
         if other.shares is None:
             return self.shown[:, columns]
@@ -84,14 +84,14 @@ class Change:
         )
 
 
-def left_apart(own: Change, rival: Change, runs: RunsAtHand) -> float:
+def distinguishable_size(own: Change, rival: Change, runs: RunsAtHand) -> float:
     """Size of the part of an effect that a rival cannot reproduce, in units of the noise."""
-    change = own.beside(rival, runs, slice(1))[:, 0]
-    span = rival.span if own.shares is None else spanned(rival.beside(own, runs))
-    return float(np.sqrt(worth(change - span @ (span.T @ change))))
+    change = own.on_shared_samples(rival, runs, slice(1))[:, 0]
+    span = rival.span if own.shares is None else spanned(rival.on_shared_samples(own, runs))
+    return float(np.sqrt(bounded_square(change - span @ (span.T @ change))))
 
 
-def chance_apart(left: float, least: float) -> float:
+def distinction_probability(left: float, least: float) -> float:
     """Probability that the gain of an effect exceeds that of a rival by more than `least`.
 
     Parameters
@@ -106,12 +106,12 @@ def chance_apart(left: float, least: float) -> float:
     return float(special.ndtr((left**2 - least) / (2.0 * left)))
 
 
-def chance_found(price: float | Array, parameters: int, non_centrality: float) -> Array:
+def detection_probability(price: float | Array, parameters: int, non_centrality: float) -> Array:
     """Probability that a noncentral chi-square variable exceeds each of the given thresholds."""
     return np.asarray(1.0 - special.chndtr(price, parameters, non_centrality), dtype=np.float64)
 
 
-def times_alone(
+def distinction_factor(
     price: float,
     parameters: int,
     non_centrality: float,
@@ -136,16 +136,17 @@ def times_alone(
         The factor, at least 1; infinite where it would exceed `NEVER`.
     """
 
-    def lacking(times: float) -> float:
+    def surplus(times: float) -> float:
         # Close rivals leave the same part unexplained: only the closest one matters.
         told = min(
-            (chance_apart(times * left, least) for left, least in rivals.values()), default=1.0
+            (distinction_probability(times * left, least) for left, least in rivals.values()),
+            default=1.0,
         )
-        found = float(chance_found(price, parameters, times**2 * non_centrality))
+        found = float(detection_probability(price, parameters, times**2 * non_centrality))
         return found * told - chance
 
-    if lacking(1.0) >= 0.0:
+    if surplus(1.0) >= 0.0:
         return 1.0
-    if lacking(NEVER) < 0.0:
+    if surplus(NEVER) < 0.0:
         return np.inf
-    return float(optimize.brentq(lacking, 1.0, NEVER, xtol=1e-3))
+    return float(optimize.brentq(surplus, 1.0, NEVER, xtol=1e-3))

@@ -113,7 +113,7 @@ class Candidates:
             return None
         return fitted.named_values()
 
-    def one_more(self, effects: Iterable[str]) -> dict[str, Fitted]:
+    def fitted_extensions(self, effects: Iterable[str]) -> dict[str, Fitted]:
         """Fitted sets with exactly one more effect, by the name of that effect."""
         here = frozenset(effects)
         found = {}
@@ -173,7 +173,7 @@ class Candidates:
     def level(self) -> Level:
         """Acceptance level of the tests; that of the bare law until it is calibrated."""
         if self._level is None:
-            self._level = self._beside(())
+            self._level = self._level_given(())
         return self._level
 
     def calibrate(self, present: Sequence[str]) -> None:
@@ -182,14 +182,14 @@ class Candidates:
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
             directions = [f.directions for f in tested if f.directions is not None]
-            level = calibrated(self._beside(present), directions)
+            level = calibrated(self._level_given(present), directions)
             self._levels[key] = with_decoys(level, directions, self.campaign.samples.count)
             # These arrays are as large as the records and are not needed again.
             for fitted in self._fitted.values():
                 fitted.directions = None
         self._level = self._levels[key]
 
-    def _beside(self, present: Sequence[str]) -> Level:
+    def _level_given(self, present: Sequence[str]) -> Level:
         base = self.converge(present)
         samples = effective_share(base) * base.samples.count
         least = self.policy.least_effect_share(self.campaign.motion_share)
@@ -199,22 +199,22 @@ class Candidates:
         """Fit these effects well enough for ranking, starting from a smaller model's solution."""
         fitted = self.fitted(effects)
         if fitted.state in ("posed", "looked"):
-            way = fitted.approach or self._way(fitted, effects, near)
+            way = fitted.approach or self._approach(fitted, effects, near)
             fitted.improve(way.follow(RANKING_EVALUATIONS, fitted.least))
             fitted.state, fitted.approach, fitted.promised = "ranked", None, np.inf
-        return fitted.found()
+        return fitted.current_solution()
 
     def look(self, effects: Sequence[str], near: Solution) -> Fitted:
         """Fit these effects by a few steps only, starting from the solution of a smaller model."""
         fitted = self.fitted(effects)
         if fitted.state == "posed":
-            fitted.approach = self._way(fitted, effects, near)
+            fitted.approach = self._approach(fitted, effects, near)
             look = fitted.approach.look(near)
             fitted.solution = fitted.approach.solution_of(look, near)
             fitted.state, fitted.promised = "looked", look.promised
         return fitted
 
-    def _way(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:
+    def _approach(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:
         """The search of a fit that starts from the solution of a smaller model."""
         seeds: list[Mapping[str, float]] = [{}]
         if near is not None:
@@ -229,7 +229,7 @@ class Candidates:
             # Start from the solution before the sample weights changed.
             seeds = [known]
         each = near is not None and many_peaks(near.effects)
-        fitted.least = self._least_square(near)
+        fitted.least = self._required_square(near)
         return Approach(fitted.problem, seeds, each=each, stepped=fitted.stepped)
 
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
@@ -267,7 +267,7 @@ class Candidates:
         if fitted.state != "converged":
             fitted.solution = settle(fitted.problem, self.rank(effects, near))
             fitted.state = "converged"
-        return fitted.found()
+        return fitted.current_solution()
 
     def search_peaks(self, effects: Sequence[str]) -> Solution:
         """Search for a higher peak of the likelihood of a set of effects.
@@ -305,7 +305,7 @@ class Candidates:
         astray = there.rms_n > self.policy.leader_rms * near.rms_n
         if likelihood_gain(there, near) > 0.0 and not astray:
             fitted.improve(there)
-        return fitted.found()
+        return fitted.current_solution()
 
     def idle(self, solution: Solution) -> tuple[str, ...]:
         """The effects whose parameters a solution left at their null."""
@@ -371,7 +371,7 @@ class Candidates:
         names = self.fitted(near.effects).problem.names
         return dict(zip(names, near.values.tolist(), strict=True))
 
-    def _least_square(self, near: Solution | None) -> float:
+    def _required_square(self, near: Solution | None) -> float:
         """Sum of squares that a larger model must fall below to show a gain."""
         if near is None:
             return np.inf

@@ -117,16 +117,16 @@ class Confirmation:
         """
         share = (self.before_n**2 - self.after_n**2) / max(gained, 1e-300)
         times = self.after_n / max(self.before_n, 1e-300)
-        return left_out_confirms(evidence, self.density, share, self.better, policy, times)
+        return held_out_runs_confirm(evidence, self.density, share, self.better, policy, times)
 
-    def said(self, unit: str) -> str:
+    def describe(self, unit: str) -> str:
         """Describe the held-out error."""
         what = "runs" if not self.halved else f"runs and halves of {_listed(self.halved)}"
         return f"left-out {what} {self.after_n:.4g} {unit}"
 
-    def lacking(self, unit: str) -> str:
+    def describe_gain(self, unit: str) -> str:
         """Describe the held-out error and the share of the gain in the predictive density."""
-        return f"{self.said(unit)}, {self.density:.0%} of the gain in their log density"
+        return f"{self.describe(unit)}, {self.density:.0%} of the gain in their log density"
 
 
 def _unit_ratios(
@@ -190,7 +190,7 @@ def _listed(names: Collection[str]) -> str:
     return first if not more else f"{first} and {len(more)} more"
 
 
-def left_out_confirms(
+def held_out_runs_confirm(
     evidence: float,
     density: float,
     gained_share: float,

@@ -153,9 +153,10 @@ def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> l
         return []
     ranked = list(found.by_run)[:NAMED]
     first, others = ranked[0], [n for n in ranked[1:] if found.by_run[n] > policy.constancy_ratio]
+    step = run_specific_step(problem, solution, first)
     where = (
         f"the runs ask for parameters that differ: run {first} asks for "
-        f"{own_step(problem, solution, first)} ({found.by_run[first]:.0f} times as much as by "
+        f"{step} ({found.by_run[first]:.0f} times as much as by "
         "chance); check its load, zero and temperature"
     )
     if others:
@@ -164,7 +165,7 @@ def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> l
     return [Remainder("parameters", where, share)]
 
 
-def own_step(problem: Problem, solution: Solution, run: str) -> str:
+def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
     """Describe the run-specific parameter with the largest gain for one run.
 
     The difference is that of one Gauss-Newton step of this parameter alone.

@@ -88,7 +88,7 @@ def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bo
     return bool(samples.rms(ways) < campaign.steps_rms_n(simpler.rms_n))
 
 
-def evidence_alone(
+def evidence_on_common_samples(
     candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
 ) -> float:
     """Evidence for the richer of two models, with the simpler one fitted to the same samples.
@@ -136,9 +136,11 @@ def swap_cost(
     if not many_peaks(effects):
         # With many peaks, a step from one peak does not predict another.
         looked = candidates.look(effects, near)
-        could_gain = policy.foreseen * looked.promised - likelihood_gain(looked.found(), near)
-        if cost(looked.found()) - share * could_gain >= policy.contender:
-            return cost(looked.found())
+        could_gain = policy.foreseen * looked.promised - likelihood_gain(
+            looked.current_solution(), near
+        )
+        if cost(looked.current_solution()) - share * could_gain >= policy.contender:
+            return cost(looked.current_solution())
     first = cost(candidates.rank(effects, near))
     if first >= policy.contender:
         return first
@@ -148,4 +150,4 @@ def swap_cost(
         return float("inf")
     # An effect without evidence of its own replaces nothing: its fit may be better only because it
     # uses fewer samples.
-    return cost(solution if evidence_alone(candidates, solution, near) > 0.0 else near)
+    return cost(solution if evidence_on_common_samples(candidates, solution, near) > 0.0 else near)

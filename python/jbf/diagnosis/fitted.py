@@ -59,7 +59,7 @@ class Fitted:
     held_out: list[HeldOutPart] = field(default_factory=list)
     halves: dict[tuple[int, bool], list[HeldOutPart]] = field(default_factory=dict)
 
-    def found(self) -> Solution:
+    def current_solution(self) -> Solution:
         """The present solution."""
         assert self.solution is not None
         return self.solution
@@ -72,4 +72,4 @@ class Fitted:
 
     def named_values(self) -> dict[str, float]:
         """Parameter values by name."""
-        return dict(zip(self.problem.names, self.found().values.tolist(), strict=True))
+        return dict(zip(self.problem.names, self.current_solution().values.tolist(), strict=True))

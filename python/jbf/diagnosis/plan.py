@@ -144,7 +144,7 @@ def plan(
     named = [replace(run, name=f"{i}") for i, (_, run) in enumerate(few)]
     candidates = as_recorded(model, named, noise_n, policy)
     effects = _effects(candidates, model)
-    told = [_told(candidates, model, effects, run, noise_n) for _, run in motions]
+    told = [_motion_information(candidates, model, effects, run, noise_n) for _, run in motions]
     own = len(candidates.fitted(model.effects).problem.open)
     prices = np.array([price_of(candidates, max(len(e.problem.open) - own, 1)) for e in effects])
     chosen = _chosen(told, own, prices, count)
@@ -165,19 +165,19 @@ def _effects(candidates: Candidates, model: Model) -> list[Strength]:
     return found
 
 
-def _told(
+def _motion_information(
     candidates: Candidates, model: Model, effects: Sequence[Strength], run: Run, noise_n: float
 ) -> Array:
     """Information of a motion about the p parameters and the e effects, shape (p + e, p + e)."""
     fitted = candidates.fitted(model.effects)
-    problem, values = fitted.problem, fitted.found().values
+    problem, values = fitted.problem, fitted.current_solution().values
     motion = core_motion(model.rig, run, known_motion(run, model.rig.radius_m))
     ((friction, slopes),) = problem.chain.jacobian(values, [motion], problem.open)
     scale = np.where(problem.log, values, 1.0)[problem.open]
     changes = [e.problem.chain.predict(e.values(1.0), [motion])[0] - friction for e in effects]
     rows = np.column_stack([slopes * scale, *changes])
     # In an autocorrelated residual a sample carries less information.
-    rows *= np.sqrt(effective_share(fitted.found())) / noise_n
+    rows *= np.sqrt(effective_share(fitted.current_solution())) / noise_n
     told: Array = rows.T @ rows
     return told
 
@@ -188,7 +188,8 @@ def _chosen(told: Sequence[Array], own: int, prices: Array, count: int) -> list[
     whole = np.zeros_like(told[0])
     for _ in range(count):
         worth = [
-            _worth(whole + one, own, prices) + _least_worth([*chosen, k], told, own, prices)
+            _design_criterion(whole + one, own, prices)
+            + _criterion_without_best([*chosen, k], told, own, prices)
             for k, one in enumerate(told)
         ]
         best = int(np.argmax(worth))
@@ -197,13 +198,15 @@ def _chosen(told: Sequence[Array], own: int, prices: Array, count: int) -> list[
     return chosen
 
 
-def _least_worth(chosen: Sequence[int], told: Sequence[Array], own: int, prices: Array) -> float:
+def _criterion_without_best(
+    chosen: Sequence[int], told: Sequence[Array], own: int, prices: Array
+) -> float:
     """Criterion of motions without the most informative one."""
     whole = np.sum([told[k] for k in chosen], axis=0)
-    return min(_worth(whole - told[k], own, prices) for k in set(chosen))
+    return min(_design_criterion(whole - told[k], own, prices) for k in set(chosen))
 
 
-def _worth(told: Array, own: int, prices: Array) -> float:
+def _design_criterion(told: Array, own: int, prices: Array) -> float:
     """Design criterion: sum of log information of each effect in multiples of its threshold.
 
     The information excludes the part shared with the law and with the most similar effect.

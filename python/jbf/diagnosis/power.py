@@ -23,11 +23,11 @@ from scipy import optimize
 
 from jbf.diagnosis.alone import (
     Change,
-    chance_apart,
-    chance_found,
-    left_apart,
-    times_alone,
-    worth,
+    bounded_square,
+    detection_probability,
+    distinction_factor,
+    distinction_probability,
+    distinguishable_size,
 )
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
@@ -128,7 +128,7 @@ def power(
         if (model := strength_of(candidates, present, name)) is not None
     }
     found = side_by_side(
-        lambda model: _Seen.of(candidates, runs, model),
+        lambda model: _Detectable.of(candidates, runs, model),
         list(models.values()),
         fits_at_once(candidates.campaign, candidates.law, candidates.names),
     )
@@ -137,7 +137,7 @@ def power(
 
 
 @dataclass(frozen=True)
-class _Seen:
+class _Detectable:
     """Detectable strength of an effect, in multiples of its usual strength, and its change there.
 
     Attributes
@@ -155,23 +155,25 @@ class _Seen:
     share: float
 
     @classmethod
-    def of(cls, candidates: Candidates, runs: RunsAtHand, model: Strength) -> _Seen:
+    def of(cls, candidates: Candidates, runs: RunsAtHand, model: Strength) -> _Detectable:
         price = price_of(candidates, _parameters(runs.base, model))
         counts = runs.counts(runs.shown(runs.change(model, 1.0))[:, 0])
         parameters = _parameters(runs.base, model)
         least = [non_centrality(price, parameters, p, counts) for p in LEVELS]
-        found = _found(runs, model, least)
+        found = _required_multiples(runs, model, least)
         if np.isfinite(found[1]):
             left = runs.not_forgiven(runs.change(model, BEYOND * found[1]))
             if left < NEARLY_ALL:
                 near = (found[0] if np.isfinite(found[0]) else 1.0) / float(np.sqrt(left))
-                found = _found(runs, model, [wanted / left for wanted in least], near)
+                found = _required_multiples(runs, model, [wanted / left for wanted in least], near)
         at = found[0] if np.isfinite(found[0]) else 1.0
         share = runs.samples.rms(runs.change(model, at)) / max(runs.friction_n, 1e-300)
         return cls(tuple(found), _change(runs, model, at), share)
 
 
-def _found(runs: RunsAtHand, model: Strength, least: list[float], near: float = 1.0) -> list[float]:
+def _required_multiples(
+    runs: RunsAtHand, model: Strength, least: list[float], near: float = 1.0
+) -> list[float]:
     """Multiples of the usual strength that give each of the required non-centralities."""
     found, times, last = [], near, least[0]
     for wanted in least:
@@ -205,11 +207,11 @@ def non_centrality(
     """
     prices = price / np.array(counts)
 
-    def lacking(root: float) -> float:
-        return float(np.mean(chance_found(prices, parameters, root**2))) - chance
+    def surplus(root: float) -> float:
+        return float(np.mean(detection_probability(prices, parameters, root**2))) - chance
 
     top = float(np.sqrt(np.max(prices))) + 10.0
-    return float(optimize.brentq(lacking, 1e-3, top)) ** 2
+    return float(optimize.brentq(surplus, 1e-3, top)) ** 2
 
 
 def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> float:
@@ -222,7 +224,7 @@ def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> fl
     little, enough = 0.0, np.inf
     power, before = 2.0, None
     for _ in range(LOOKS):
-        told = max(worth(runs.shown(runs.change(model, times))), 1e-300)
+        told = max(bounded_square(runs.shown(runs.change(model, times))), 1e-300)
         if before is not None and told != before[1] and times != before[0]:
             # Exponent observed between the last two strengths.
             grown = np.log(told / before[1]) / np.log(times / before[0])
@@ -265,7 +267,7 @@ def _power(
     candidates: Candidates,
     runs: RunsAtHand,
     models: dict[str, Strength],
-    seen: dict[str, _Seen],
+    seen: dict[str, _Detectable],
     name: str,
 ) -> Power:
     """Power for one effect, relative to the changes of all other effects."""
@@ -283,17 +285,17 @@ def _power(
             if other != name:
                 dearer = price - price_of(candidates, _parameters(runs.base, models[other]))
                 least = max(tie + dearer, 0.25 * tie)
-                rivals[other] = (left_apart(own.change, rival.change, runs), least)
-        told = {other: chance_apart(*rival) for other, rival in rivals.items()}
+                rivals[other] = (distinguishable_size(own.change, rival.change, runs), least)
+        told = {other: distinction_probability(*rival) for other, rival in rivals.items()}
         like = sorted((o for o, chance in told.items() if chance < LEVELS[0]), key=told.__getitem__)
         found = (price, parameters, non_centrality(price, parameters, LEVELS[0]))
-        most = times_alone(*found, rivals, LEVELS[0])
+        most = distinction_factor(*found, rivals, LEVELS[0])
         for _ in range(LOOKS_ALONE):
             if not 1.0 + AGREES < most < np.inf:
                 break
             before = most
             rivals |= _further(runs, models, seen, name, most, {o: rivals[o][1] for o in like})
-            most = times_alone(*found, rivals, LEVELS[0])
+            most = distinction_factor(*found, rivals, LEVELS[0])
             if abs(np.log(most / before)) < AGREES:
                 break
     return Power(
@@ -313,7 +315,7 @@ def _power(
 def _further(
     runs: RunsAtHand,
     models: dict[str, Strength],
-    seen: dict[str, _Seen],
+    seen: dict[str, _Detectable],
     name: str,
     times: float,
     rivals: dict[str, float],
@@ -336,7 +338,7 @@ def _further(
         if own.change.shares is None and rival.change.shares is None:
             continue
         at = rival.times[0] if np.isfinite(rival.times[0]) else 1.0
-        left = left_apart(there, _change(runs, models[other], times * at), runs)
+        left = distinguishable_size(there, _change(runs, models[other], times * at), runs)
         again[other] = (left / times, least)
     return again
 

@@ -23,7 +23,7 @@ from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import remainder_of, select, step
 from jbf.diagnosis.selection import Names, start_model, weights
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
-from jbf.diagnosis.unseen import propose_to_see, unseen
+from jbf.diagnosis.unseen import propose_to_see, undetectable_effects
 from jbf.diagnosis.verdict import verdict
 from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
@@ -243,7 +243,7 @@ def _with_law(
     tied = {name: others for name, others in equal.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))
     strengths = () if remains else power(candidates, present)
-    hidden = unseen(candidates, present, strengths)
+    hidden = undetectable_effects(candidates, present, strengths)
     instead = None
     if given and (len(missing) > 1 or remains):
         instead = simpler_law(candidates, kept, clock)

@@ -67,7 +67,7 @@ def find_ripples(
     prepared = campaign.prepared
     if campaign.rig.bearing is not None or len(prepared) < LEAST_RUNS:
         return []
-    ways = [_way(p) for p in prepared]
+    ways = [_travel(p) for p in prepared]
     turned = [np.sign(p.motion.velocity_m_s) for p in prepared]
     found: list[Remainder] = []
     for along in (False, True):
@@ -100,7 +100,7 @@ def _is_a_tone(
     return period is not None and _waves(times, residuals, samples, period)[0] > AS_MUCH * share
 
 
-def _way(p: Prepared) -> Array:
+def _travel(p: Prepared) -> Array:
     """Travel since the start of a run, m (for a joint rad)."""
     found: Array = p.motion.angle_rad - p.motion.angle_rad[0]
     return found
@@ -140,10 +140,10 @@ def _pitch(
     if chance[k] * band.sum() > policy.tone_chance:
         return None
     pitch = 1.0 / float(waves[k])
-    return pitch if _in_most(ways, innovations, samples, pitch) else None
+    return pitch if _in_weaker_runs(ways, innovations, samples, pitch) else None
 
 
-def _in_most(
+def _in_weaker_runs(
     ways: Sequence[Array], innovations: Sequence[Array], samples: Samples, pitch: float
 ) -> bool:
     """Whether the weaker two thirds of the runs also show the ripple significantly."""

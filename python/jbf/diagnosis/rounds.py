@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import evidence, evidence_alone, full_gain
+from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.diagnosis.ledger import Extrapolation, Remainder, Step, Trial
 from jbf.diagnosis.remainder import find_remainder
 from jbf.diagnosis.selection import (
@@ -99,7 +99,9 @@ def select(candidates: Candidates) -> Selected:
             grown = _pair(candidates, present, found)
         if frozenset(grown) in visited:
             if found.leader is not None and len(present) >= policy.most_effects:
-                refused: tuple[Remainder, ...] = (_one_more(candidates, present, found.leader),)
+                refused: tuple[Remainder, ...] = (
+                    _effect_limit_reached(candidates, present, found.leader),
+                )
             else:
                 refused = _refused(candidates, present)
             return Selected(candidates, present, steps, refused)
@@ -185,7 +187,7 @@ def _promising(candidates: Candidates, present: Names) -> list[str]:
     return sorted(finite, key=lambda name: -scores[name])[: candidates.policy.paired]
 
 
-def _one_more(candidates: Candidates, present: Names, leader: str) -> Remainder:
+def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -> Remainder:
     """Report as residual structure that the maximum number of effects was reached with a leader."""
     base, richer = candidates.converge(present), candidates.converge((*present, leader))
     unit = candidates.campaign.rig.quantities.force
@@ -229,18 +231,20 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     Improvements next to the instants at which friction jumps are not counted. They can be due to a
     clock error of less than a sample that differs between runs.
     """
-    policy, fitted = candidates.policy, candidates.one_more(present)
+    policy, fitted = candidates.policy, candidates.fitted_extensions(present)
     base = candidates.converge(present)
     # Exclude the samples that a delay would move, as in the fit of the delay itself.
     delay = fitted.get(DELAY)
-    away = base.samples if delay is None else delay.found().samples
+    away = base.samples if delay is None else delay.current_solution().samples
     found = []
     for name, problem in fitted.items():
-        richer = problem.found()
+        richer = problem.current_solution()
         samples = common_samples(richer.samples, away)
         with_it, without = (replace(s, samples=samples) for s in (richer, base))
         better = with_it.rms_n < policy.refused_rms * without.rms_n
-        gains = evidence_alone(candidates, with_it, without, anywhere=True) > policy.weak
+        gains = (
+            evidence_on_common_samples(candidates, with_it, without, anywhere=True) > policy.weak
+        )
         if better and gains:
             found.append((richer.rms_n, name))
     if not found:

@@ -18,7 +18,7 @@ from scipy import special
 from jbf.diagnosis.candidates import Candidates, many_peaks
 from jbf.diagnosis.evidence import (
     evidence,
-    evidence_alone,
+    evidence_on_common_samples,
     full_gain,
     price_of,
     swap_cost,
@@ -100,7 +100,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     unconfirmed: set[str] = set()
     bare = base.rms_n
     least = min((r.solution.rms_n for r in ranked if r.evidence > 0), default=bare)
-    for found in sorted(ranked, key=lambda r: _leaves_more(r, least, policy)):
+    for found in sorted(ranked, key=lambda r: _has_larger_rms(r, least, policy)):
         name, gain = found.effect, found.evidence
         rms = min(found.solution.rms_n, bare)
         outcome: Outcome
@@ -116,19 +116,20 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             reason = f"could have {max(found.most, 0.0):.0f} in evidence at most: not followed"
         elif gain > 0 and leader is None:
             out = candidates.confirmation(present, name)
-            alone = evidence_alone(candidates, found.solution, base)
+            alone = evidence_on_common_samples(candidates, found.solution, base)
             if alone <= 0.0:
                 gain, reason = alone, "gains by the samples that it sets aside, not by itself"
             elif out.confirms(gain, bare**2 - rms**2, policy):
-                if _found_its_way(candidates, present, name, base):
+                if _gain_is_from_local_minimum(candidates, present, name, base):
                     return try_candidates(candidates, present, follow)
                 leader, best = name, gain
-                outcome, reason = "added", f"largest evidence; {out.said(unit)}"
+                outcome, reason = "added", f"largest evidence; {out.describe(unit)}"
             else:
                 outcome = "rejected"
-                reason = f"fits better but predicts left-out runs no better ({out.lacking(unit)})"
+                held_out = out.describe_gain(unit)
+                reason = f"fits better but predicts left-out runs no better ({held_out})"
                 unconfirmed.add(name)
-        elif gain > 0 and _leaves_more(found, least, policy):
+        elif gain > 0 and _has_larger_rms(found, least, policy):
             outcome, reason = "rejected", f"leaves {rms:.3g} {unit} where {leader} does not"
         elif gain > 0 and gain > best - policy.tie:
             outcome, reason = "ties", f"fits as well as {leader}"
@@ -163,9 +164,8 @@ def _by_units(
         if gains[name] > 0.0 and units_confirm(candidates, present, name):
             out = candidates.confirmation(present, name)
             unit = candidates.campaign.rig.quantities.force
-            reason = (
-                f"{out.units} units are predicted better, p = {out.chance:.1g}; {out.said(unit)}"
-            )
+            better = f"{out.units} units are predicted better, p = {out.chance:.1g}"
+            reason = f"{better}; {out.describe(unit)}"
             added = [
                 replace(t, outcome="added", reason=reason) if t.effect == name else t
                 for t in trials
@@ -189,7 +189,9 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
     return gains and units_confirm(candidates, rest, name)
 
 
-def _found_its_way(candidates: Candidates, present: Names, name: str, base: Solution) -> bool:
+def _gain_is_from_local_minimum(
+    candidates: Candidates, present: Names, name: str, base: Solution
+) -> bool:
     """Whether the model without an effect improves when refitted from the fit with the effect.
 
     If so, the gain came from leaving a local minimum and not from the effect.
@@ -198,7 +200,7 @@ def _found_its_way(candidates: Candidates, present: Names, name: str, base: Solu
     return likelihood_gain(better, base) > candidates.policy.contender
 
 
-def _leaves_more(found: Ranked, least_n: float, policy: Policy) -> bool:
+def _has_larger_rms(found: Ranked, least_n: float, policy: Policy) -> bool:
     """Whether a candidate has a much larger RMS than another one that also has evidence."""
     return found.solution.rms_n > policy.leader_rms * least_n
 
@@ -218,7 +220,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     # In a smooth residual a sample carries less information, and any candidate gains a little.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
     first = dict.fromkeys(rivals, -np.inf)
-    behind = _left_behind(candidates, present, shown, base) if follow == "promising" else {}
+    behind = _cannot_reach_leader(candidates, present, shown, base) if follow == "promising" else {}
     followed = [name for name in shown if name not in behind]
     candidates.rank_all([(*present, name) for name in followed], base)
     for name in followed:
@@ -228,7 +230,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     for name in rivals:
         effects = (*present, name)
         if name in behind:
-            solution = candidates.look(effects, base).found()
+            solution = candidates.look(effects, base).current_solution()
         elif first[name] == -np.inf:
             solution = base
         else:
@@ -253,7 +255,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     return sorted(found, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
 
 
-def _left_behind(
+def _cannot_reach_leader(
     candidates: Candidates, present: Names, shown: Sequence[str], base: Solution
 ) -> dict[str, float]:
     """Candidates that could not reach the leader after a few steps, with their largest evidence."""
@@ -261,9 +263,11 @@ def _left_behind(
     candidates.look_all([(*present, name) for name in shown], base)
     looked = {name: candidates.look((*present, name), base) for name in shown}
     most = {name: policy.foreseen * fitted.promised for name, fitted in looked.items()}
-    gained = {name: likelihood_gain(looked[name].found(), base) for name in shown}
+    gained = {name: likelihood_gain(looked[name].current_solution(), base) for name in shown}
     ahead = sorted(shown, key=lambda name: -gained[name])[:AHEAD]
-    leads = max((evidence(candidates, looked[n].found(), base) for n in ahead), default=0.0)
+    leads = max(
+        (evidence(candidates, looked[n].current_solution(), base) for n in ahead), default=0.0
+    )
     line = policy.close * max(leads, 0.0) - policy.contender
     return {name: gain for name, gain in most.items() if gain < line}
 

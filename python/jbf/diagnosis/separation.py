@@ -38,7 +38,7 @@ class Rival:
     """A fitted model and the information of the present runs about its parameters."""
 
     def __init__(self, fitted: Fitted) -> None:
-        self.problem, self.solution = fitted.problem, fitted.found()
+        self.problem, self.solution = fitted.problem, fitted.current_solution()
         r, j = self.solution.stacked()
         self.noise_n = float(np.sqrt(r @ r / max(len(r) - j.shape[1], 1)))
         self.known: Array = np.asarray(np.linalg.qr(j, mode="r"), dtype=np.float64)

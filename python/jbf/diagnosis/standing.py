@@ -16,7 +16,7 @@ from jbf.diagnosis.constancy import disagreement
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.machine import machine_of
-from jbf.diagnosis.verdict import name_stands
+from jbf.diagnosis.verdict import name_is_supported
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 
 Names = tuple[str, ...]
@@ -48,7 +48,7 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
         beyond = own.gain - own.degrees if own.beyond_chance(policy) else None
         explained = 1.0 - (whole.rms_n / rest.rms_n) ** 2
         weak = gain - price_of(candidates, whole.free - rest.free) <= policy.weak
-        if (weak and explained < largest) or not name_stands(gain, beyond, policy):
+        if (weak and explained < largest) or not name_is_supported(gain, beyond, policy):
             found.append(name)
     return tuple(found)
 

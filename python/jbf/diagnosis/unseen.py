@@ -30,7 +30,7 @@ STRENGTHS = (0.6, 1.0, 1.5)
 """Multiples of the usual strength that are taken as equally likely."""
 
 
-def unseen(candidates: Candidates, present: Names, powers: Iterable[Power]) -> Names:
+def undetectable_effects(candidates: Candidates, present: Names, powers: Iterable[Power]) -> Names:
     """Candidates that are not detectable in these runs at their usual strength.
 
     The law's own parameters can absorb them, the noise covers them, or they show only in samples

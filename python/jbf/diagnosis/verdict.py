@@ -28,7 +28,7 @@ def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
     return "missing" if effects else "adequate"
 
 
-def name_stands(gain: float, disagreement: float | None, policy: Policy) -> bool:
+def name_is_supported(gain: float, disagreement: float | None, policy: Policy) -> bool:
     """Whether an effect is named although structure remains.
 
     An effect is judged by its own evidence, independently of other structure. A confounder,

@@ -48,24 +48,24 @@ class LatenessStep:
         Additional delay of each run, s, shape (m,); zero where it is not identifiable.
     covariance_s2
         Covariance of the identifiable delays, s^2, from the variance of the residual.
-    told
+    determined
         Whether each delay is identifiable within `LINEAR_S`, shape (m,).
     """
 
     late_s: Array
     covariance_s2: Array
-    told: npt.NDArray[np.bool_]
+    determined: npt.NDArray[np.bool_]
 
     @property
     def square(self) -> float:
         """Square of the step in units of its covariance (Wald statistic)."""
-        late = self.late_s[self.told]
+        late = self.late_s[self.determined]
         return float(late @ np.linalg.lstsq(self.covariance_s2, late, rcond=RANK)[0])
 
     @property
     def chance(self) -> float:
         """P-value of the step if every force is compared without an additional delay."""
-        count = int(np.sum(self.told))
+        count = int(np.sum(self.determined))
         return float(special.chdtrc(count, self.square)) if count else 1.0
 
     def differ_chance(self, late_s: Array) -> float:
@@ -76,19 +76,19 @@ class LatenessStep:
         late_s
             Delays of the runs applied before this step, s, shape (m,).
         """
-        count = int(np.sum(self.told))
+        count = int(np.sum(self.determined))
         if count < 2:
             return 1.0
         inverse = np.linalg.pinv(self.covariance_s2, rcond=RANK, hermitian=True)
-        late = (late_s + self.late_s)[self.told]
+        late = (late_s + self.late_s)[self.determined]
         late -= np.sum(inverse @ late) / np.sum(inverse)
         return float(special.chdtrc(count - 1, float(late @ inverse @ late)))
 
     def mean_s(self, late_s: Array) -> float:
         """Mean of the identifiable delays, weighted by their inverse variance, s."""
-        if not np.any(self.told):
+        if not np.any(self.determined):
             return 0.0
-        return float(np.average(late_s[self.told], weights=1.0 / np.diag(self.covariance_s2)))
+        return float(np.average(late_s[self.determined], weights=1.0 / np.diag(self.covariance_s2)))
 
 
 @dataclass(frozen=True)
@@ -120,8 +120,10 @@ def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
     own = [k for k, i in enumerate(problem.open) if problem.names[i] != DELAY]
     late, of_late = _step(problem, solution, own, "by run")
     # An exact fit gives no variance.
-    told = (np.diag(of_late) > 0.0) & (np.diag(of_late) < LINEAR_S**2)
-    return LatenessStep(np.where(told, late, 0.0), of_late[np.ix_(told, told)], told)
+    determined = (np.diag(of_late) > 0.0) & (np.diag(of_late) < LINEAR_S**2)
+    return LatenessStep(
+        np.where(determined, late, 0.0), of_late[np.ix_(determined, determined)], determined
+    )
 
 
 def delay_step(problem: Problem, solution: Solution) -> tuple[float, float]:
@@ -149,8 +151,8 @@ def drift_step(problem: Problem, solution: Solution, beside_delay: bool = False)
     clocks: Clocks = "one, delay" if beside_delay and DELAY not in problem.names else "one"
     late, of_late = _step(problem, solution, list(range(len(problem.open))), clocks)
     longest_s = max(p.run.duration_s for p in problem.campaign.prepared)
-    told = 0.0 < of_late[0, 0] * longest_s**2 < LINEAR_S**2
-    return DriftStep(float(late[0]), float(of_late[0, 0])) if told else DriftStep(0.0, np.inf)
+    determined = 0.0 < of_late[0, 0] * longest_s**2 < LINEAR_S**2
+    return DriftStep(float(late[0]), float(of_late[0, 0])) if determined else DriftStep(0.0, np.inf)
 
 
 def delay_slope(problem: Problem, values: Array, prepared: Prepared) -> Array:

@@ -11,7 +11,12 @@ from by_hand import Friction, coulomb, four_runs
 from campaigns import campaign as simulated
 from conftest import LAW as JOURNAL_LAW
 from jbf import Rig, Run
-from jbf.diagnosis.constancy import Disagreement, disagreement, find_disagreement, own_step
+from jbf.diagnosis.constancy import (
+    Disagreement,
+    disagreement,
+    find_disagreement,
+    run_specific_step,
+)
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
@@ -186,7 +191,7 @@ def test_deviation_of_a_positive_parameter_is_reported_in_percent(more: float, w
     """Estimates to first order in the logarithm: dry friction of 6 N or 4 N, and the common fit."""
     problem, solution = solved(lambda t, v, a: coulomb(t, v, a) + more * np.sign(v), 1e-6)
     common = dict(zip(problem.names, solution.values, strict=True))["F_c_n"]
-    (change,) = numbers_in(rf"^F_c_n (\S+) % {words}", own_step(problem, solution, "d"))
+    (change,) = numbers_in(rf"^F_c_n (\S+) % {words}", run_specific_step(problem, solution, "d"))
     expected = 100.0 * abs(np.expm1((5.0 + more) / common - 1.0))
     assert change == pytest.approx(expected, abs=0.051)
 
@@ -205,7 +210,7 @@ def test_parameter_change_over_twentyfold_is_reported_as_many_times(step: float,
     """The search variable is the logarithm of the dry friction of 5 N."""
     orthogonal = ALTERNATING - np.mean(ALTERNATING)
     residuals = [orthogonal + step * 5.0 * LEVEL, orthogonal]
-    words = own_step(*solution_with(one_way(2), residuals), "a")
+    words = run_specific_step(*solution_with(one_way(2), residuals), "a")
     assert words.startswith("F_c_n")
     assert size in words
     assert ("many times" in words) == (size != "%")

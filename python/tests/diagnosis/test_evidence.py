@@ -7,7 +7,7 @@ import pytest
 from by_hand import assert_recovered, coulomb, four_runs
 from jbf import Diagnosis, Rig, Run
 from jbf.diagnosis import Trial
-from jbf.diagnosis.evidence import evidence, evidence_alone, price_of
+from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, price_of
 from jbf.diagnosis.level import score_test
 from jbf.diagnosis.selection import weights
 from jbf.estimation.campaign import Campaign
@@ -157,11 +157,15 @@ def test_gain_from_samples_that_an_effect_excludes_is_not_its_evidence() -> None
         cost=fewer.cost(right.residuals, WHITE),
     )
     assert evidence(candidates, rich, simple) > 60.0
-    assert evidence_alone(candidates, rich, simple) < 0.0
+    assert evidence_on_common_samples(candidates, rich, simple) < 0.0
     # The gain counts if both models use the same samples.
     cost = simple.samples.cost(right.residuals, WHITE)
     same = replace(rich, samples=simple.samples, cost=cost)
-    assert evidence_alone(candidates, same, simple) == evidence(candidates, same, simple) > 60.0
+    assert (
+        evidence_on_common_samples(candidates, same, simple)
+        == evidence(candidates, same, simple)
+        > 60.0
+    )
 
 
 @pytest.mark.parametrize(("step_n", "counts"), [(0.0, True), (0.6, False)])
@@ -190,7 +194,7 @@ def test_fit_far_from_its_minimum_is_improved_from_a_richer_model() -> None:
     fitted = candidates.fitted(("inertia_leak",))
     values = np.where(np.array(fitted.problem.names) == "inertia_leak.m_e_kg", 0.0, best.values)
     fitted.improve(fitted.problem.solution(values, best.samples, best.noise))
-    assert fitted.found().cost > best.cost + 50.0
+    assert fitted.current_solution().cost > best.cost + 50.0
     found = candidates.refit_from(("inertia_leak",), rich.effects)
     assert found.cost == pytest.approx(best.cost, abs=0.5)
     assert candidates.converge(("inertia_leak",)) is found

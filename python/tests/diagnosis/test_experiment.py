@@ -19,7 +19,7 @@ from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power import power
 from jbf.diagnosis.separation import MOST_SAMPLES, Rival, filled_limits, motions, played
 from jbf.diagnosis.strength import strength_of
-from jbf.diagnosis.unseen import STRENGTHS, chance_to_name, propose_to_see, unseen
+from jbf.diagnosis.unseen import STRENGTHS, chance_to_name, propose_to_see, undetectable_effects
 from jbf.estimation.campaign import Campaign
 from linear_campaigns import coulomb_candidates, coulomb_run
 from rigsim.motions import Motion, polyline, sine, sweep
@@ -180,7 +180,7 @@ def test_inertia_that_slow_sweeps_do_not_show_is_named_with_the_proposed_run() -
 def hidden(noise_n: float) -> tuple[str, ...]:
     """Effects that these runs cannot show at their usual strength."""
     tried = no_effect(noise_n)
-    return unseen(tried, (), power(tried, ()))
+    return undetectable_effects(tried, (), power(tried, ()))
 
 
 def test_offset_is_reported_as_hidden_if_noise_exceeds_its_detection_level() -> None:
@@ -200,10 +200,10 @@ def test_effect_that_changes_no_prediction_is_not_reported_as_hidden() -> None:
     tried = no_effect()
     powers = power(tried, ())
     assert "torque_proportional" in {p.effect for p in powers if p.hidden}
-    found = unseen(tried, (), powers)
+    found = undetectable_effects(tried, (), powers)
     assert "torque_proportional" not in found
     assert {"presliding", "dwell_stiction"} <= set(found)
-    assert unseen(tried, (), []) == ()
+    assert undetectable_effects(tried, (), []) == ()
 
 
 @pytest.mark.parametrize("evidence", [0.0, 10.0, 40.0, 200.0])

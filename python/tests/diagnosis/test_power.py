@@ -11,11 +11,11 @@ from jbf import Run
 from jbf.diagnosis.alone import (
     NEVER,
     Change,
-    chance_apart,
-    chance_found,
-    left_apart,
-    times_alone,
-    worth,
+    bounded_square,
+    detection_probability,
+    distinction_factor,
+    distinction_probability,
+    distinguishable_size,
 )
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, price_of
@@ -144,13 +144,13 @@ def test_distinguishable_strength_is_that_of_a_regression_on_law_and_rival() -> 
     alone = residual_norm(change) / NOISE_N
     apart = residual_norm(change, 5.0 + 20.0 * change) / NOISE_N
 
-    def lacking(strength: float) -> float:
+    def surplus(strength: float) -> float:
         gains = stats.ncx2.sf(price(), 1, (strength * alone) ** 2)
         unexplained = strength * apart
         margin = (unexplained**2 - DEFAULT.tie) / (2.0 * unexplained)
         return float(gains * stats.norm.cdf(margin)) - 0.8
 
-    assert found.alone_80 == pytest.approx(optimize.brentq(lacking, 0.05, 5.0), rel=0.05)
+    assert found.alone_80 == pytest.approx(optimize.brentq(surplus, 0.05, 5.0), rel=0.05)
     assert found.alone_80 > 1.5 * found.found_80
 
 
@@ -210,13 +210,13 @@ SQUARE = non_centrality(PRICE, 1, CHANCE)
 def test_gain_over_a_rival_is_normally_distributed(unexplained: float, margin: float) -> None:
     """The variance of the difference of the gains is four times its mean."""
     expected = stats.norm.sf(margin, loc=unexplained**2, scale=2.0 * unexplained)
-    assert chance_apart(unexplained, margin) == pytest.approx(float(expected))
+    assert distinction_probability(unexplained, margin) == pytest.approx(float(expected))
 
 
 @pytest.mark.parametrize("parameters", [1, 3])
 def test_detection_probability_is_that_of_a_noncentral_chi_square(parameters: int) -> None:
     expected = stats.ncx2.sf([10.0, 30.0], parameters, 25.0)
-    assert chance_found(np.array([10.0, 30.0]), parameters, 25.0) == pytest.approx(
+    assert detection_probability(np.array([10.0, 30.0]), parameters, 25.0) == pytest.approx(
         expected, abs=1e-6
     )
 
@@ -224,7 +224,7 @@ def test_detection_probability_is_that_of_a_noncentral_chi_square(parameters: in
 @pytest.mark.parametrize("correlation", [0.3, 0.8, 0.9])
 def test_effect_of_distinguishable_strength_is_named_in_eighty_percent(correlation: float) -> None:
     size, unexplained = np.sqrt(SQUARE), np.sqrt(1.0 - correlation**2)
-    times = times_alone(PRICE, 1, SQUARE, {"rival": (size * unexplained, TIE)}, CHANCE)
+    times = distinction_factor(PRICE, 1, SQUARE, {"rival": (size * unexplained, TIE)}, CHANCE)
     draws = np.array([times * size, 0.0]) + np.random.default_rng(2).standard_normal((40_000, 2))
     own, rival = draws[:, 0] ** 2, (draws @ [correlation, unexplained]) ** 2
     alone = float(np.mean((own > PRICE) & (own - rival > TIE)))
@@ -233,11 +233,11 @@ def test_effect_of_distinguishable_strength_is_named_in_eighty_percent(correlati
 
 
 def test_distinguishable_strength_is_infinite_with_an_inseparable_rival_only() -> None:
-    assert times_alone(PRICE, 1, SQUARE, {}, CHANCE) == pytest.approx(1.0, abs=1e-6)
-    assert times_alone(PRICE, 1, SQUARE, {"rival": (100.0, TIE)}, CHANCE) < 1.01
+    assert distinction_factor(PRICE, 1, SQUARE, {}, CHANCE) == pytest.approx(1.0, abs=1e-6)
+    assert distinction_factor(PRICE, 1, SQUARE, {"rival": (100.0, TIE)}, CHANCE) < 1.01
     for unexplained in (0.0, 0.01):
         rivals = {"far": (100.0, TIE), "near": (unexplained, TIE)}
-        assert times_alone(PRICE, 1, SQUARE, rivals, CHANCE) == np.inf
+        assert distinction_factor(PRICE, 1, SQUARE, rivals, CHANCE) == np.inf
 
 
 def test_large_distinguishable_strength_depends_on_the_rival_only() -> None:
@@ -245,11 +245,13 @@ def test_large_distinguishable_strength_depends_on_the_rival_only() -> None:
     quantile = 2.0 * stats.norm.ppf(CHANCE)
     needed = 0.5 * (quantile + np.sqrt(quantile**2 + 4.0 * TIE))
     rivals = {"rival": (2.0 * needed / NEVER, TIE)}
-    assert times_alone(PRICE, 1, SQUARE, rivals, CHANCE) == pytest.approx(0.5 * NEVER, rel=0.01)
+    assert distinction_factor(PRICE, 1, SQUARE, rivals, CHANCE) == pytest.approx(
+        0.5 * NEVER, rel=0.01
+    )
 
 
 def test_square_of_a_change_is_clipped_at_three_sigma_per_sample() -> None:
-    assert worth(np.array([1.0, -2.0, 100.0])) == pytest.approx(1.0 + 4.0 + 9.0)
+    assert bounded_square(np.array([1.0, -2.0, 100.0])) == pytest.approx(1.0 + 4.0 + 9.0)
 
 
 def swings(velocity_noise: float = 0.0) -> Candidates:
@@ -273,8 +275,10 @@ def test_part_of_a_change_beyond_a_rival_is_a_regression_residual() -> None:
     rival = Change(first, None, at_hand.shown(first))
     design, target = at_hand.shown(first)[:, 0], at_hand.shown(mixed)[:, 0]
     residual = target - design * float(design @ target) / float(design @ design)
-    assert left_apart(own, rival, at_hand) == pytest.approx(np.sqrt(worth(residual)), rel=1e-6)
-    assert left_apart(own, own, at_hand) == pytest.approx(0.0, abs=1e-6)
+    assert distinguishable_size(own, rival, at_hand) == pytest.approx(
+        np.sqrt(bounded_square(residual)), rel=1e-6
+    )
+    assert distinguishable_size(own, own, at_hand) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None:
@@ -287,9 +291,11 @@ def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None
     own = Change(everywhere, None, at_hand.shown(everywhere))
     weighted = [c * s[:, None] for c, s in zip(everywhere, first_half, strict=True)]
     rival = Change(weighted, first_half, at_hand.shown(weighted))
-    assert left_apart(own, rival, at_hand) < 1e-4
-    assert left_apart(rival, own, at_hand) < 1e-4
-    assert left_apart(own, Change(weighted, None, at_hand.shown(weighted)), at_hand) > 10.0
+    assert distinguishable_size(own, rival, at_hand) < 1e-4
+    assert distinguishable_size(rival, own, at_hand) < 1e-4
+    assert (
+        distinguishable_size(own, Change(weighted, None, at_hand.shown(weighted)), at_hand) > 10.0
+    )
 
 
 @pytest.mark.parametrize("velocity_noise", [0.0, 1e-3])

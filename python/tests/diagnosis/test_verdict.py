@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from by_hand import Array
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.confirmation import Confirmation, left_out_confirms
+from jbf.diagnosis.confirmation import Confirmation, held_out_runs_confirm
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
-from jbf.diagnosis.verdict import name_stands, verdict
+from jbf.diagnosis.verdict import name_is_supported, verdict
 from linear_campaigns import coulomb_candidates, linear_diagnosis, reversing_runs
 
 OFFSET, DRIFT = "sensor_offset", "sensor_drift"
@@ -38,7 +38,7 @@ def test_verdict_for_each_case_of_effects_alternatives_and_structure(
 
 def test_effect_is_named_if_its_gain_exceeds_20_times_the_disagreement() -> None:
     for disagreement, named in ((None, True), (49.0, True), (50.0, False), (51.0, False)):
-        assert name_stands(1000.0, disagreement, DEFAULT) == named
+        assert name_is_supported(1000.0, disagreement, DEFAULT) == named
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_weak_evidence_requires_a_larger_held_out_gain_than_strong_evidence(
     evidence: float, gains: tuple[float, float, float], rms_ratio: float, confirmed: bool
 ) -> None:
     """Gains in predictive density and in mean square, and the share of improved runs."""
-    assert left_out_confirms(evidence, *gains, DEFAULT, rms_ratio) == confirmed
+    assert held_out_runs_confirm(evidence, *gains, DEFAULT, rms_ratio) == confirmed
 
 
 @pytest.mark.parametrize("gained_in_fit", [0.0, 1e-6, 1.0, 100.0])

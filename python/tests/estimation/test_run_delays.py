@@ -163,7 +163,7 @@ def test_delay_step_of_unidirectional_runs_solves_the_normal_equations() -> None
     t = [p.run.time_s for p in problem.campaign.prepared]
     columns = [-viscous * one_way_acceleration(i, t[i]) for i in range(3)]
     delays, covariance = regression(problem, solution, columns)
-    assert step.told.all()
+    assert step.determined.all()
     np.testing.assert_allclose(step.late_s, delays, atol=2e-5)
     np.testing.assert_allclose(step.late_s, (2e-3, -1e-3, 3e-3), atol=4e-4)
     np.testing.assert_allclose(step.covariance_s2, covariance, rtol=0.02, atol=1e-11)
@@ -201,7 +201,7 @@ def test_delay_or_drift_is_undetermined_beyond_the_linear_range(ratio: float, kn
     drift_sd = drift_step(problem, plain).variance ** 0.5 * 20.0
     scales = (ratio * LINEAR_S / sd for sd in (delay_sd, drift_sd))
     delay, drift = (replace(plain, residuals=[x * r for r in plain.residuals]) for x in scales)
-    assert lateness_step(problem, delay).told[0] == known
+    assert lateness_step(problem, delay).determined[0] == known
     assert np.isfinite(drift_step(problem, drift).variance) == known
 
 
@@ -211,7 +211,7 @@ def test_no_delay_is_determined_if_all_residuals_are_zero() -> None:
     assert np.all(np.isfinite(step.late_s))
     exact = replace(solution, residuals=[np.zeros(len(r)) for r in solution.residuals], noise=WHITE)
     step = lateness_step(problem, exact)
-    assert not np.any(step.told)
+    assert not np.any(step.determined)
     assert step.chance == 1.0
 
 

@@ -149,7 +149,7 @@ def _volume(found: Shifted) -> float:
     if found.drift != 0.0 or np.ptp(found.late_s) == 0.0:
         return 0.0
     step = lateness_step(found.problem, found.solution)
-    known = found.late_s[step.told]
+    known = found.late_s[step.determined]
     if len(known) < 2:
         return 0.0
     variance = float(np.var(known, ddof=1))

@@ -133,7 +133,7 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
     white = True
     for _ in range(STEPS):
         step = lateness_step(now.problem, now.solution)
-        if step.square <= SETTLED**2 * np.sum(step.told):
+        if step.square <= SETTLED**2 * np.sum(step.determined):
             if not white:
                 break
             white = False
@@ -143,7 +143,7 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
         known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
         later_s = np.clip(step.late_s, -LINEAR_S, LINEAR_S) + known.get(TAU, 0.0)
         late_s = now.late_s + later_s
-        late_s[~step.told] = step.mean_s(late_s)
+        late_s[~step.determined] = step.mean_s(late_s)
         apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
         if apart_s > RANGES[0][0] or not possible_clocks(first, late_s, start.drift):
             # Another deviation of one run (a mass) may appear as a delay of any size.

@@ -45,7 +45,7 @@ def run(
     hidden.model.save(out / "model.toml")
     hidden.report(out / "report.html")
     say("\n== 2. A motion that took no part ==\n")
-    say(_unseen(hidden, out / "hidden"))
+    say(_compare_on_new_motion(hidden, out / "hidden"))
     say("\n== 3. The same rig with nothing hidden ==\n")
     plain = _diagnosed(out / "plain", progress)
     step = plain.steps[-1]
@@ -72,7 +72,7 @@ def _diagnosed(folder: Path, progress: Progress | None) -> Diagnosis:
     return diagnose(read_rig(folder / "rig.toml"), read_runs(folder), progress=progress)
 
 
-def _unseen(diagnosis: Diagnosis, folder: Path) -> str:
+def _compare_on_new_motion(diagnosis: Diagnosis, folder: Path) -> str:
     """Compare the bare law and the completed one on a motion of another kind."""
     runs = read_runs(folder / "unseen")
     bare = compare(diagnosis.before.model, runs)

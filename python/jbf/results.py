@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def _asked(verb: str, result: object, *arguments: Any) -> Any:
+def _call_reporting(verb: str, result: object, *arguments: Any) -> Any:
     """Call a function of the reporting entry point."""
     return getattr(import_module("jbf.reporting.door"), verb)(result, *arguments)
 
@@ -29,7 +29,7 @@ class Shown:
     """Base of objects with a notebook representation."""
 
     def _repr_html_(self) -> str:
-        table: str = _asked("small_table", self)
+        table: str = _call_reporting("small_table", self)
         return table
 
 
@@ -38,7 +38,7 @@ class Result(Shown):
 
     def summary(self) -> str:
         """Return the result in words, as text for a terminal."""
-        text: str = _asked("summary", self)
+        text: str = _call_reporting("summary", self)
         return text
 
     def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
@@ -46,7 +46,7 @@ class Result(Shown):
 
         No window opens; ``axes[0].figure.savefig("a.png")`` writes it.
         """
-        drawn: Sequence[Axes] = _asked("plot", self, axes)
+        drawn: Sequence[Axes] = _call_reporting("plot", self, axes)
         return drawn
 
     def to_dict(self) -> dict[str, Any]:
@@ -67,7 +67,7 @@ class Result(Shown):
             raise InputError(
                 problem="a frame needs pandas, which is not installed", mend="pip install pandas"
             ) from None
-        return pandas.DataFrame(_asked("columns", self))
+        return pandas.DataFrame(_call_reporting("columns", self))
 
     def save_html(self, path: str | os.PathLike[str]) -> None:
         """Write a self-contained HTML page with plots, atomically.
@@ -77,8 +77,8 @@ class Result(Shown):
         InputError
             The file cannot be written.
         """
-        write_text(path, _asked("page", self))
+        write_text(path, _call_reporting("page", self))
 
     def __repr__(self) -> str:
-        line: str = _asked("short_words", self)
+        line: str = _call_reporting("short_words", self)
         return line

@@ -50,12 +50,14 @@ class Parser(argparse.ArgumentParser):
         Unknown options are reported before missing arguments.
         """
         words = sys.argv[1:] if args is None else list(args)
-        self._find_slips([word for word in self._own_words(words) if word.startswith("--")])
+        self._find_slips(
+            [word for word in self._words_before_subcommand(words) if word.startswith("--")]
+        )
         found, rest = super().parse_known_args(args, namespace)
         self._find_slips(rest)
         return found, rest
 
-    def _own_words(self, words: Sequence[str]) -> Iterator[str]:
+    def _words_before_subcommand(self, words: Sequence[str]) -> Iterator[str]:
         """Yield the words before a subcommand and before `--`."""
         below = [a.choices for a in self._actions if isinstance(a, argparse._SubParsersAction)]
         for word in words:
@@ -125,7 +127,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         Arguments without the program name. Default: those of the process.
     """
     if argv is None:
-        _own_process()
+        _configure_process()
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         code = _dispatch(arguments)
@@ -142,7 +144,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     return code
 
 
-def _own_process() -> None:
+def _configure_process() -> None:
     """Make the process robust against its environment.
 
     Only called if the process belongs to `jbf`.

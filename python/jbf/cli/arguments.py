@@ -58,7 +58,7 @@ def add_law_name(parser: Parser, default: str | None, does: str) -> None:
     parser.add_argument("--law", metavar="NAME", default=default, help=does)
 
 
-def add_own(parser: Parser) -> None:
+def add_effects_from(parser: Parser) -> None:
     """Add `--effects-from`."""
     parser.add_argument(
         "--effects-from",

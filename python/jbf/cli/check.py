@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jbf.cli import inputs, level, outputs
-from jbf.cli.arguments import Commands, add_json, add_own, add_runs, command
+from jbf.cli.arguments import Commands, add_effects_from, add_json, add_runs, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.cores import check_jobs, processes
@@ -44,7 +44,7 @@ def add(commands: Commands) -> None:
     )
     level.add(parser)
     add_json(parser)
-    add_own(parser)
+    add_effects_from(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from jbf.cli import inputs, outputs
-from jbf.cli.arguments import Commands, add_json, add_own, add_report, add_runs, command
+from jbf.cli.arguments import Commands, add_effects_from, add_json, add_report, add_runs, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.reporting.json import json_text
@@ -21,7 +21,7 @@ def add(commands: Commands) -> None:
     )
     add_json(parser)
     add_report(parser)
-    add_own(parser)
+    add_effects_from(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -7,7 +7,15 @@ import os
 from typing import TYPE_CHECKING
 
 from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs
-from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_report, add_runs, command
+from jbf.cli.arguments import (
+    Commands,
+    add_effects_from,
+    add_json,
+    add_law,
+    add_report,
+    add_runs,
+    command,
+)
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.errors import InputError, Stopped, Unfinished
@@ -31,7 +39,7 @@ def add(commands: Commands) -> None:
     add_report(parser)
     add_law(parser, also=f"; {AUTO}, which a drive takes: the one that alone predicts best")
     parser.set_defaults(law=None)
-    add_own(parser)
+    add_effects_from(parser)
     hold_out.add(parser)
     level.add(parser)
     _add_next_run(parser)
@@ -98,7 +106,7 @@ def run(arguments: argparse.Namespace) -> int:
     except Unfinished as end:
         kept = outputs.keep_unfinished(end, arguments.out, arguments.json, arguments.report)
         raise kept from None
-    told = hold_out.left(diagnosis.model, held)
+    told = hold_out.error_for_json(diagnosis.model, held)
     if arguments.json:
         texts[arguments.json] = json_text(diagnosis.to_dict() | told)
     if arguments.out:

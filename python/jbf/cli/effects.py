@@ -7,7 +7,7 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from jbf.cli import outputs
-from jbf.cli.arguments import Commands, add_json, add_law_name, add_own, command
+from jbf.cli.arguments import Commands, add_effects_from, add_json, add_law_name, command
 from jbf.cli.commands import COMMANDS
 from jbf.models.catalogue import Effect, effects, find_effect, find_law, why_not
 from jbf.reporting.json import json_text
@@ -19,7 +19,7 @@ def add(commands: Commands) -> None:
     parser.add_argument("name", metavar="NAME", nargs="?", help="one effect's page")
     add_law_name(parser, None, "say which effects go with this law, and why the others do not")
     add_json(parser)
-    add_own(parser)
+    add_effects_from(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

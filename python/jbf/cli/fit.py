@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING
 
 from jbf.cli import hold_out, inputs, outputs
-from jbf.cli.arguments import Commands, add_law, add_own, add_runs, command
+from jbf.cli.arguments import Commands, add_effects_from, add_law, add_runs, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import Report, shown
 from jbf.errors import InputError, Stopped, Unfinished, quoted
@@ -55,7 +55,7 @@ def add(commands: Commands) -> None:
     )
     hold_out.add(parser)
     parser.add_argument("--out", metavar="MODEL", required=True, help="model file to write")
-    add_own(parser)
+    add_effects_from(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise outputs.keep(stop, arguments.out) from None
     except Unfinished as end:
         raise outputs.keep_unfinished(end, arguments.out) from None
-    told = hold_out.left(fitted.model, held)
+    told = hold_out.error_for_json(fitted.model, held)
     outputs.write({arguments.out: fitted.model.to_toml()})
     outputs.say(fitted.report() + hold_out.words(fitted.model, told), wanted)
     return 0

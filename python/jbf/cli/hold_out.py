@@ -61,7 +61,7 @@ def _fits(run: Run, pattern: str) -> bool:
     return any(fnmatchcase(name, pattern) for name in names)
 
 
-def left(model: Model, held: Sequence[Run]) -> dict[str, Any]:
+def error_for_json(model: Model, held: Sequence[Run]) -> dict[str, Any]:
     """Return the error of a model on the held-out runs as data for JSON.
 
     Empty without such runs.
@@ -70,17 +70,17 @@ def left(model: Model, held: Sequence[Run]) -> dict[str, Any]:
         return {}
     from jbf.comparison.comparison import compare
 
-    told = compare(model, held).to_dict()
-    return {"hold_out": {key: told[key] for key in ("rms_n", "noise_n", "runs")}}
+    error = compare(model, held).to_dict()
+    return {"hold_out": {key: error[key] for key in ("rms_n", "noise_n", "runs")}}
 
 
-def words(model: Model, told: dict[str, Any]) -> str:
+def words(model: Model, error: dict[str, Any]) -> str:
     """Format the error on the held-out runs as text."""
-    if not told:
+    if not error:
         return ""
     from jbf.reporting.words import against_noise
 
-    found = told["hold_out"]
+    found = error["hold_out"]
     unit = model.rig.quantities.force
     ratio = against_noise(found["rms_n"], found["noise_n"] or 0.0)
     runs = ", ".join(f"{run['run']} {run['rms_n']:.3g}" for run in found["runs"])

@@ -141,7 +141,7 @@ def _look(arguments: argparse.Namespace) -> int:
     if arguments.beside and len(arguments.files) > 1:
         mend = "name one FILE, and the others with --beside"
         raise InputError(file="--beside", problem="goes with one main file", mend=mend)
-    target, kept = _map_beside(file, arguments.joint, replace=arguments.force)
+    target, kept = _map_path(file, arguments.joint, replace=arguments.force)
     shown_path = file.parent / target.name
     if not kept:
         outputs.check({shown_path.name: str(target)}, outputs.read_by(arguments))
@@ -156,7 +156,7 @@ def _look(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _map_beside(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bool]:
+def _map_path(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bool]:
     """Return the path of a file's map, and whether an existing map there is kept.
 
     The name is `map.toml`. A joint has a name of its own, and so has a file if `map.toml` is the

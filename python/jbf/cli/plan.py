@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from jbf.cli import level, limits, outputs, power
-from jbf.cli.arguments import Commands, add_json, add_law, add_own, command
+from jbf.cli.arguments import Commands, add_effects_from, add_json, add_law, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.reporting.json import json_text
@@ -37,7 +37,7 @@ def add(commands: Commands) -> None:
     add_json(parser)
     add_law(parser)
     parser.set_defaults(law=None)
-    add_own(parser)
+    add_effects_from(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from jbf.cli import inputs, level, outputs
-from jbf.cli.arguments import Commands, add_json, add_law, add_own, add_runs, command
+from jbf.cli.arguments import Commands, add_effects_from, add_json, add_law, add_runs, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.errors import InputError
@@ -31,7 +31,7 @@ def add(commands: Commands) -> None:
     add_json(parser)
     add_law(parser)
     parser.set_defaults(law=None)
-    add_own(parser)
+    add_effects_from(parser)
 
 
 def add_noise(parser: Parser) -> None:

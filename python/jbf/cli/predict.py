@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from jbf.cli import inputs, outputs
-from jbf.cli.arguments import Commands, add_own, command
+from jbf.cli.arguments import Commands, add_effects_from, command
 from jbf.cli.commands import COMMANDS
 from jbf.errors import InputError
 from jbf.records.checks import POINT
@@ -17,7 +17,7 @@ def add(commands: Commands) -> None:
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument("motion", metavar="RUN", help="a CSV file; it need not hold friction_n")
     parser.add_argument("--out", metavar="CSV", required=True, help="file to write; - is stdout")
-    add_own(parser)
+    add_effects_from(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -27,7 +27,7 @@ BOUNDARY_SHARE = 0.2
 """Fraction of U_tr below which the asperities carry most of the load."""
 
 
-def _both_ways(bins: Sequence[Bin], *, with_rest: bool = False) -> tuple[Bin, ...]:
+def _both_directions(bins: Sequence[Bin], *, with_rest: bool = False) -> tuple[Bin, ...]:
     """Return the bins for backward motion, followed by the bins for forward motion."""
     back = [replace(b, direction=-1, with_rest=with_rest) for b in bins]
     return (*back, *(replace(b, direction=1) for b in bins))
@@ -39,7 +39,7 @@ def _signs(v: Array) -> Places:
 
 def _direction(campaign: Campaign, u_tr: float | None) -> Binned:
     places = [_signs(p.motion.velocity_m_s) for p in campaign.prepared]
-    return Binned("direction", _both_ways([Bin()]), places)
+    return Binned("direction", _both_directions([Bin()]), places)
 
 
 def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
@@ -92,7 +92,7 @@ def _acceleration(campaign: Campaign, u_tr: float | None) -> Binned:
         steady = np.abs(a) < 0.02 * float(np.max(np.abs(a), initial=0.0))
         kind = np.where(a * v > 0, 1, 0) + np.where(v > 0, 2, 0)
         places.append(np.where(steady | (v == 0.0), -1, kind).astype(np.intp))
-    return Binned("acceleration", _both_ways([Bin("slowing"), Bin("speeding up")]), places)
+    return Binned("acceleration", _both_directions([Bin("slowing"), Bin("speeding up")]), places)
 
 
 def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
@@ -106,7 +106,7 @@ def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
         # and the difference.
         signed = np.where(p.motion.velocity_m_s < 0, kind, kind + ANGLE_BINS)
         places.append(np.where(p.motion.resting, -1, signed).astype(np.intp))
-    return Binned("angle", _both_ways([Bin(centre=m, unit="deg") for m in middles]), places)
+    return Binned("angle", _both_directions([Bin(centre=m, unit="deg") for m in middles]), places)
 
 
 def _time(campaign: Campaign, u_tr: float | None) -> Binned:
@@ -117,7 +117,7 @@ def _time(campaign: Campaign, u_tr: float | None) -> Binned:
     for p in campaign.prepared:
         kind = np.digitize(p.run.time_s - p.run.time_s[0], edges[1:-1])
         places.append(np.where(p.motion.velocity_m_s > 0, kind + TIME_BINS, kind).astype(np.intp))
-    return Binned("time", _both_ways(spans, with_rest=True), places)
+    return Binned("time", _both_directions(spans, with_rest=True), places)
 
 
 def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array]) -> Binned:
@@ -135,7 +135,7 @@ def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array])
         kind = np.digitize(v, edges)
         kind = np.where(p.motion.velocity_m_s > 0, kind + len(spans), kind)
         places.append(np.where(ok & ~p.motion.resting, kind, -1).astype(np.intp))
-    return Binned(axis, _both_ways(spans), places)
+    return Binned(axis, _both_directions(spans), places)
 
 
 def _after_events(p: Prepared, event: npt.NDArray[np.bool_], measure: Array) -> Array:

@@ -70,7 +70,7 @@ class Comparison(Result):
     def to_dict(self) -> dict[str, Any]:
         """Return the comparison as a dictionary for JSON."""
         return {
-            **self.model.told_units(),
+            **self.model.units_for_json(),
             "rms_n": self.rms_n,
             "noise_n": self.noise_n or None,
             "runs": [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in self.runs],

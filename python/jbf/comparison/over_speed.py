@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from jbf.comparison.axes import BOUNDARY_SHARE
 from jbf.comparison.comparison import Comparison
-from jbf.comparison.parts import added_by, beside_friction
+from jbf.comparison.parts import added_by, non_friction_effects
 from jbf.models.catalogue import transition_speed
 from jbf.models.model import Model
 
@@ -45,7 +45,7 @@ class OverSpeed:
 
 def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
     """Mean friction by speed over all samples that count, for each direction with motion."""
-    rest = added_by(comparison, beside_friction(comparison))
+    rest = added_by(comparison, non_friction_effects(comparison))
     prepared, samples = comparison.campaign.prepared, comparison.samples
     speed = samples.flat([p.motion.velocity_m_s for p in prepared])
     measured = samples.flat([p.friction_n - f for p, f in zip(prepared, rest, strict=True)])

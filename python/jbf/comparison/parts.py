@@ -52,18 +52,18 @@ def added_by(comparison: Comparison, effects: Collection[str]) -> list[Array]:
     return [whole - f for whole, f in zip(comparison.predictions, rest, strict=True)]
 
 
-def beside_friction(comparison: Comparison) -> tuple[str, ...]:
+def non_friction_effects(comparison: Comparison) -> tuple[str, ...]:
     """Effects of the model that are not friction: inertia, weight, zero, cogging."""
     return tuple(name for name in NO_FRICTION if name in comparison.model.effects)
 
 
-def friction_alone(comparison: Comparison) -> list[Array]:
+def friction_readings(comparison: Comparison) -> list[Array]:
     """Readings of each run minus the contributions that the model attributes to other forces, N."""
-    rest = added_by(comparison, beside_friction(comparison))
+    rest = added_by(comparison, non_friction_effects(comparison))
     return [p.friction_n - f for p, f in zip(comparison.campaign.prepared, rest, strict=True)]
 
 
-def made_of(before: Comparison, after: Comparison) -> dict[str, list[Array]]:
+def explained_residual(before: Comparison, after: Comparison) -> dict[str, list[Array]]:
     """Part of a model's residual explained by each new effect of a larger model, N.
 
     There is one array a run. The part is the contribution that the parameters of the first model

@@ -18,7 +18,7 @@ from jbf.diagnosis.recipe import diagnose
 from jbf.errors import InputError, JbfError
 from jbf.estimation.wild_bootstrap import recorded_by
 from jbf.models.model import Model
-from jbf.records.arguments import check_callable, list_of_runs, of_kind, whole_number
+from jbf.records.arguments import check_callable, checked_integer, list_of_runs, of_kind
 from jbf.records.run import Run
 from jbf.results import Result
 
@@ -212,7 +212,7 @@ def check(
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     check_callable(progress, "progress")
-    if whole_number(campaigns, "campaigns") < 1:
+    if checked_integer(campaigns, "campaigns") < 1:
         raise InputError(problem=f"{campaigns} campaigns tell no rate", mend="ask for one or more")
     every = tuple(list_of_runs(runs))
     answers = list(done)

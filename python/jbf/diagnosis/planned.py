@@ -54,7 +54,7 @@ class PlannedPower(Result):
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
         return {
-            **self.model.told_units(),
+            **self.model.units_for_json(),
             "law": self.model.law,
             "effects": list(self.model.effects),
             "noise_n": self.noise_n,

@@ -122,7 +122,7 @@ class Diagnosis(Result):
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict as specified by the file contract."""
         return {
-            **self.model.told_units(),
+            **self.model.units_for_json(),
             "verdict": self.verdict,
             "machine": list(self.machine),
             "effects": list(self.effects),
@@ -137,7 +137,7 @@ class Diagnosis(Result):
             "laws": [t.to_dict() for t in self.laws],
             "simpler_law": None if self.simpler_law is None else self.simpler_law.to_dict(),
             "next_experiment": self.next_experiment,
-            "parameters": self.model.told_parameters(self.fit.parameters),
+            "parameters": self.model.parameters_for_json(self.fit.parameters),
             "not_tried": dict(self.not_tried),
             "unseen": list(self.unseen),
             "negligible": list(self.negligible),

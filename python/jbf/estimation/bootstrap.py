@@ -27,7 +27,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem, named_values
 from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
-from jbf.records.arguments import check_callable, of_kind, whole_number
+from jbf.records.arguments import check_callable, checked_integer, of_kind
 from jbf.records.motion.roughness import encoder_step
 from jbf.records.run import Run
 from jbf.results import Result
@@ -65,7 +65,7 @@ class Bootstrap(Result):
 
 def check_repeats(repeats: int, name: str = "repeats") -> None:
     """Raise an InputError if the number of repeats is too small or too large."""
-    if whole_number(repeats, name) < LEAST_REPEATS:
+    if checked_integer(repeats, name) < LEAST_REPEATS:
         raise InputError(
             problem=f"{name} {repeats} is too few to tell an error",
             mend=f"ask for {LEAST_REPEATS} or more; 40 tell it better",
@@ -110,7 +110,7 @@ def bootstrap(
         Fewer than 19 repeats, or runs that cannot be prepared.
     """
     check_repeats(repeats)
-    whole_number(seed, "seed")
+    checked_integer(seed, "seed")
     check_callable(progress, "progress")
     of_kind(fitted, Fit, "the fit", "give what jbf.fit made of these runs")
     model = fitted.model

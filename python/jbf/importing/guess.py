@@ -141,7 +141,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
                 elif key != "time_s":
                     ask = f"is in [{table.name}], too; say table under [file], or write it out"
                     questions.append(Question(key, ask))
-        ignored |= _left_over(table, found, time)
+        ignored |= _unused_columns(table, found, time)
         ignored |= {c.column.name: "holds no value" for c in blank}
     if "load_n_m" in entries and not any(key in entries for key in FRICTION):
         entries["torque_n_m"] = replace(entries.pop("load_n_m"), key="torque_n_m")
@@ -350,7 +350,7 @@ def _missing(entries: Mapping[str, Entry], source: Source, lone_motion: bool) ->
     return found
 
 
-def _left_over(table: Table, found: list[Candidate], time: Entry | None) -> dict[str, str]:
+def _unused_columns(table: Table, found: list[Candidate], time: Entry | None) -> dict[str, str]:
     used = {c.column.name for c in found}
     left = {}
     for column in table.columns:

@@ -128,7 +128,7 @@ def import_files(
     mapping, text = _map(map, paths, joint, _further(beside or ()))
     if beside is not None:
         mapping = replace(mapping, beside=_further(beside))
-    _check_beside(paths, mapping)
+    _check_further_files(paths, mapping)
     rig = mapping.check()
     check_rig_columns(rig, mapping)
     if cut_file is not None:
@@ -199,7 +199,7 @@ def _further(files: Sequence[PathLike]) -> tuple[Path, ...]:
     return tuple(_paths(given)) if given else ()
 
 
-def _check_beside(paths: Sequence[Path], mapping: Map) -> None:
+def _check_further_files(paths: Sequence[Path], mapping: Map) -> None:
     """Raise an error for several recordings with further files, or for missing further files."""
     if mapping.beside and len(paths) > 1:
         problem = f"{len(paths)} files are given together with files recorded beside one"

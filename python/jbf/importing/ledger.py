@@ -57,7 +57,7 @@ def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
         "sha256": file_hash(recording.path),
         "format": recording.format,
         "start": recording.start,
-        **_beside(recording),
+        **_further_files(recording),
         "channels": recording.channels,
         "dropped": [
             {k: v for k, v in asdict(d).items() if v is not None} for d in recording.dropped
@@ -68,7 +68,7 @@ def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
     }
 
 
-def _beside(recording: Recording) -> dict[str, Any]:
+def _further_files(recording: Recording) -> dict[str, Any]:
     """Return the further files of a recording, and the alignment of their clocks."""
     if not recording.beside:
         return {}
@@ -91,7 +91,7 @@ def _span(piece: Piece) -> dict[str, Any]:
     return found | ({"stretch": piece.segment + 1} if piece.segment else {})
 
 
-def ledgers_beside(paths: Iterable[Path | None]) -> list[dict[str, Any]]:
+def ledgers_of_runs(paths: Iterable[Path | None]) -> list[dict[str, Any]]:
     """Return the ledgers in the folders of given runs; unreadable ledgers are skipped."""
     folders = dict.fromkeys(path.resolve().parent for path in paths if path is not None)
     found = []

@@ -143,7 +143,7 @@ def _map_of(content: Mapping[str, Any], path: Path) -> Map:
         mend = 'add [columns] with lines such as friction_n = "Force [N]"'
         raise InputError(key="columns", problem="is missing", mend=mend)
     file = dict(table(content.get("file", {}), "file"))
-    beside = _beside(file.pop("beside", []), path.parent)
+    beside = _further_paths(file.pop("beside", []), path.parent)
     return Map(
         columns=_texts(content, "columns"),
         clocks=_texts(content, "clocks"),
@@ -156,7 +156,7 @@ def _map_of(content: Mapping[str, Any], path: Path) -> Map:
     )
 
 
-def _beside(names: object, folder: Path) -> tuple[Path, ...]:
+def _further_paths(names: object, folder: Path) -> tuple[Path, ...]:
     """Return the further files; their paths are relative to the folder of the map."""
     if not isinstance(names, list) or not all(isinstance(n, str) and n for n in names):
         mend = 'write a list of files, such as ["force.csv"]'

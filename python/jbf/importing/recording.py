@@ -173,7 +173,7 @@ def _spool(
     stream.segments = line.segments(stream.rows)
     if stream.rows == 0:
         raise InputError(problem="holds no samples", mend="name another file, or correct the map")
-    dropped = [Dropped(*found) for found in source.left_out()] + line.dropped()
+    dropped = [Dropped(*found) for found in source.skipped_rows()] + line.dropped()
     if stream.needed:
         lacking = sum(int((~stream.complete(block)).sum()) for block in stream.blocks())
         dropped.append(Dropped(lacking, "a value is missing"))
@@ -336,14 +336,14 @@ def keep_common_span(recording: Recording) -> None:
         raise InputError(file=late.source, problem=problem, mend=mend)
     for stream in recording.streams:
         low, high = stream.rows_between(0, begin, end)
-        left_out = stream.rows - (high - low)
+        skipped = stream.rows - (high - low)
         if high == low:
             problem = f"it has no samples from {begin:.4g} s to {end:.4g} s, when all files were on"
             raise InputError(file=stream.source, problem=problem, mend="leave it out")
-        if left_out:
+        if skipped:
             stream.segments = [(low, high)]
             why = "another file does not cover their time"
-            recording.dropped.append(Dropped(left_out, why, file=_name(stream)))
+            recording.dropped.append(Dropped(skipped, why, file=_name(stream)))
 
 
 def _name(stream: Stream) -> str:

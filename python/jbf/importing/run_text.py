@@ -56,7 +56,7 @@ def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator
         if not any(there):
             return
         # Process rows only up to the last time that every clock has reached.
-        horizon = min((p.last for p in parts if p.more), default=np.inf)
+        horizon = min((p.last for p in parts if p.has_rows), default=np.inf)
         blocks = [part.take(horizon) for part in parts]
         times = np.unique(np.concatenate([block[:, 0] for block in blocks]))
         rows = np.full((len(times), len(columns)), np.nan)
@@ -78,7 +78,7 @@ class _Part:
         self._needed = bool(stream.needed)
 
     @property
-    def more(self) -> bool:
+    def has_rows(self) -> bool:
         """Whether there are rows after those that were read."""
         return self.next < self.end
 
@@ -89,7 +89,7 @@ class _Part:
 
     def fill(self) -> bool:
         """Read a block if no rows are buffered; return False at the end."""
-        while not len(self.rows) and self.more:
+        while not len(self.rows) and self.has_rows:
             rows = self.stream.read(self.next, min(self.next + BLOCK, self.end))
             self.next += len(rows)
             self.rows = rows[self.stream.complete(rows)] if self._needed else rows

@@ -59,9 +59,9 @@ class SideBySide(Source):
         source, origin = self._origins[table.name]
         return source.row_of(origin, sample)
 
-    def left_out(self) -> list[tuple[int, str, int | None]]:
+    def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return the rows that the last reading skipped."""
-        return self._reading.left_out()
+        return self._reading.skipped_rows()
 
     def read_bytes(self) -> tuple[int, int]:
         """Return the number of bytes read from the current file, and its size."""

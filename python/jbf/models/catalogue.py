@@ -181,29 +181,29 @@ def built_in() -> dict[str, Effect]:
     return pages
 
 
-_own: dict[str, Effect] = {}
+_user_effects: dict[str, Effect] = {}
 
 
-def own() -> dict[str, Effect]:
+def user_effects() -> dict[str, Effect]:
     """The currently registered user-defined effects."""
-    return _own
+    return _user_effects
 
 
 def put(page: Effect) -> None:
     """Register a user-defined effect."""
-    _own[page.name] = page
+    _user_effects[page.name] = page
     vocabulary.cache_clear()
 
 
 def drop(name: str) -> bool:
     """Unregister a user-defined effect; return False if there is no effect of that name."""
     vocabulary.cache_clear()
-    return _own.pop(name, None) is not None
+    return _user_effects.pop(name, None) is not None
 
 
 def effects() -> Pages[Effect]:
     """All effects by name, in the order of the signal chain; user-defined ones come last."""
-    return Pages({**built_in(), **_own})
+    return Pages({**built_in(), **_user_effects})
 
 
 @cache
@@ -217,29 +217,29 @@ def built_in_laws() -> Pages[Law]:
     return pages
 
 
-_own_laws: dict[str, Law] = {}
+_user_laws: dict[str, Law] = {}
 
 
-def own_laws() -> dict[str, Law]:
+def user_laws() -> dict[str, Law]:
     """The currently registered user-defined laws."""
-    return _own_laws
+    return _user_laws
 
 
 def put_law(page: Law) -> None:
     """Register a user-defined law."""
-    _own_laws[page.name] = page
+    _user_laws[page.name] = page
     vocabulary.cache_clear()
 
 
 def drop_law(name: str) -> bool:
     """Unregister a user-defined law; return False if there is no law of that name."""
     vocabulary.cache_clear()
-    return _own_laws.pop(name, None) is not None
+    return _user_laws.pop(name, None) is not None
 
 
 def laws() -> Pages[Law]:
     """All base laws by name; user-defined ones come last."""
-    return Pages({**built_in_laws(), **_own_laws})
+    return Pages({**built_in_laws(), **_user_laws})
 
 
 def find_effect(name: str) -> Effect:
@@ -272,7 +272,7 @@ def find_clock(name: str) -> Clock:
 
 def why_not(effect: Effect, law: str) -> str | None:
     """Return why an effect cannot be combined with a law ("the law ..."), or None if it can."""
-    if law not in _own_laws:
+    if law not in _user_laws:
         return effect.refused.get(law)
     if effect.stage not in BESIDE:
         return "is one of your own, and the effect changes parts of a law that nobody knows of it"

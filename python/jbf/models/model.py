@@ -198,7 +198,7 @@ class Model(Shown):
                 load_n=core_load_n(self.rig),
             )
 
-    def told_units(self) -> dict[str, dict[str, str]]:
+    def units_for_json(self) -> dict[str, dict[str, str]]:
         """Units for JSON if the rig has a drive, because the keys always name newtons and metres.
 
         The dict is empty for any other rig.
@@ -206,7 +206,7 @@ class Model(Shown):
         said = self.rig.quantities
         return {} if self.rig.drive is None else {"units": said.to_dict()}
 
-    def told_parameters(
+    def parameters_for_json(
         self, parameters: Mapping[str, ParameterValue]
     ) -> dict[str, dict[str, float | str | bool | None]]:
         """Parameters for JSON, with their `unit` if the rig has a drive."""

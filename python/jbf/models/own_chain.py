@@ -130,30 +130,30 @@ class OwnChain:
 
         Also returns its derivatives by the parameters of the instrument, by their index.
         """
-        beside, beyond = self._own_forces(parameters, motion)
+        before, after = self._user_forces(parameters, motion)
         if not self.instrument:
-            return beside + beyond, {}
-        loaded, empty = self._read(parameters, motion, beside)
+            return before + after, {}
+        loaded, empty = self._read(parameters, motion, before)
         order = [place for _, places in self.instrument for place in places]
         slopes = loaded[1] - empty[1]
         by_place = {place: slopes[:, k] for k, place in enumerate(order)}
-        return loaded[0] - empty[0] + beyond, by_place
+        return loaded[0] - empty[0] + after, by_place
 
-    def _own_forces(self, parameters: Array, motion: _core.Motion) -> tuple[Array, Array]:
+    def _user_forces(self, parameters: Array, motion: _core.Motion) -> tuple[Array, Array]:
         """Forces of the user-defined effects before the instrument and after it, N."""
         n = len(motion.columns["time_s"])
-        beside, beyond = np.zeros(n), np.zeros(n)
+        before, after = np.zeros(n), np.zeros(n)
         for i, effect in enumerate(self.own):
             force = effect.force(motion.columns, self._values(parameters, i))
             if effect.stage == "instrument":
-                beyond += force
+                after += force
             else:
-                beside += force
+                before += force
         if self.law is not None:
             # Subtract the small force of the law of the core at its bounds.
             assert self.carrier is not None
-            beside -= self.carrier.predict(self.held, [motion])[0]
-        return beside, beyond
+            before -= self.carrier.predict(self.held, [motion])[0]
+        return before, after
 
     def _slope(self, parameters: Array, motion: _core.Motion, place: int) -> Array:
         number = next(i for i, places in enumerate(self.places) if place in places)
@@ -164,8 +164,8 @@ class OwnChain:
         if self.bare is None:
             loaded, empty = self._read(parameters, motion, slope)
             return loaded[0] - empty[0]
-        beside, _ = self._own_forces(parameters, motion)
-        return self._along(parameters, motion, self._borne(parameters, motion) + beside, slope)
+        added, _ = self._user_forces(parameters, motion)
+        return self._along(parameters, motion, self._borne(parameters, motion) + added, slope)
 
     def _read(self, parameters: Array, motion: _core.Motion, force: Array) -> tuple[Read, Read]:
         """Instrument readings of a force added to that of the bearing, and of the latter alone.
@@ -225,9 +225,9 @@ class OwnChain:
         columns = [len(self.held) + kept.index(w) for w in asked]
         before = self._before_the_cell(parameters)
         ((borne, slopes),) = self.bare.jacobian(before, [motion], columns)
-        beside, _ = self._own_forces(parameters, motion)
+        added, _ = self._user_forces(parameters, motion)
         found = {}
         for k, w in enumerate(asked):
-            there = self._along(parameters, motion, borne + beside, slopes[:, k])
+            there = self._along(parameters, motion, borne + added, slopes[:, k])
             found[w] = there - self._along(parameters, motion, borne, slopes[:, k])
         return found

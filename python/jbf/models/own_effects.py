@@ -296,7 +296,7 @@ def load_effects(path: PathLike) -> None:
     InputError
         The file cannot be read, fails, or registers nothing.
     """
-    before = dict(catalogue.own()) | dict(catalogue.own_laws())
+    before = dict(catalogue.user_effects()) | dict(catalogue.user_laws())
     file = Path(path)
     if not file.is_file():
         raise InputError(file=file, problem="is no file", mend="name a Python file")
@@ -313,7 +313,7 @@ def load_effects(path: PathLike) -> None:
             problem=f"fails: {type(error).__name__}: {error}",
             mend="correct the file",
         ) from None
-    after = {**catalogue.own(), **catalogue.own_laws()}
+    after = {**catalogue.user_effects(), **catalogue.user_laws()}
     if all(before.get(name) is page for name, page in after.items()):
         raise InputError(
             file=file,

@@ -45,9 +45,9 @@ def loops(
     p = comparison.campaign.prepared[index]
     rest = np.zeros(len(p.friction_n))
     if alone:
-        from jbf.comparison.parts import added_by, beside_friction
+        from jbf.comparison.parts import added_by, non_friction_effects
 
-        rest = added_by(comparison, beside_friction(comparison))[index]
+        rest = added_by(comparison, non_friction_effects(comparison))[index]
     speed = p.motion.velocity_m_s
     stride = max(len(speed) // MOST_DOTS, 1)
     ax.plot(

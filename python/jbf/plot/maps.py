@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.models.written import number
-from jbf.plot.runs import axes_words, said_by
+from jbf.plot.runs import axes_words, quantities_of
 from jbf.plot.style import DIVERGING, MEASURED, MODEL, dress, one_axes, plain, shortened
 
 if TYPE_CHECKING:
@@ -37,11 +37,11 @@ def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None 
     """
     from matplotlib.colors import ListedColormap, LogNorm, to_rgb
 
-    from jbf.comparison.parts import added_by, beside_friction
+    from jbf.comparison.parts import added_by, non_friction_effects
 
     ax = one_axes(ax)
     samples, prepared = comparison.samples, comparison.campaign.prepared
-    rest = added_by(comparison, beside_friction(comparison) if alone else ())
+    rest = added_by(comparison, non_friction_effects(comparison) if alone else ())
     speed = samples.flat([p.motion.velocity_m_s for p in prepared])
     measured = samples.flat([p.friction_n - f for p, f in zip(prepared, rest, strict=True)])
     modelled = samples.flat([m - f for m, f in zip(comparison.predictions, rest, strict=True)])
@@ -101,7 +101,7 @@ def residual_map(
     top = max(float(np.nanquantile(np.abs(means), 0.99)), 1.0)
     norm = TwoSlopeNorm(0.0, -top, top)
     mesh = ax.pcolormesh(edges[0], edges[1], means.T, cmap=DIVERGING, norm=norm, rasterized=True)
-    said = said_by(comparison)
+    said = quantities_of(comparison)
     ax.figure.colorbar(mesh, ax=ax, label="Times the noise", pad=0.01, extend="both")
     for name, axis in ((across, ax.xaxis), (up, ax.yaxis)):
         if name == "run":

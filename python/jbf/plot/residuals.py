@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.plot.bin_axes import bin_axis
-from jbf.plot.runs import index_of, said_by
+from jbf.plot.runs import index_of, quantities_of
 from jbf.plot.style import (
     BEFORE,
     MODEL,
@@ -55,7 +55,7 @@ def means_along(comparison: Comparison, axis: str | None) -> Failure:
     model = comparison.model
     u_tr = transition_speed(model.law, model.values.tolist())
     found = {a.axis: a for a in all_axes(comparison.campaign, u_tr)}
-    found["force"] = force_axis(comparison.predictions, unit=said_by(comparison).force)
+    found["force"] = force_axis(comparison.predictions, unit=quantities_of(comparison).force)
     binned = next((a for name, a in found.items() if name == axis), found["velocity"])
     means, counts = patterns.bin_means(binned, comparison.samples, comparison.residuals)
     return patterns.Failure(binned.axis, "no pattern", 0.0, binned.bins, means, counts)
@@ -79,7 +79,7 @@ def residual_along(
         failure.
     """
     ax = one_axes(ax)
-    said = said_by(comparison)
+    said = quantities_of(comparison)
     noise_band(ax, comparison.noise_n, unit=said.force)
     draw_means(ax, means_along(comparison, axis), colour, said, label)
     legend_on_top(ax)
@@ -145,7 +145,7 @@ def residual_in_time(
     index = index_of(comparison, run)
     p = comparison.campaign.prepared[index]
     shown = np.where(comparison.samples.counted[index], comparison.residuals[index], np.nan)
-    unit = said_by(comparison).force
+    unit = quantities_of(comparison).force
     noise_band(ax, comparison.noise_n, unit=unit)
     ax.plot(
         p.run.time_s,

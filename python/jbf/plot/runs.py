@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
 
 
-def most_telling(comparison: Comparison, other: Comparison | None = None) -> int:
+def largest_error_run(comparison: Comparison, other: Comparison | None = None) -> int:
     """Return the run with the largest error, or the run in which two models differ most."""
     if other is None:
         return int(np.argmax([r.rms_n for r in comparison.runs]))
@@ -23,7 +23,7 @@ def most_telling(comparison: Comparison, other: Comparison | None = None) -> int
             comparison.predictions, other.predictions, comparison.samples.counted, strict=True
         )
     ]
-    return int(np.argmax(gaps)) if max(gaps) > 0.0 else most_telling(comparison)
+    return int(np.argmax(gaps)) if max(gaps) > 0.0 else largest_error_run(comparison)
 
 
 def index_of(comparison: Comparison, run: int | str | None) -> int:
@@ -36,7 +36,7 @@ def index_of(comparison: Comparison, run: int | str | None) -> int:
     """
     names = [r.name for r in comparison.runs]
     if run is None:
-        return most_telling(comparison)
+        return largest_error_run(comparison)
     if isinstance(run, str) and run in names:
         return names.index(run)
     if isinstance(run, int) and -len(names) <= run < len(names):
@@ -44,12 +44,12 @@ def index_of(comparison: Comparison, run: int | str | None) -> int:
     raise InputError(problem=f"there is no run {run}", mend=f"known: {', '.join(names)}")
 
 
-def said_by(comparison: Comparison) -> Quantities:
+def quantities_of(comparison: Comparison) -> Quantities:
     """Return the names and units of the rig's quantities."""
     return comparison.model.rig.quantities
 
 
 def axes_words(comparison: Comparison) -> tuple[str, str]:
     """Return the axis labels of speed and friction."""
-    said = said_by(comparison)
+    said = quantities_of(comparison)
     return f"{said.velocity} ({said.speed})", f"{said.friction} ({said.force})"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jbf.plot.runs import index_of, said_by
+from jbf.plot.runs import index_of, quantities_of
 from jbf.plot.style import MODEL, NOISE, dress, one_axes
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def spectrum(
     even = np.interp(np.arange(time[0], time[-1] + 0.5 * step, step), time, left)
     length = min(max(2 * len(even) // (SEGMENTS + 1), SHORTEST), len(even))
     frequency, density = welch(even, 1.0 / step, nperseg=length)
-    unit = said_by(comparison).force
+    unit = quantities_of(comparison).force
     ax.loglog(frequency[1:], np.sqrt(density[1:]), color=colour, linewidth=1.0, label=label)
     if not any(str(line.get_label()).startswith("white noise") for line in ax.lines):
         floor = comparison.noise_n * np.sqrt(2.0 * step)

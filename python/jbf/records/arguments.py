@@ -132,7 +132,7 @@ def names(value: object, what: str) -> tuple[str, ...]:
     return found
 
 
-def whole_number(value: object, what: str, least: int = 0) -> int:
+def checked_integer(value: object, what: str, least: int = 0) -> int:
     """Return the value as an integer that is at least `least`; raise an InputError otherwise."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         shown = str(value) if isinstance(value, Real) else described(value)

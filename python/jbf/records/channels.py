@@ -72,7 +72,7 @@ def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[
     return columns, read
 
 
-def with_own_clock(time_s: Array, values: Array) -> tuple[Array, Array]:
+def recorded_samples(time_s: Array, values: Array) -> tuple[Array, Array]:
     """Return the instants and readings of a column, without missing values if it has its own clock.
 
     A small number of missing values is kept, so that the later checks reject them.

@@ -259,7 +259,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         try:
             values = frozen(list(map(float, cells)))
         except ValueError:
-            own = None if name == "time_s" else _by_its_own_clock(cells, turned)
+            own = None if name == "time_s" else _separately_clocked(cells, turned)
             if own is not None and name:
                 columns[name], gaps[name] = own
             elif name in known:
@@ -295,7 +295,7 @@ def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:
     return found | {"time_s": frozen(POINT_S * np.arange(len(order)))}
 
 
-def _by_its_own_clock(
+def _separately_clocked(
     cells: Sequence[str], others: Sequence[Sequence[str]]
 ) -> tuple[Array, Mask] | None:
     """Return the readings of a channel with its own clock, and the mask of its non-empty cells.

@@ -128,7 +128,7 @@ class DriveColumns:
             size = sizes[column]
             values = kept.pop(column)
             if column in _TURNED and size != 1.0:
-                values = _whole(values)
+                values = _unwrapped(values)
             kept[target] = values if size == 1.0 else frozen(values * size)
             if size != 1.0:
                 found.append(_conversion(name, target, column, size, si))
@@ -190,7 +190,7 @@ def _strangers(columns: DriveColumns) -> dict[str, str]:
     return found
 
 
-def _whole(angle: Array) -> Array:
+def _unwrapped(angle: Array) -> Array:
     """Unwrap an angle that restarts at each turn; return a multi-turn angle unchanged."""
     wraps = float(np.ptp(angle)) <= 2.0 * math.pi * (1.0 + 1e-9)
     return np.unwrap(angle) if wraps else angle

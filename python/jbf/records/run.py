@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.records.channels import Channels, filled, side_by_side, with_own_clock
+from jbf.records.channels import Channels, filled, recorded_samples, side_by_side
 from jbf.records.checks import COLUMNS, MOTION, POINT, SLOW, as_array, check_columns, frozen, listed
 from jbf.records.findings.finding import Finding
 from jbf.records.frames import columns_of
@@ -256,7 +256,7 @@ class Run(Shown):
                 problem="is missing",
                 mend=f"call a column so (it has {listed(columns)})",
             )
-        own = {column: with_own_clock(time_s, values) for column, values in columns.items()}
+        own = {column: recorded_samples(time_s, values) for column, values in columns.items()}
         if any(len(clock) < len(time_s) for clock, _ in own.values()):
             return cls.from_channels(own, name=name, path=path)
         known: dict[str, Any] = {c: columns.pop(c) for c in COLUMNS if c in columns}
@@ -270,7 +270,7 @@ class Run(Shown):
             columns = dict(columns) | {"velocity_m_s": _made_speed(columns)}
         reading: tuple[Finding, ...] = ()
         if SLOW in columns:
-            whole, reading = _whole(name, columns["time_s"], columns[SLOW])
+            whole, reading = _fill_gaps(name, columns["time_s"], columns[SLOW])
             columns = dict(columns) | {SLOW: whole}
         known: dict[str, Any] = {c: values for c, values in columns.items() if c in COLUMNS}
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
@@ -329,16 +329,16 @@ class Run(Shown):
         return text.getvalue()
 
 
-def _whole(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
+def _fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
     """Interpolate the gaps of a temperature, C, linearly, and report them as a finding."""
-    there = np.isfinite(celsius)
-    if there.all():
+    known = np.isfinite(celsius)
+    if known.all():
         return celsius, ()
-    ends = np.concatenate((time_s[:1], time_s[there], time_s[-1:]))
+    ends = np.concatenate((time_s[:1], time_s[known], time_s[-1:]))
     longest_s = float(np.max(np.diff(ends)))
-    words = f"the temperature was read at {there.sum()} of {len(celsius)} samples"
-    told = Finding("gaps", SLOW, name, longest_s, "s", "straight lines between", words)
-    return filled(time_s, celsius, there), (told,)
+    words = f"the temperature was read at {known.sum()} of {len(celsius)} samples"
+    finding = Finding("gaps", SLOW, name, longest_s, "s", "straight lines between", words)
+    return filled(time_s, celsius, known), (finding,)
 
 
 def _made_speed(columns: Mapping[str, Array]) -> Array:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from jbf.plot.loops import loops
 from jbf.plot.residuals import residual_along, residual_in_time
-from jbf.plot.runs import index_of, most_telling
+from jbf.plot.runs import index_of, largest_error_run
 from jbf.plot.style import axes_or_new
 from jbf.plot.traces import record_and_model
 
@@ -32,7 +32,7 @@ def plot_comparison(comparison: Comparison, axes: Sequence[Axes] | None = None) 
         Two matplotlib axes to draw on. Default: those of a new figure.
     """
     left, right = axes_or_new(axes, 1, 2, (10.0, 4.2))
-    loops(comparison, most_telling(comparison), ax=left)
+    loops(comparison, largest_error_run(comparison), ax=left)
     residual_along(comparison, ax=right)
     if not comparison.failures:
         right.set_title("No pattern in the residual", loc="left", fontsize="medium")

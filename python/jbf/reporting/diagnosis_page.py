@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from markupsafe import Markup
 from matplotlib.axes import Axes
 
-from jbf.comparison.parts import beside_friction
+from jbf.comparison.parts import non_friction_effects
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.selection import CHANCE
 from jbf.errors import InputError
@@ -19,7 +19,7 @@ from jbf.plot.maps import friction_map, residual_map
 from jbf.plot.power import power
 from jbf.plot.ranking import ranking, ranking_height
 from jbf.plot.residuals import means_along, residual_along, residual_in_time
-from jbf.plot.runs import most_telling
+from jbf.plot.runs import largest_error_run
 from jbf.plot.stribeck import stribeck
 from jbf.plot.style import BEFORE, MODEL, axes_or_new, one_axes
 from jbf.reporting.diagnosis_plot import before_and_after
@@ -87,7 +87,7 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         unexplained=remainder_cards(diagnosis),
         residual_picture=svg([residual_map(after)], "What the final model leaves, in all runs"),
         last_picture=_last(diagnosis),
-        taken_out=listed(beside_friction(after)),
+        taken_out=listed(non_friction_effects(after)),
         friction_picture=_friction(diagnosis),
         map_picture=svg(
             [friction_map(after, ax=_wide(4.2))], "Samples of all runs over speed and friction"
@@ -205,7 +205,7 @@ def _before(diagnosis: Diagnosis) -> Markup | str:
     if not diagnosis.model.effects:
         return ""
     left, right = axes_or_new(None, 1, 2, (WIDTH, 3.3))
-    index = most_telling(before, after)
+    index = largest_error_run(before, after)
     loops(before, index, ax=left, colour=BEFORE, title=f"Run {before.runs[index].name}")
     draw_model(left, after, index, colour=MODEL)
     handles, _ = left.get_legend_handles_labels()
@@ -221,7 +221,7 @@ def _last(diagnosis: Diagnosis) -> Markup:
     """
     after = diagnosis.after
     left, right = axes_or_new(None, 1, 2, (WIDTH, 3.6))
-    residual_in_time(after, most_telling(after), ax=left)
+    residual_in_time(after, largest_error_run(after), ax=left)
     title = left.get_title(loc="left")
     left.set_title(f"Final model: {title[0].lower()}{title[1:]}", loc="left", fontsize="medium")
     residual_along(after, ax=right)
@@ -234,7 +234,7 @@ def _friction(diagnosis: Diagnosis) -> Markup:
     The run is the one in which the bare law and the final model differ most.
     """
     left, right = axes_or_new(None, 1, 2, (WIDTH, 4.0))
-    index = most_telling(diagnosis.before, diagnosis.after)
+    index = largest_error_run(diagnosis.before, diagnosis.after)
     loops(diagnosis.after, index, alone=True, ax=left)
     stribeck(diagnosis.after, ax=right)
     return svg([left, right], "Friction against speed in one run, and means over all runs")

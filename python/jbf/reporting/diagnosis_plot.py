@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from jbf.plot.ledger import ledger
 from jbf.plot.loops import loops
 from jbf.plot.residuals import draw_means, means_along, residual_in_time
-from jbf.plot.runs import most_telling
+from jbf.plot.runs import largest_error_run
 from jbf.plot.style import BEFORE, MODEL, axes_or_new, legend_above, legend_on_top, noise_band
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> 
     before, after = diagnosis.before, diagnosis.after
     ledger(diagnosis, ax=falling)
     before_and_after(diagnosis, means_along(before, None), residual)
-    index = most_telling(before, after)
+    index = largest_error_run(before, after)
     name = before.runs[index].name
     loops(before, index, ax=first, colour=BEFORE, title=f"Bare law, run {name}")
     if diagnosis.effects:

@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.comparison.axes import all_axes
-from jbf.comparison.parts import made_of
+from jbf.comparison.parts import explained_residual
 from jbf.comparison.patterns import Failure, bin_means
 from jbf.errors import InputError
 from jbf.models.catalogue import transition_speed
 from jbf.plot.residuals import draw_means, means_along, residual_in_time
-from jbf.plot.runs import most_telling
+from jbf.plot.runs import largest_error_run
 from jbf.plot.spectra import spectrum
 from jbf.plot.style import MODEL, legend_above, noise_band, one_axes
 from jbf.reporting.advice import advice_on
@@ -71,7 +71,7 @@ def failure_cards(diagnosis: Diagnosis) -> list[Card]:
     if not diagnosis.failures:
         return []
     try:
-        made = made_of(diagnosis.before, diagnosis.after)
+        made = explained_residual(diagnosis.before, diagnosis.after)
     except InputError:
         made = {}
     return [_failed(diagnosis, failure, made) for failure in diagnosis.failures]
@@ -121,7 +121,7 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
     if remainder.axis == "frequency":
         spectrum(after, ax=ax).set_title("", loc="left")
     elif bursts:
-        residual_in_time(after, most_telling(after), ax=ax)
+        residual_in_time(after, largest_error_run(after), ax=ax)
     elif remainder.axis == "run" and len(after.runs) == 1:
         residual_in_time(after, 0, ax=ax)
     elif remainder.axis in SEEN_ALONG or any(remainder.axis == f.axis for f in after.failures):
@@ -131,7 +131,7 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
         ax.set_title("", loc="left")
         legend_above(ax, 2)
     else:
-        residual_in_time(after, most_telling(after), ax=ax)
+        residual_in_time(after, largest_error_run(after), ax=ax)
     alt = f"What remains along {remainder.axis}"
     return Card(
         TITLES.get(kind, f"Along {remainder.axis}"),

@@ -81,7 +81,7 @@ def import_report(found: Import) -> str:
     lines += ["", "Columns:", *columns(channel_rows(files[:1]), "<<<<<")]
     clocks = clock_lines(found.ledger)
     lines += ["", "Clocks:", *clocks] if clocks else []
-    lines += left_out_lines(found.ledger)
+    lines += skipped_row_lines(found.ledger)
     if out:
         lines += ["", "Left out:"]
         lines += columns(
@@ -129,7 +129,7 @@ def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def left_out_lines(ledger: Mapping[str, Any]) -> list[str]:
+def skipped_row_lines(ledger: Mapping[str, Any]) -> list[str]:
     """List the rows left out of each file, and the notes on it."""
     said = []
     for page in ledger["files"]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import jinja2
 
 from jbf import _core
-from jbf.importing.ledger import ledgers_beside
+from jbf.importing.ledger import ledgers_of_runs
 from jbf.records.counts import count_of
 from jbf.reporting.import_text import provenance_rows
 from jbf.reporting.text_parts import recorded
@@ -61,7 +61,7 @@ def pattern_rows(patterns: Iterable[Failure | Remainder]) -> list[tuple[str, str
 
 def import_rows(comparison: Comparison) -> list[tuple[str, str, str]]:
     """Return the provenance of the runs that were imported."""
-    return provenance_rows(ledgers_beside(p.run.path for p in comparison.campaign.prepared))
+    return provenance_rows(ledgers_of_runs(p.run.path for p in comparison.campaign.prepared))
 
 
 def measurement(comparison: Comparison, noise_n: float) -> str:

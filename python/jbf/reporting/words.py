@@ -85,7 +85,7 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
         Where further residual structure is listed, relative to this text.
     """
     return (
-        _found(diagnosis, place)
+        _conclusion(diagnosis, place)
         + _unconfirmed_sentence(diagnosis)
         + _confounders_sentence(diagnosis.confounders)
         + _offset_sentence(diagnosis)
@@ -162,7 +162,7 @@ def _weighed(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
     return [f"{e} ({100.0 * weights[e]:.0f} %)" if e in weights else e for e in tied]
 
 
-def _found(diagnosis: Diagnosis, place: str) -> str:
+def _conclusion(diagnosis: Diagnosis, place: str) -> str:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     unit = diagnosis.model.rig.quantities.force
     held_out_n = last.holdout_rms_n

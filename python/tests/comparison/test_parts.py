@@ -7,7 +7,13 @@ import numpy.typing as npt
 import pytest
 from by_hand import LAW, coulomb, four_runs, there_and_back
 from jbf import Comparison, Model, ParameterValue, Rig, Run, compare
-from jbf.comparison.parts import added_by, beside_friction, friction_alone, made_of, without
+from jbf.comparison.parts import (
+    added_by,
+    explained_residual,
+    friction_readings,
+    non_friction_effects,
+    without,
+)
 
 Array = npt.NDArray[np.float64]
 OFFSET = {"sensor_offset.b_n": 2.0}
@@ -67,8 +73,8 @@ def test_inertia_adds_mass_times_acceleration(runs: list[Run]) -> None:
 
 
 def test_isolated_friction_is_the_record_minus_sensor_offset_and_drift(full: Comparison) -> None:
-    assert beside_friction(full) == ("sensor_offset", "sensor_drift")
-    for found, p in zip(friction_alone(full), full.campaign.prepared, strict=True):
+    assert non_friction_effects(full) == ("sensor_offset", "sensor_drift")
+    for found, p in zip(friction_readings(full), full.campaign.prepared, strict=True):
         v = p.motion.velocity_m_s
         drift = added_by(full, ["sensor_drift"])[0]
         assert np.ptp(found - p.friction_n + drift) == pytest.approx(0.0, abs=1e-9)
@@ -78,7 +84,7 @@ def test_isolated_friction_is_the_record_minus_sensor_offset_and_drift(full: Com
 def test_isolated_friction_excludes_offset_inertia_and_drift_but_not_lag() -> None:
     effects = ["sensor_offset", "inertia_leak", "sensor_lag", "sensor_drift"]
     found = compare(Model(Rig(), "coulomb", effects), there_and_back(coulomb))
-    assert set(beside_friction(found)) == {"sensor_offset", "inertia_leak", "sensor_drift"}
+    assert set(non_friction_effects(found)) == {"sensor_offset", "inertia_leak", "sensor_drift"}
 
 
 def residual_of_least_squares(
@@ -103,7 +109,7 @@ def test_effect_force_excludes_the_fit_of_free_parameters(
     velocities = [p.motion.velocity_m_s for p in before.campaign.prepared]
     derivatives = {"F_c_n": [np.sign(v) for v in velocities], "F_v_n_s_m": velocities}
     columns = [np.column_stack(pair) for pair in zip(*(derivatives[n] for n in free), strict=True)]
-    found = made_of(before, full)
+    found = explained_residual(before, full)
     assert list(found) == ["sensor_offset", "sensor_drift"]
     for name, parts in found.items():
         expected = residual_of_least_squares(added_by(full, [name]), columns, masks)
@@ -113,7 +119,7 @@ def test_effect_force_excludes_the_fit_of_free_parameters(
 
 def test_effects_that_both_compared_models_have_get_no_share_of_the_force(full: Comparison) -> None:
     without_effects = compare(model_of([]), [p.run for p in full.campaign.prepared])
-    assert made_of(full, without_effects) == made_of(full, full) == {}
+    assert explained_residual(full, without_effects) == explained_residual(full, full) == {}
 
 
 def test_parameter_without_influence_keeps_the_force_attributed_to_an_effect() -> None:
@@ -123,6 +129,6 @@ def test_parameter_without_influence_keeps_the_force_attributed_to_an_effect() -
     before = Model(Rig(), "coulomb", ["warm_up"], idle)
     with_offset = {**idle, "sensor_offset.b_n": 0.5}
     after = Model(Rig(), "coulomb", ["warm_up", "sensor_offset"], with_offset)
-    (parts,) = made_of(compare(before, runs), compare(after, runs)).values()
+    (parts,) = explained_residual(compare(before, runs), compare(after, runs)).values()
     for part in parts:
         assert np.mean(part) == pytest.approx(0.5, rel=0.05)

@@ -12,8 +12,8 @@ from jbf.reporting.import_text import (
     guess_report,
     import_columns,
     import_report,
-    left_out_lines,
     provenance_rows,
+    skipped_row_lines,
 )
 
 MAP = """\
@@ -69,10 +69,10 @@ def test_import_report_lists_each_channel_once_with_its_conversion(imported: jbf
 
 
 def test_dropped_rows_are_reported_only_for_the_file_with_gaps(imported: jbf.Import) -> None:
-    (line,) = [line for line in left_out_lines(imported.ledger) if "row" in line]
+    (line,) = [line for line in skipped_row_lines(imported.ledger) if "row" in line]
     assert "a.csv" in line
     assert "3 rows" in line
-    assert left_out_lines({"files": [imported.ledger["files"][1] | {"notes": []}]}) == []
+    assert skipped_row_lines({"files": [imported.ledger["files"][1] | {"notes": []}]}) == []
 
 
 def test_provenance_rows_have_the_sha256_of_each_file(folder: Path, imported: jbf.Import) -> None:

@@ -31,7 +31,7 @@ def cooler(temperature_c: np.ndarray, velocity_m_s: np.ndarray, k_n_k: float) ->
 @pytest.fixture(autouse=True)
 def forget() -> Iterator[None]:
     yield
-    for name in list(catalogue.own()):
+    for name in list(catalogue.user_effects()):
         jbf.forget_effect(name)
 
 
@@ -225,7 +225,7 @@ def test_user_effect_that_is_analytic_is_differentiated_by_a_complex_step() -> N
 def test_registration_of_an_invalid_effect_is_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         jbf.register_effect(cooler, **({"parameters": [HEAT]} | change))
-    assert not catalogue.own()
+    assert not catalogue.user_effects()
 
 
 FACTOR = Parameter("a", lower=-1.0, upper=1.0, null=0.0, starts=(0.5,))

@@ -89,7 +89,7 @@ def test_invalid_column_of_a_directly_created_run_is_reported(column: str, value
 
 @pytest.mark.parametrize(("value", "least"), [(0, 0), (3, 3), (np.int64(7), 2), (-1, -1)])
 def test_integer_at_or_above_its_minimum_is_returned_as_int(value: Any, least: int) -> None:
-    integer = arguments.whole_number(value, "n", least)
+    integer = arguments.checked_integer(value, "n", least)
     assert (integer, type(integer)) == (int(value), int)
 
 
@@ -98,7 +98,7 @@ def test_integer_at_or_above_its_minimum_is_returned_as_int(value: Any, least: i
     [(-1, 0), (2, 3), (True, 0), (1.0, 0), (Fraction(1, 2), 0), ("1", 0), (None, 0)],
 )
 def test_integer_below_its_minimum_or_of_another_type_is_rejected(value: Any, least: int) -> None:
-    assert str(least) in str(input_error(arguments.whole_number, value, "n", least).mend)
+    assert str(least) in str(input_error(arguments.checked_integer, value, "n", least).mend)
 
 
 def test_numeric_argument_becomes_a_contiguous_array_of_the_requested_type() -> None:

@@ -10,7 +10,7 @@ import pytest
 from input_errors import input_error
 from jbf import Run
 from jbf.estimation.prepared import Prepared
-from jbf.records.channels import side_by_side, with_own_clock
+from jbf.records.channels import recorded_samples, side_by_side
 from jbf.records.findings.own_clock import own_clock
 
 LAW = {"F_c_n": 4.0, "F_v_n_s_m": 20.0}
@@ -70,7 +70,7 @@ def test_channels_without_speed_or_position_are_rejected() -> None:
 def test_column_has_a_separate_clock_if_ten_samples_and_five_percent_are_missing() -> None:
     for samples, missing, omitted in ((100, 9, 0), (100, 10, 10), (400, 19, 0), (400, 20, 20)):
         time_s = np.arange(float(samples))
-        clock, read = with_own_clock(time_s, np.where(time_s < missing, np.nan, 1.0))
+        clock, read = recorded_samples(time_s, np.where(time_s < missing, np.nan, 1.0))
         assert (clock[0], len(clock), len(read)) == (omitted, samples - omitted, samples - omitted)
 
 

@@ -144,24 +144,24 @@ def test_speed_next_to_a_rest_is_backward_if_acceleration_contradicts_it() -> No
     time_s: Any = 0.1 * np.arange(9)
     v = np.array([0.0, 0.0, -0.05, -0.02, 0.1, 0.2, 0.04, 0.0, 0.0])
     a = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 1.0, 0.0, 0.0])
-    assert places(rests.backward_beside_rest(rest, time_s, v, a)) == [2, 3, 6]
-    assert places(rests.backward_beside_rest(rest, time_s, -v, -a)) == [2, 3, 6]
+    assert places(rests.backward_near_rest(rest, time_s, v, a)) == [2, 3, 6]
+    assert places(rests.backward_near_rest(rest, time_s, -v, -a)) == [2, 3, 6]
     # The correction begins at the rest and ends at the first consistent sample.
     v[2] = 0.2
-    assert places(rests.backward_beside_rest(rest, time_s, v, a)) == [6]
-    assert not rests.backward_beside_rest(mask("0" * 9), time_s, v, a).any()
-    assert not rests.backward_beside_rest(mask("0"), time_s[:1], v[:1], a[:1]).any()
+    assert places(rests.backward_near_rest(rest, time_s, v, a)) == [6]
+    assert not rests.backward_near_rest(mask("0" * 9), time_s, v, a).any()
+    assert not rests.backward_near_rest(mask("0"), time_s[:1], v[:1], a[:1]).any()
 
 
 def test_direction_next_to_a_rest_is_uncertain_up_to_a_threshold_of_the_path() -> None:
     rest = mask("11000011")
     path = np.array([0.0, 0.0, 0.5, 1.0, 3.0, 4.0, 4.9, 4.9])
     v = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0])
-    assert places(rests.unsure_beside_rest(rest, path, v, 0.9)) == [2]
-    assert places(rests.unsure_beside_rest(rest, path, v, 1.0)) == [2, 3, 5]
-    assert places(rests.unsure_beside_rest(rest, path, -v, 0.9)) == [2, 3, 4, 5]
-    assert places(rests.unsure_beside_rest(mask("00000011"), path, v, 0.95)) == [5]
-    assert not rests.unsure_beside_rest(mask("0" * 8), path, v, 0.9).any()
+    assert places(rests.uncertain_near_rest(rest, path, v, 0.9)) == [2]
+    assert places(rests.uncertain_near_rest(rest, path, v, 1.0)) == [2, 3, 5]
+    assert places(rests.uncertain_near_rest(rest, path, -v, 0.9)) == [2, 3, 4, 5]
+    assert places(rests.uncertain_near_rest(mask("00000011"), path, v, 0.95)) == [5]
+    assert not rests.uncertain_near_rest(mask("0" * 8), path, v, 0.9).any()
 
 
 def test_uncertain_speed_at_a_rest_is_zeroed_if_opposite_to_a_certain_one() -> None:

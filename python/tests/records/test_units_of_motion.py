@@ -8,7 +8,7 @@ from jbf import Run
 from jbf.records.motion.compared import HALF_WIDTHS, compared
 from jbf.records.motion.imposed import impose
 from jbf.records.motion.position import Position, recorded_position
-from jbf.records.motion.ratio import factor_between, slope_near, way_per_unit
+from jbf.records.motion.ratio import factor_between, metres_per_unit, slope_near
 from jbf.records.motion.units import wrong_unit
 from jbf.records.quantities import LINEAR, OF_BEARING, ROTARY, Quantities
 from known_motions import TIME_S, path_of, quantised, speed_of, white
@@ -46,7 +46,7 @@ def test_factor_between_path_and_speed_is_recovered_if_wrong_by_25_percent(facto
     path = factor * PATH_M
     assert factor_between(TIME_S, path, SPEED_M_S) == pytest.approx(factor, rel=5e-3)
     assert slope_near(TIME_S, path, SPEED_M_S, factor) == pytest.approx(factor, rel=2e-3)
-    way = way_per_unit(TIME_S, path, SPEED_M_S)
+    way = metres_per_unit(TIME_S, path, SPEED_M_S)
     assert way == (None if factor < 0.0 else pytest.approx(1.0 / factor, rel=2e-3))
 
 
@@ -62,14 +62,14 @@ def test_slope_search_returns_its_initial_factor_if_that_factor_is_wrong() -> No
 def test_unrelated_or_short_path_and_speed_have_no_factor() -> None:
     unrelated = white(len(TIME_S), 1)
     assert factor_between(TIME_S, PATH_M, unrelated) is None
-    assert way_per_unit(TIME_S, PATH_M, unrelated) is None
+    assert metres_per_unit(TIME_S, PATH_M, unrelated) is None
     assert factor_between(TIME_S[:60], 3.0 * PATH_M[:60], SPEED_M_S[:60]) is None
 
 
 @pytest.mark.parametrize(("growth", "found"), [(8.0, False), (0.5, True)])
 def test_changing_ratio_of_path_and_speed_is_not_reported(growth: float, found: bool) -> None:
     path = 0.1 * (2.0 * TIME_S + 0.5 * growth * TIME_S**2 / TIME_S[-1])
-    for function in (factor_between, way_per_unit):
+    for function in (factor_between, metres_per_unit):
         assert (function(TIME_S, path, np.full(len(TIME_S), 0.1)) is not None) == found
 
 
@@ -92,8 +92,8 @@ def test_distance_per_radian_of_a_slow_quantised_motion_is_recovered(even: bool)
     time_s = np.cumsum(steps)
     counts = quantised(0.1 * np.sin(0.5 * time_s), 4e-4)
     speed = 0.05 * np.cos(0.5 * time_s) + white(len(time_s), 9, 1e-3)
-    assert way_per_unit(time_s, counts, speed) == 1.0
-    assert way_per_unit(time_s, counts, 0.03 * speed) == pytest.approx(0.03, rel=0.01)
+    assert metres_per_unit(time_s, counts, speed) == 1.0
+    assert metres_per_unit(time_s, counts, 0.03 * speed) == pytest.approx(0.03, rel=0.01)
 
 
 def mismatch(column: str, factor: float, arm_m: float = 1.0, kind: Quantities = OF_BEARING) -> Any:

@@ -15,7 +15,7 @@ from jbf import Bootstrap, Comparison, Diagnosis, InputError, Model, Rig, compar
 from jbf.comparison.over_speed import friction_over_speed
 from jbf.diagnosis.power import Power
 from jbf.plot.power import deviate
-from jbf.plot.runs import index_of, most_telling
+from jbf.plot.runs import index_of, largest_error_run
 from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE, OTHER, one_axes
 from jbf.reporting.diagnosis_plot import plot_diagnosis
 from jbf.reporting.fit_plot import plot_bootstrap
@@ -213,8 +213,8 @@ def test_default_run_of_a_plot_is_that_with_the_largest_difference_between_two_m
         compare(Model(Rig(), "coulomb", parameters=values), runs)
         for values in (LAW, {"F_c_n": 1.0, "F_s_n": 1.0, "F_v_n_s_m": 40.0})
     )
-    assert most_telling(first, second) == 0
-    assert most_telling(first, first) == most_telling(first)
+    assert largest_error_run(first, second) == 0
+    assert largest_error_run(first, first) == largest_error_run(first)
 
 
 def test_parameter_intervals_are_standard_errors_in_percent_of_the_value() -> None:

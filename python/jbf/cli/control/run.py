@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     carried = truth if arguments.carried is None else model_of(arguments.carried)
     settings = None if arguments.settings is None else Settings.load(arguments.settings)
     bench = bench_of(arguments)
-    task, reference, load_n = _asked(arguments, truth, bench)
+    task, reference, load_n = _requested_motion(arguments, truth, bench)
     with shown("the loop"):
         results = [
             run_loop(
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _asked(arguments: argparse.Namespace, truth: Model | None, bench: Bench) -> Motion:
+def _requested_motion(arguments: argparse.Namespace, truth: Model | None, bench: Bench) -> Motion:
     """Return the task, and the reference and load if a recorded motion is followed."""
     from jbf.control import Motion, follow, thesis_model
     from jbf.records.csv_file import read_run

@@ -105,7 +105,7 @@ class ArraySource(Source):
                     found[name] = as_numbers(values)
             yield found
 
-    def left_out(self) -> list[tuple[int, str, int | None]]:
+    def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return the rows or records that the format skipped."""
         return self.passed_over
 

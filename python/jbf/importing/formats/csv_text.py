@@ -236,10 +236,10 @@ class TextSource(Source):
         cell = cell.strip()
         return self.dialect.is_number(cell) or is_instant(cell)
 
-    def left_out(self) -> list[tuple[int, str, int | None]]:
+    def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return the rows of words among the samples, and the damaged rows."""
         words = [(len(self._words), "there are only words", self._words[0])] if self._words else []
-        return [*words, *self._damage.left_out()]
+        return [*words, *self._damage.skipped_rows()]
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Yield the columns in blocks of lines."""

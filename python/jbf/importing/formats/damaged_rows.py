@@ -42,7 +42,7 @@ class DamagedRows:
         if len(self.lines) > max(DAMAGED * self.rows, 1.0):
             raise self._refused()
 
-    def left_out(self) -> list[tuple[int, str, int | None]]:
+    def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return the number of damaged rows, the reason and the first of them."""
         if self.first is None:
             return []

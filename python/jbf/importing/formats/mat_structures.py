@@ -43,7 +43,7 @@ class _Clock:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _Variable:
     name: str
     samples: Samples
     unit: str = ""
@@ -76,7 +76,7 @@ def add_structures(source: ArraySource, content: Mapping[str, Tree]) -> None:
         source.add("" if one else f"{length} samples", columns, length)
 
 
-def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Found]:
+def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Variable]:
     """Yield the signals and vectors of a variable.
 
     Parameters
@@ -86,7 +86,7 @@ def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Found]:
     """
     if isinstance(node, Samples):
         if node.rows > 1:
-            yield _Found(name, node)
+            yield _Variable(name, node)
     elif isinstance(node, list):
         for at, item in enumerate(node, 1):
             yield from _walk(item, f"{name}({at})", clock)
@@ -94,7 +94,7 @@ def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Found]:
         yield from _of_structure(node, name, clock)
 
 
-def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> Iterator[_Found]:
+def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> Iterator[_Variable]:
     fields = {key.lower(): key for key in node}
     own = _clock(node, fields)
     time = own or clock
@@ -119,7 +119,7 @@ def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> 
                 for entry in entries
             ]
         else:
-            yield _Found(f"{name}.{fields['time']}", own.samples)
+            yield _Variable(f"{name}.{fields['time']}", own.samples)
     yield from entries
 
 
@@ -137,7 +137,7 @@ def _clock(node: Mapping[str, Tree], fields: Mapping[str, str]) -> _Clock | None
 
 def _signal(
     node: Mapping[str, Tree], fields: Mapping[str, str], name: str, clock: _Clock | None
-) -> _Found | None:
+) -> _Variable | None:
     """Return the signal of a structure; None without samples, or without both label and clock."""
     held = [node[fields[key]] for key in SAMPLES if key in fields]
     samples = next((item for item in held if isinstance(item, Samples) and item.rows > 1), None)
@@ -149,7 +149,7 @@ def _signal(
         return None
     about = node.get(fields.get("datainfo", ""))
     unit = _text(node, UNITS) or (_text(about, UNITS) if isinstance(about, Mapping) else "")
-    return _Found(label or name, samples, unit, fitting)
+    return _Variable(label or name, samples, unit, fitting)
 
 
 def _text(node: Mapping[str, Any], keys: tuple[str, ...]) -> str:

@@ -164,7 +164,7 @@ class Source(ABC):
         """
         return None
 
-    def left_out(self) -> list[tuple[int, str, int | None]]:
+    def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return number, reason and first row of the rows that the last reading skipped."""
         return []
 

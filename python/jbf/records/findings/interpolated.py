@@ -112,7 +112,7 @@ def find_native(time: Array, values: Array) -> Native | None:
         for found in _first_look(t, y, step, noise):
             period, phase = sharpened(t, y, *found)
             if polygon(t, y, period, phase)[0] < _exact(values, noise):
-                native = _whole(time, values, first, WINDOW, period, phase, noise)
+                native = _extended_polygon(time, values, first, WINDOW, period, phase, noise)
                 if native is not None:
                     return native
     return _of_short_period(time, values, step)
@@ -127,7 +127,7 @@ def find_native_of(time: Array, values: Array, period_s: float) -> Native | None
         return None
     ways = [sharpened(time, values, period_s, p * period_s, near=True) for p in PHASES.tolist()]
     best = min(ways, key=lambda way: polygon(time, values, *way)[0])
-    return _whole_of(time, values, *best, noise)
+    return _fit_polygon(time, values, *best, noise)
 
 
 def _noise(values: Array, rounding: float) -> float:
@@ -186,7 +186,7 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
             break
         period, phase = sharpened(t, y, period, phase)
         if polygon(t, y, period, phase)[0] < _exact(values, min(noise, usual)):
-            native = _whole(time, values, first, LONGER, period, phase, noise)
+            native = _extended_polygon(time, values, first, LONGER, period, phase, noise)
             if native is not None:
                 return native
     return None
@@ -229,7 +229,7 @@ def is_smooth(values: Array, share: float = SMOOTH) -> bool:
     return bool(np.quantile(third, 0.7) < share * np.quantile(second, 0.7))
 
 
-def _whole(
+def _extended_polygon(
     time: Array,
     values: Array,
     first: int,
@@ -250,10 +250,10 @@ def _whole(
         part = slice(begin, begin + length)
         period, phase = sharpened(time[part], values[part], period, phase)
     period, phase = _longest(time, values, period, phase, noise)
-    if _whole_of(time, values, period, phase, noise) is None:
+    if _fit_polygon(time, values, period, phase, noise) is None:
         return None
     period, phase = sharpened(time, values, period, phase, near=True)
-    return _whole_of(time, values, period, phase, noise)
+    return _fit_polygon(time, values, period, phase, noise)
 
 
 def _longest(
@@ -276,7 +276,7 @@ def _longest(
     return period, phase
 
 
-def _whole_of(
+def _fit_polygon(
     time: Array, values: Array, period: float, phase: float, noise: float
 ) -> Native | None:
     left, knots, corners = polygon(time, values, period, phase)

@@ -45,7 +45,7 @@ def find_pushing(run: Run, motion: ImposedMotion, usable: Mask) -> list[Finding]
     scale[1] = 1.0
     x[:, 2:] -= np.mean(x[:, 2:], axis=0)
     x /= scale
-    push, error = _with_way(x, run.friction_n[moves])
+    push, error = _reversing_force(x, run.friction_n[moves])
     push, error = push / scale[0], error / scale[0]
     if push > -max(SURE * error, SHARE * float(np.std(run.friction_n[moves]))):
         return []
@@ -58,7 +58,7 @@ def find_pushing(run: Run, motion: ImposedMotion, usable: Mask) -> list[Finding]
     return [Finding("sign", "friction_n", run.name, push, said.force, "none", words)]
 
 
-def _with_way(x: Array, force: Array) -> tuple[float, float]:
+def _reversing_force(x: Array, force: Array) -> tuple[float, float]:
     """Return the force that reverses with the motion, and its standard error by the jackknife."""
     part = np.arange(len(force)) * STRETCHES // len(force)
     normal = np.stack([x[part == k].T @ x[part == k] for k in range(STRETCHES)])

@@ -103,13 +103,13 @@ def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) ->
             )
         speed, odd = mend_speed(name, time, speed, None, said.speed)
         speed, loose, ends = mend_speed_ends(name, time, speed, None, said.speed)
-        return Believed(None, 0.0, speed, True, _there(odd, *ends, stamps), loose)
+        return Believed(None, 0.0, speed, True, _present(odd, *ends, stamps), loose)
     step = quantum_of(position.path_m) or step_of(position.path_m)
     position, astray = mend_position(name, time, position)
     position, loose, ends = mend_path_ends(name, time, position)
     if not run.speed_recorded:
-        found = _there(astray, *ends, stamps)
-        alone = _path_alone(name, time, position.path_m, step, found, loose, said.speed)
+        found = _present(astray, *ends, stamps)
+        alone = _without_speed(name, time, position.path_m, step, found, loose, said.speed)
         return replace(alone, arm_m=position.arm_m)
     zero = unit = None
     hum = 0.0
@@ -139,11 +139,11 @@ def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) ->
         speed = centred_speed(time, path)
     shaken = stamps or shaken_path(name, time, path, speed)
     scale = None if unit is None else unit.finding
-    findings = _there(astray, *ends, zero, scale, aside, odd, held, shaken)
+    findings = _present(astray, *ends, zero, scale, aside, odd, held, shaken)
     return Believed(path, step, speed, measured, findings, loose, position.arm_m, hum)
 
 
-def _path_alone(
+def _without_speed(
     name: str,
     time: Array,
     path: Array,
@@ -156,9 +156,9 @@ def _path_alone(
     speed = centred_speed(time, path)
     words = "no speed was recorded"
     made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "the path alone tells it", words)
-    shaken = () if found else _there(shaken_path(name, time, path, speed))
+    shaken = () if found else _present(shaken_path(name, time, path, speed))
     return Believed(path, step, speed, False, (made, *found, *shaken), loose)
 
 
-def _there(*findings: Finding | None) -> tuple[Finding, ...]:
+def _present(*findings: Finding | None) -> tuple[Finding, ...]:
     return tuple(finding for finding in findings if finding is not None)

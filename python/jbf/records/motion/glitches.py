@@ -70,7 +70,7 @@ def mend_speed(
         return speed, None
     before, after = _both_sides(np.diff(speed))
     usual = _around(np.abs(np.diff(speed)))
-    off = _least(before, after)
+    off = _smaller_difference(before, after)
     off[off <= CHANGES * np.maximum(usual[:-1], usual[1:])] = 0.0
     bend = _around(np.abs(before + after)) / 0.6745 / np.sqrt(6.0)
     off[off <= FAR * bend] = 0.0
@@ -147,7 +147,7 @@ def _both_sides(change: Array) -> tuple[Array, Array]:
     return change[:-1], -change[1:]
 
 
-def _least(before: Array, after: Array) -> Array:
+def _smaller_difference(before: Array, after: Array) -> Array:
     """Return the smaller of both differences, or zero if sign or magnitude do not match."""
     less, more = (
         np.minimum(np.abs(before), np.abs(after)),

@@ -27,12 +27,12 @@ from jbf.records.motion.first_stroke import begins_in_a_hum
 from jbf.records.motion.position import recorded_position
 from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.rests import (
-    backward_beside_rest,
+    backward_near_rest,
     rest_edges,
     resting_samples,
     still_samples,
     sure_rests,
-    unsure_beside_rest,
+    uncertain_near_rest,
     without_swings,
 )
 from jbf.records.motion.roughness import local_noise, noise_of, quantum_of
@@ -265,9 +265,9 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
     error = np.where(rest, 0.0, sd)
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
     sign_known &= (contradiction == 0.0) & ~rest_edges(rest, time, velocity, acceleration)
-    sign_known &= ~backward_beside_rest(rest, time, velocity, acceleration) & ~records.loose
+    sign_known &= ~backward_near_rest(rest, time, velocity, acceleration) & ~records.loose
     if path is not None and not records.speed_measured:
-        sign_known &= ~unsure_beside_rest(
+        sign_known &= ~uncertain_near_rest(
             rest, path, velocity, GONE * np.sqrt(errors.position_variance)
         )
     without_swings(rest, velocity, sign_known)

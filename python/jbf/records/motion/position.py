@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.records.motion.ratio import way_per_unit
+from jbf.records.motion.ratio import metres_per_unit
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -53,7 +53,7 @@ def _by_its_speed(time: Array, angle: Array, speed: Array) -> Position | None:
 
     None if this ratio is not constant.
     """
-    radius = way_per_unit(time, angle, speed)
+    radius = metres_per_unit(time, angle, speed)
     if radius is None:
         return None
     return Position(angle * radius, "angle_rad", "rad", radius)

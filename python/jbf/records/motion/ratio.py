@@ -33,7 +33,7 @@ def factor_between(time: Array, path: Array, speed: Array) -> float | None:
     return None
 
 
-def way_per_unit(time: Array, path: Array, speed: Array) -> float | None:
+def metres_per_unit(time: Array, path: Array, speed: Array) -> float | None:
     """Metres of displacement, by the speed, per unit of the path, if no radius is given.
 
     None if the ratio is not constant or is negative.

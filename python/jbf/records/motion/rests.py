@@ -166,7 +166,7 @@ def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2
     return beside
 
 
-def backward_beside_rest(
+def backward_near_rest(
     rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2: Array
 ) -> Mask:
     """Mask of the samples next to a rest that decelerate after it or accelerate towards it.
@@ -190,7 +190,7 @@ def backward_beside_rest(
     return backward
 
 
-def unsure_beside_rest(rest: Mask, path: Array, velocity_m_s: Array, least: float) -> Mask:
+def uncertain_near_rest(rest: Mask, path: Array, velocity_m_s: Array, least: float) -> Mask:
     """Mask from a rest to where the path has moved in the direction of the speed by `least`, m.
 
     A polynomial oscillates at the onset of a motion, so it does not determine the first direction.

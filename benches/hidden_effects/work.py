@@ -9,7 +9,7 @@ from typing import Any
 import jbf
 import numpy as np
 from jbf.diagnosis.excitations import Limits, excitations
-from jbf.diagnosis.separation import played
+from jbf.diagnosis.separation import run_from_motion
 from jbf.estimation.campaign import Campaign as Prepared
 from motion_errors import held_out
 from plan import Task
@@ -55,7 +55,7 @@ def at_random(task: Task, rig: jbf.Rig, runs: list[jbf.Run], like: jbf.Run) -> j
     limits = Limits(duration_s=len(like) * step_s).filled(Prepared.prepare(rig, runs))
     every = list(excitations(limits, step_s))
     chosen = every[int(np.random.default_rng(task.seed).integers(len(every)))]
-    return played(rig, chosen, step_s, linear=False)
+    return run_from_motion(rig, chosen, step_s, linear=False)
 
 
 def next_runs(task: Task, found: jbf.Diagnosis, rig: jbf.Rig, runs: list[jbf.Run]) -> Row:

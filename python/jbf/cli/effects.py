@@ -9,7 +9,7 @@ from typing import Any
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, add_effects_from, add_json, add_law_name, command
 from jbf.cli.commands import COMMANDS
-from jbf.models.catalogue import Effect, effects, find_effect, find_law, why_not
+from jbf.models.catalogue import Effect, effects, find_effect, find_law, reason_not_applicable
 from jbf.reporting.json import json_text
 
 
@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         pages = [find_effect(arguments.name)]
         text = effect_page(pages[0])
-        reason = None if law is None else why_not(pages[0], law)
+        reason = None if law is None else reason_not_applicable(pages[0], law)
         if reason is not None:
             text += f"\n\nDoes not apply: the law {law} {reason}"
     if arguments.json:

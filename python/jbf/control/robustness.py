@@ -20,7 +20,7 @@ from jbf.control.schemes import NoCompensation, Observed, Scheme
 from jbf.control.task import TASKS, Task
 from jbf.control.tuning import tune
 from jbf.estimation.fit import fit
-from jbf.models.catalogue import effects, laws, why_not
+from jbf.models.catalogue import effects, laws, reason_not_applicable
 from jbf.models.model import Model
 from jbf.models.own_effects import OwnEffect
 from jbf.models.parameter_value import ParameterValue
@@ -95,7 +95,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
     """Yield every case in which the model is wrong."""
     for name, page in effects().items():
         own = isinstance(page, OwnEffect)
-        if own or why_not(page, base.law) is not None or name in base.effects:
+        if own or reason_not_applicable(page, base.law) is not None or name in base.effects:
             continue
         strong = STRONG.get(name, {})
         known = {p.name for p in page.parameters}
@@ -108,7 +108,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
             base, effects=(*base.effects, name), parameters={**base.parameters, **values}
         )
         if page.stage == "instrument":
-            yield Case(f"hidden {name}", base, bench, carried=misled(base, plant))
+            yield Case(f"hidden {name}", base, bench, carried=fit_to_simulated_records(base, plant))
             continue
         # An effect of the load appears only under a load that differs from the rig's.
         yield Case(f"hidden {name}", plant, bench, 1.5 if "loads" in page.needs else 1.0)
@@ -130,7 +130,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
     yield Case("noise four times", base, with_noise(bench, 4.0))
 
 
-def misled(base: Model, seen: Model) -> Model:
+def fit_to_simulated_records(base: Model, seen: Model) -> Model:
     """Fit the base model to records predicted by `seen`, with 2 % noise."""
     rng = np.random.default_rng(1)
     runs = []

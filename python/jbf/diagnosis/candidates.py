@@ -18,26 +18,26 @@ from jbf.diagnosis.fitted import Fitted
 from jbf.diagnosis.level import Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.reached import Reached
-from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
+from jbf.diagnosis.side_by_side import parallel_fits, side_by_side
 from jbf.estimation.approach import Approach, approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
 from jbf.estimation.held_out_ranges import Beyond, runs_beyond
-from jbf.estimation.initial_state import begins_anywhere
+from jbf.estimation.initial_state import has_unknown_start
 from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.left_out import (
     HeldOutPart,
     errors_by_run,
     held_out_halves,
     held_out_parts,
-    only_witnesses,
+    indispensable_runs,
 )
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.estimation.minimum import search_peaks, settle
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import effects as catalogue
-from jbf.models.catalogue import find_effect, why_not
+from jbf.models.catalogue import find_effect, reason_not_applicable
 from jbf.models.vocabulary import Clock
 
 Progress = Callable[[str, int, int], None]
@@ -88,13 +88,13 @@ class Candidates:
     @cached_property
     def names(self) -> list[str]:
         """Effects that are compatible with the law and that these records could show."""
-        pages = (e for e in catalogue().values() if why_not(e, self.law) is None)
+        pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
         return [e.name for e in pages if self.campaign.missing_requirement(e) is None]
 
     @cached_property
     def not_tried(self) -> dict[str, str]:
         """Effects that fit the law but are not testable in these records, with the reason."""
-        pages = [e for e in catalogue().values() if why_not(e, self.law) is None]
+        pages = [e for e in catalogue().values() if reason_not_applicable(e, self.law) is None]
         reasons = {e.name: self.campaign.missing_requirement(e) for e in pages}
         return {name: reason for name, reason in reasons.items() if reason is not None}
 
@@ -164,7 +164,7 @@ class Candidates:
                 # Likewise where jumps are spread: the samples next to them may be the most
                 # informative. Likewise for a free initial state: most of its gain lies far from the
                 # null.
-                if spreads_jumps(added) or begins_anywhere(added):
+                if spreads_jumps(added) or has_unknown_start(added):
                     fitted.score = np.inf
         return fitted.score
 
@@ -255,7 +255,7 @@ class Candidates:
         near: Solution,
     ) -> None:
         """Process every set of effects in parallel and report progress."""
-        done = side_by_side(work, sets, fits_at_once(self.campaign, self.law, self.names))
+        done = side_by_side(work, sets, parallel_fits(self.campaign, self.law, self.names))
         for i, effects in enumerate(sets):
             added = ", ".join(name for name in effects if name not in near.effects)
             self.tell(f"{doing} {added}", i, len(sets))
@@ -319,7 +319,7 @@ class Candidates:
         """
         richer = (*present, name)
         before, after = self.converge(present), self.converge(richer)
-        halved = sorted(only_witnesses(self.fitted(richer).problem, after))
+        halved = sorted(indispensable_runs(self.fitted(richer).problem, after))
         left, richer_left = (
             self.held_out_parts(present, halved),
             self.held_out_parts(richer, halved),

@@ -105,12 +105,12 @@ class Level:
     @property
     def critical(self) -> float:
         """Gain of one parameter that noise exceeds with probability `chance`."""
-        return _gained_by_noise(self.chance)
+        return _gain_from_noise(self.chance)
 
     @property
     def white(self) -> float:
         """Gain of one parameter in white noise at the rate shared among the candidates."""
-        return _gained_by_noise(self.false_alarms / max(self.candidates, 1))
+        return _gain_from_noise(self.false_alarms / max(self.candidates, 1))
 
     @property
     def significant(self) -> float:
@@ -134,7 +134,7 @@ class Level:
 
 
 @cache
-def _gained_by_noise(chance: float) -> float:
+def _gain_from_noise(chance: float) -> float:
     """Gain of one parameter, in twice the log likelihood, that noise exceeds with `chance`."""
     return float(special.chdtri(1, chance))
 
@@ -270,7 +270,7 @@ def _explained(ways: Array, target: Array) -> Array:
     return found
 
 
-def _on_the_same_samples(directions: list[Directions]) -> list[Directions]:
+def _largest_common_group(directions: list[Directions]) -> list[Directions]:
     """Directions of the largest group with the same number of samples.
 
     A candidate that excludes samples cannot be tested against the residual of the others.
@@ -288,7 +288,7 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     jumps, which changes nothing at its null. These, and candidates on other samples, keep their
     share of the level.
     """
-    told = _on_the_same_samples([d for d in directions if d.ways.size])
+    told = _largest_common_group([d for d in directions if d.ways.size])
     if not told:
         return level
     every = np.column_stack([d.ways for d in told])

@@ -23,7 +23,7 @@ from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.excitations import USUAL_RATE_RAD_S, Limits, excitations
 from jbf.diagnosis.planned import PlannedPower, as_recorded, planned_power
 from jbf.diagnosis.policy import DEFAULT, Policy
-from jbf.diagnosis.separation import MOST_SAMPLES, SIMULATED, played
+from jbf.diagnosis.separation import MOST_SAMPLES, SIMULATED, run_from_motion
 from jbf.diagnosis.strength import Strength, strength_of
 from jbf.errors import InputError
 from jbf.estimation.likelihood import effective_share
@@ -136,7 +136,7 @@ def plan(
     rig = model.rig
     linear = rig.bearing is None and (rig.drive is None or rig.drive.motion == "linear")
     motions = [
-        (e, played(rig, e, step_s, linear=linear))
+        (e, run_from_motion(rig, e, step_s, linear=linear))
         for e in excitations(limits, step_s, rig.quantities.speed)
     ]
     # A few of the motions, slow and fast, at each load and temperature, determine the effects.

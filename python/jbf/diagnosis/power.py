@@ -31,10 +31,10 @@ from jbf.diagnosis.alone import (
 )
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
-from jbf.diagnosis.side_by_side import fits_at_once, side_by_side
+from jbf.diagnosis.side_by_side import parallel_fits, side_by_side
 from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
 from jbf.estimation.solution import Solution
-from jbf.models.catalogue import may_come
+from jbf.models.catalogue import can_be_added
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
@@ -124,13 +124,13 @@ def power(
     models = {
         name: model
         for name in candidates.names
-        if name not in present and may_come(name, present)
+        if name not in present and can_be_added(name, present)
         if (model := strength_of(candidates, present, name)) is not None
     }
     found = side_by_side(
         lambda model: _Detectable.of(candidates, runs, model),
         list(models.values()),
-        fits_at_once(candidates.campaign, candidates.law, candidates.names),
+        parallel_fits(candidates.campaign, candidates.law, candidates.names),
     )
     seen = dict(zip(models, found, strict=True))
     return tuple(_power(candidates, runs, models, seen, name) for name in models if name in asked)
@@ -162,7 +162,7 @@ class _Detectable:
         least = [non_centrality(price, parameters, p, counts) for p in LEVELS]
         found = _required_multiples(runs, model, least)
         if np.isfinite(found[1]):
-            left = runs.not_forgiven(runs.change(model, BEYOND * found[1]))
+            left = runs.share_after_noise_refit(runs.change(model, BEYOND * found[1]))
             if left < NEARLY_ALL:
                 near = (found[0] if np.isfinite(found[0]) else 1.0) / float(np.sqrt(left))
                 found = _required_multiples(runs, model, [wanted / left for wanted in least], near)

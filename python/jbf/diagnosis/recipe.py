@@ -22,8 +22,8 @@ from jbf.diagnosis.reached import Reached
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import remainder_of, select, step
 from jbf.diagnosis.selection import Names, start_model, weights
-from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
-from jbf.diagnosis.unseen import propose_to_see, undetectable_effects
+from jbf.diagnosis.standing import best_predicting, confounders, with_final_outcomes
+from jbf.diagnosis.unseen import propose_detection_run, undetectable_effects
 from jbf.diagnosis.verdict import verdict
 from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
@@ -228,7 +228,7 @@ def _with_law(
     doubted = confounders(candidates, present, remains) if remains else ()
     machine = machine_of(candidates, present)
     named = tuple(name for name in present if name not in doubted)
-    steps = as_it_ended(steps, present, doubted)
+    steps = with_final_outcomes(steps, present, doubted)
     if doubted and not remainder_of(candidates, named):
         # No structure remains without the confounders: remove them.
         present, remains = named, refused
@@ -249,7 +249,7 @@ def _with_law(
         instead = simpler_law(candidates, kept, clock)
     proposal: Experiment | str | None = None
     if answer == "adequate" and hidden:
-        proposal = propose_to_see(candidates, present, hidden, limits)
+        proposal = propose_detection_run(candidates, present, hidden, limits)
     if tied:
         rivals = [_rivals(named, name, others) for name, others in tied.items()]
         proposal = propose(candidates, rivals, limits)

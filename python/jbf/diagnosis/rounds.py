@@ -27,7 +27,7 @@ from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import common_samples
-from jbf.models.catalogue import may_come
+from jbf.models.catalogue import can_be_added
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,9 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
         for other in _promising(candidates, (*present, name))
     ]
     pairs = [
-        pair for pair in pairs if may_come(pair[-2], present) and may_come(pair[-1], pair[:-1])
+        pair
+        for pair in pairs
+        if can_be_added(pair[-2], present) and can_be_added(pair[-1], pair[:-1])
     ]
     if not pairs:
         return present
@@ -180,7 +182,7 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
 def _promising(candidates: Candidates, present: Names) -> list[str]:
     """The candidates with the largest scores relative to a model."""
     near = candidates.converge(present)
-    names = [n for n in candidates.names if n not in present and may_come(n, present)]
+    names = [n for n in candidates.names if n not in present and can_be_added(n, present)]
     candidates.score_all([(*present, name) for name in names], near)
     scores = {name: candidates.score_test((*present, name), near) for name in names}
     finite = [name for name in names if np.isfinite(scores[name])]

@@ -28,7 +28,7 @@ from jbf.diagnosis.machine import OFFSET, TERMS, machine_of
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.likelihood import effective_share, likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution
-from jbf.models.catalogue import may_come, may_go
+from jbf.models.catalogue import can_be_added, can_be_removed
 
 Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
@@ -211,7 +211,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     Candidates that could lead are converged.
     """
     policy = candidates.policy
-    rivals = [n for n in candidates.names if n not in present and may_come(n, present)]
+    rivals = [n for n in candidates.names if n not in present and can_be_added(n, present)]
     share = effective_share(base)
     candidates.score_all([(*present, name) for name in rivals], base)
     scores = {name: candidates.score_test((*present, name), base) for name in rivals}
@@ -276,7 +276,7 @@ def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
     """The effects that still have evidence after the sample weights or the campaign changed."""
     current = tuple(effects)
     for name in effects:
-        if not may_go(name, current):
+        if not can_be_removed(name, current):
             continue
         rest = tuple(e for e in current if e != name)
         simpler = candidates.refit_from(rest, current)
@@ -331,7 +331,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
     """Review each of the effects once."""
     current = present
     for name in present:
-        if len(current) < 2 or name not in current or not may_go(name, current):
+        if len(current) < 2 or name not in current or not can_be_removed(name, current):
             continue
         rest = tuple(e for e in current if e != name)
         candidates.search_peaks(rest)
@@ -344,7 +344,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
             continue  # inertia and weight do not imitate an effect; an offset may
         best, gain = name, candidates.policy.tie
         for other in candidates.names:
-            if other in current or other in unconfirmed or not may_come(other, rest):
+            if other in current or other in unconfirmed or not can_be_added(other, rest):
                 continue
             better = -swap_cost(candidates, (*rest, other), whole, simpler)
             if better > gain:
@@ -369,7 +369,7 @@ def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float
         costs = {
             other: swap_cost(candidates, (*rest, other), whole, simpler)
             for other in candidates.names
-            if other not in present and may_come(other, rest)
+            if other not in present and can_be_added(other, rest)
         }
         close = {other: cost for other, cost in costs.items() if cost < candidates.policy.tie}
         order = [name, *sorted(close, key=lambda other: close[other])]

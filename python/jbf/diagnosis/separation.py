@@ -80,11 +80,11 @@ def motions(
     rig = candidates.campaign.rig
     linear = any(p.run.position_m is not None for p in candidates.campaign.prepared)
     for excitation in excitations(limits, step_s, rig.quantities.speed):
-        run = played(rig, excitation, step_s, linear=linear)
+        run = run_from_motion(rig, excitation, step_s, linear=linear)
         yield excitation, run, core_motion(rig, run, known_motion(run, rig.radius_m))
 
 
-def played(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:
+def run_from_motion(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:
     """Convert a motion to a run to play, with the position of a slide or the angle of a shaft."""
     velocity = excitation.velocity_m_s
     time = np.arange(len(velocity)) * step_s

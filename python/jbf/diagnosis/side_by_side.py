@@ -24,7 +24,7 @@ FEW = 4
 """Largest number of parallel fits; with more, the interpreter lock is the bottleneck."""
 
 
-def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
+def parallel_fits(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
     """Number of parallel fits for a campaign.
 
     One fit at a time is used where the matrices of long records fill the memory. User-defined

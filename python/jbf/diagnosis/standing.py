@@ -67,14 +67,14 @@ CONFOUNDER = (
 REPLACED = "added, and not needed beside what came later"
 
 
-def as_it_ended(steps: Sequence[Step], present: Names, doubted: Names) -> list[Step]:
+def with_final_outcomes(steps: Sequence[Step], present: Names, doubted: Names) -> list[Step]:
     """Update the outcome of each addition in all steps of the ledger."""
 
-    def ended(trial: Trial) -> Trial:
+    def final_outcome(trial: Trial) -> Trial:
         if trial.outcome == "added" and trial.effect in doubted:
             return replace(trial, outcome="confounder", reason=CONFOUNDER)
         if trial.outcome == "added" and trial.effect not in present:
             return replace(trial, outcome="replaced", reason=REPLACED)
         return trial
 
-    return [replace(step, trials=tuple(ended(t) for t in step.trials)) for step in steps]
+    return [replace(step, trials=tuple(final_outcome(t) for t in step.trials)) for step in steps]

@@ -134,7 +134,7 @@ class RunsAtHand:
         left: Array = self.scale * (seen - self.tangent @ (self.tangent.T @ seen))
         return left
 
-    def not_forgiven(self, changes: Sequence[Array]) -> float:
+    def share_after_noise_refit(self, changes: Sequence[Array]) -> float:
         """Share of the gain of a change that remains after the noise model is refitted, 0 to 1.
 
         A refitted noise model takes a smooth change for coloured noise.

@@ -57,7 +57,7 @@ def _changes(candidates: Candidates, present: Names, name: str) -> bool:
     return any(bool(np.any(a != b)) for a, b in zip(there, now, strict=True))
 
 
-def propose_to_see(
+def propose_detection_run(
     candidates: Candidates, present: Names, hidden: Sequence[str], limits: Limits | None = None
 ) -> Experiment | str:
     """Propose the run that would show most of the effects not detectable in the present runs."""
@@ -77,7 +77,7 @@ def propose_to_see(
             name: base.separation(own, (problem.chain.predict(values, [motion])[0], own[1]), step_s)
             for name, (problem, values) in richer.items()
         }
-        chances = sum(chance_to_name(shown[name], prices[name]) for name in hidden)
+        chances = sum(mean_detection_probability(shown[name], prices[name]) for name in hidden)
         rank = (round(chances, 2), sum(np.log1p(evidence) for evidence in shown.values()))
         if rank > best:
             best, chosen = rank, (excitation, run, shown)
@@ -102,7 +102,7 @@ def propose_to_see(
     return Experiment(words, run, sigma * base.noise_n, sigma, usual)
 
 
-def chance_to_name(evidence: float, price: float) -> float:
+def mean_detection_probability(evidence: float, price: float) -> float:
     """Probability of detecting an effect of uncertain strength.
 
     Parameters

@@ -126,7 +126,7 @@ def bootstrap(
         if progress is not None:
             progress("fitting again", k, repeats)
         again = [
-            recorded_again(p, f, fitted.noise, sigma, random)
+            simulated_recording(p, f, fitted.noise, sigma, random)
             for p, f, sigma in zip(campaign.prepared, predictions, sigmas, strict=True)
         ]
         other = Problem(
@@ -158,15 +158,15 @@ def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
     return [float(np.sqrt(np.mean(e**2))) if len(e) >= 100 else usual for e in pieces]
 
 
-def recorded_again(
+def simulated_recording(
     prepared: Prepared, friction_n: Array, noise: Noise, sigma_n: float, random: np.random.Generator
 ) -> Run:
     """Simulate a new recording of the run by its instruments, if the prediction were correct."""
     error = noise.coloured(random.normal(0.0, sigma_n, len(prepared.run)), prepared.step_s)
-    return read_again(prepared, friction_n + error, random)
+    return simulated_readings(prepared, friction_n + error, random)
 
 
-def read_again(prepared: Prepared, friction_n: Array, random: np.random.Generator) -> Run:
+def simulated_readings(prepared: Prepared, friction_n: Array, random: np.random.Generator) -> Run:
     """Simulate a new recording of the motion by the run's instruments, with the given friction.
 
     A column that is disregarded carries no information and is kept unchanged, so that it is
@@ -185,16 +185,16 @@ def read_again(prepared: Prepared, friction_n: Array, random: np.random.Generato
         velocity = run.velocity_m_s
     angle, position = run.angle_rad, run.position_m
     if angle is not None and "angle_rad" not in motion.aside:
-        angle = _path_again(np.unwrap(angle), motion.angle_rad, moving, random)
+        angle = _simulated_path(np.unwrap(angle), motion.angle_rad, moving, random)
     if position is not None and "position_m" not in motion.aside:
         arm = prepared.rig.bearing.radius_m if prepared.rig.bearing is not None else 1.0
-        position = _path_again(position, motion.angle_rad * arm, moving, random)
+        position = _simulated_path(position, motion.angle_rad * arm, moving, random)
     return replace(
         run, velocity_m_s=velocity, friction_n=friction, angle_rad=angle, position_m=position
     )
 
 
-def _path_again(
+def _simulated_path(
     recorded: Array, true: Array, moving: npt.NDArray[np.bool_], random: np.random.Generator
 ) -> Array:
     """Simulate a new reading of a path.

@@ -74,7 +74,7 @@ class Memory:
 def memories(law: str, effects: Iterable[str]) -> list[Memory]:
     """Return the parts of a law and its effects that remember the initial state of a run."""
     page = find_law(law)
-    if begins_anywhere(effects):
+    if has_unknown_start(effects):
         # A film that builds up or breaks down pushes the load cell in one direction or the other.
         return [Memory((*(SPEEDS if page.has_film else ()), *WAYS), FURTHER, np.inf, MOST_OF_ALL)]
     film = [Memory(SPEEDS, LONGER, MOST_OF_A_RUN)] if page.has_film else []
@@ -82,7 +82,7 @@ def memories(law: str, effects: Iterable[str]) -> list[Memory]:
     return film + bent
 
 
-def begins_anywhere(effects: Iterable[str]) -> bool:
+def has_unknown_start(effects: Iterable[str]) -> bool:
     """Whether one of the effects has an unknown initial state of its own."""
     return any(find_effect(name).unknown_start for name in effects)
 

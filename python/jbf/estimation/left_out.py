@@ -143,7 +143,7 @@ def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     return parts
 
 
-def only_witnesses(problem: Problem, solution: Solution) -> frozenset[int]:
+def indispensable_runs(problem: Problem, solution: Solution) -> frozenset[int]:
     """Runs that alone determine some parameter.
 
     A fit to the other runs cannot predict what this parameter does; a fit with half of the run can.

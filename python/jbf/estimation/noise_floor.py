@@ -88,12 +88,12 @@ def _rest_squares(resting: Mask, values: Array) -> list[tuple[float, int]]:
         # The beginning of a rest may still be a transient.
         begin = first + (end - first) // 4
         if end - begin >= 60:
-            part = _off_its_line(values[begin:end])
+            part = _detrended(values[begin:end])
             found.append((float(part @ part) / (len(part) - 2), len(part)))
     return found
 
 
-def _off_its_line(values: Array) -> Array:
+def _detrended(values: Array) -> Array:
     """Values minus the straight line fitted to them."""
     place = np.arange(len(values)) - 0.5 * (len(values) - 1)
     above = values - np.mean(values)

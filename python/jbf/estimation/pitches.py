@@ -135,11 +135,11 @@ def _remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
     The remaining force is the part that speed, acceleration and angle do not explain.
     """
     if campaign not in _left:
-        _left[campaign] = _without_the_known(campaign)
+        _left[campaign] = _compute_remaining_force(campaign)
     return _left[campaign]
 
 
-def _without_the_known(campaign: Campaign) -> tuple[Array, Array, Array]:
+def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
     pairs = list(zip(campaign.prepared, moving_samples(campaign), strict=True))
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     place = np.concatenate([p.motion.angle_rad[m] for p, m in pairs]) * arm
@@ -151,7 +151,7 @@ def _without_the_known(campaign: Campaign) -> tuple[Array, Array, Array]:
     # run (Frisch & Waugh 1933). A triangular factor replaces the rows of each run.
     factors, scales = [], []
     for p, m in pairs:
-        known = _known_of(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
+        known = _regressors(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
         scales.append(np.sum(known**2, axis=0))
         rows = _centred_by_direction(
             np.column_stack([known, p.friction_n[m]]), p.motion.velocity_m_s[m]
@@ -162,16 +162,16 @@ def _without_the_known(campaign: Campaign) -> tuple[Array, Array, Array]:
     solution, *_ = np.linalg.lstsq(factor[:, :-1] / scale, factor[:, -1], rcond=1e-9)
     rest = []
     for p, m in pairs:
-        known = _known_of(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
+        known = _regressors(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
         left = p.friction_n[m] - (known / scale) @ solution
         rest.append(_centred_by_direction(left[:, None], p.motion.velocity_m_s[m])[:, 0])
     return place, np.concatenate(rest), speed
 
 
-def _known_of(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knots) -> Array:
+def _regressors(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knots) -> Array:
     """Regressors of a run's force other than position, shape (n, k)."""
     slope = p.motion.acceleration_m_s2[moving]
-    return np.stack([slope, np.cos(angle), np.sin(angle), *_hats(speed, knots)], axis=1)
+    return np.stack([slope, np.cos(angle), np.sin(angle), *_hat_functions(speed, knots)], axis=1)
 
 
 def _centred_by_direction(rows: Array, speed: Array) -> Array:
@@ -194,7 +194,7 @@ def _knots(speed: Array) -> Knots:
     return found
 
 
-def _hats(speed: Array, knots: Knots) -> list[Array]:
+def _hat_functions(speed: Array, knots: Knots) -> list[Array]:
     """Piecewise linear basis functions of speed, for each direction."""
     found = []
     for way, places in knots:

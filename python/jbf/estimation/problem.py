@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.initial_state import begins_anywhere, memories, remembering
+from jbf.estimation.initial_state import has_unknown_start, memories, remembering
 from jbf.estimation.jumps import active_effects, moves_jumps, samples_near_jumps, spreads_jumps
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
@@ -173,7 +173,7 @@ class Problem:
         return np.concatenate(r), np.concatenate(j), count
 
     @property
-    def few_numbers(self) -> bool:
+    def fits_in_memory(self) -> bool:
         """Whether the derivatives at all samples fit into the memory limit."""
         samples = sum(len(p.friction_n) for p in self.campaign.prepared)
         return samples * len(self.open) <= MOST_HELD
@@ -211,7 +211,7 @@ class Problem:
         """
         samples = self.campaign.samples
         effects = active_effects(self.effects, self.parameters, values)
-        begins = begins_anywhere(effects)
+        begins = has_unknown_start(effects)
         if not (moves_jumps(effects) or spreads_jumps(effects) or begins):
             return samples
         prepared = self.campaign.prepared
@@ -250,7 +250,7 @@ class Problem:
         count = len(self.campaign.prepared)
         if lines is not None:
             residuals, jacobian = lines
-        elif self.few_numbers:
+        elif self.fits_in_memory:
             residuals, jacobian = self.linearise(values)
         else:
             residuals = OnDemand(lambda i: self.residuals(values, [i])[0], count)

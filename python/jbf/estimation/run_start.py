@@ -15,7 +15,7 @@ from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_gaps import samples_affected_by_gaps
 from jbf.estimation.film_rate import check_film
-from jbf.estimation.initial_state import REMEMBERED, begins_anywhere, memories, remembering
+from jbf.estimation.initial_state import REMEMBERED, has_unknown_start, memories, remembering
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
@@ -105,7 +105,7 @@ def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Cam
 def _what(law: str, effects: Iterable[str]) -> str:
     """Text for the state that differed from that of the model when a run began."""
     page = find_law(law)
-    cell = begins_anywhere(effects)
+    cell = has_unknown_start(effects)
     if page.has_film:
         return "film, or the cell in its play, was not settled" if cell else "film was not settled"
     return "contact was bent another way" if page.has_bristle else "cell was elsewhere in its play"

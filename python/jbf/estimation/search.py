@@ -64,7 +64,7 @@ class Visited:
     ended: list[list[Place]] = field(default_factory=list)
     lowest: tuple[Place, Lines] | None = None
 
-    def come(self, place: Place, lines: Lines | None) -> None:
+    def store(self, place: Place, lines: Lines | None) -> None:
         """Store a point, and the residuals and derivatives of all samples at the lowest point."""
         self.places[_key(place.values)] = place
         if lines is not None and (self.lowest is None or place.square < self.lowest[0].square):
@@ -131,14 +131,14 @@ def search(
         values = problem.decode(x, start)
         place = memory.at(values)
         if place is None:
-            keeps = visited is not None and problem.few_numbers
+            keeps = visited is not None and problem.fits_in_memory
             lines = problem.linearise(values) if keeps else None
             r, j, count = problem.gauss_newton_rows(values, samples, noise, lines)
             problem.best.update(values, float(r @ r) / max(count, 1))
             place = Place(problem.encode(values), values, values[problem.open], r, j, count)
             if visited is None:
                 memory.places.clear()
-            memory.come(place, lines)
+            memory.store(place, lines)
         if not way or way[-1] is not place:
             way.append(place)
             if visited is not None and any(_joins(place, other) for other in memory.ended):

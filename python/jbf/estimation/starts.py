@@ -107,7 +107,7 @@ RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
 """Rules that apply to any law, whether or not its parameters are in newtons: the records are."""
 
 
-def _down_to_a_sample(page: Parameter, campaign: Campaign) -> Starts:
+def _starts_down_to_sample(page: Parameter, campaign: Campaign) -> Starts:
     """Catalogue values, and thirds of them down to the smallest delay that a sample resolves, s."""
     least, step = min(page.starts), float(np.median([p.step_s for p in campaign.prepared]))
     count = int(np.ceil(np.log(max(least / (0.25 * step), 1.0)) / np.log(3.0)))
@@ -115,7 +115,7 @@ def _down_to_a_sample(page: Parameter, campaign: Campaign) -> Starts:
 
 
 RULES_BESIDE_THE_CATALOGUE: dict[str, Callable[[Parameter, Campaign], Starts]] = {
-    "lateness": _down_to_a_sample,
+    "lateness": _starts_down_to_sample,
 }
 """Rules that extend the values of the catalogue."""
 PITCHES = ("pitch", "ripple_pitch")

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.blocks import blocks_of
-from jbf.estimation.bootstrap import read_again
+from jbf.estimation.bootstrap import simulated_readings
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.noise_at import noise_at
@@ -46,7 +46,7 @@ def recorded_by(model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: 
     random = np.random.default_rng([draw, len(hidden)])
     errors = _errors(solution, campaign, random)
     return [
-        read_again(p, f + e, random)
+        simulated_readings(p, f + e, random)
         for p, f, e in zip(campaign.prepared, friction, errors, strict=True)
     ]
 

@@ -17,7 +17,7 @@ def check_rig_columns(rig: Rig, mapping: Map) -> None:
     if rig.drive is not None:
         columns = DriveColumns.of(rig.drive)
         try:
-            columns.refuse_strangers(file, 0, keys)
+            columns.refuse_foreign_columns(file, 0, keys)
         except InputError as error:
             key = f"columns.{error.column}"
             raise InputError(file=file, key=key, problem=error.problem, mend=error.mend) from None

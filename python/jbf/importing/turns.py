@@ -32,12 +32,12 @@ def unwrapped(stream: Stream) -> list[str]:
             jumps += int((np.abs(np.diff(values, prepend=last)) > math.pi).sum())
             last = float(values[-1])
         if jumps and high - low <= _TURN * (1.0 + 1e-6):
-            stream.rewrite(column, _going_on(stream, column))
+            stream.rewrite(column, _unwrapped_blocks(stream, column))
             notes.append(f"{key} started again {jumps} times at a turn: whole turns were added")
     return notes
 
 
-def _going_on(stream: Stream, column: int) -> Iterator[Array]:
+def _unwrapped_blocks(stream: Stream, column: int) -> Iterator[Array]:
     turns, last = 0.0, math.nan
     starts = {first for first, _ in stream.segments}
     row = 0

@@ -270,7 +270,7 @@ def find_clock(name: str) -> Clock:
     return one_of(name, CLOCKS, "clock")
 
 
-def why_not(effect: Effect, law: str) -> str | None:
+def reason_not_applicable(effect: Effect, law: str) -> str | None:
     """Return why an effect cannot be combined with a law ("the law ..."), or None if it can."""
     if law not in _user_laws:
         return effect.refused.get(law)
@@ -283,7 +283,7 @@ def check_applies(law: str, names: Iterable[str]) -> None:
     """Raise an InputError if one of the effects cannot be combined with a law."""
     page = find_law(law)
     for name in names:
-        reason = why_not(find_effect(name), page.name)
+        reason = reason_not_applicable(find_effect(name), page.name)
         if reason is not None:
             raise InputError(
                 problem=f"the effect {name} does not apply: the law {page.name} {reason}",
@@ -297,7 +297,7 @@ def transition_speed(law: str, values: Sequence[float]) -> float | None:
     return next((float(v) for p, v in pages if p.bound == "transition_speed"), None)
 
 
-def may_come(name: str, present: Collection[str]) -> bool:
+def can_be_added(name: str, present: Collection[str]) -> bool:
     """Return True if an effect may be added to those present.
 
     A further instance of an effect requires that effect.
@@ -306,7 +306,7 @@ def may_come(name: str, present: Collection[str]) -> bool:
     return page is None or page.further_of is None or page.further_of in present
 
 
-def may_go(name: str, present: Collection[str]) -> bool:
+def can_be_removed(name: str, present: Collection[str]) -> bool:
     """Return True if none of the effects present is a further instance of the given one."""
     pages = effects()
     return not any(e in pages and pages[e].further_of == name for e in present)

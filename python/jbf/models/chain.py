@@ -28,7 +28,7 @@ from jbf.records.channels import of_motion
 from jbf.records.findings.noisy_load import steady_load
 from jbf.records.findings.repeated_rows import as_read
 from jbf.records.findings.slow_temperature import recorded_temperature
-from jbf.records.motion.first_stroke import begins_in_a_hum
+from jbf.records.motion.first_stroke import begins_with_oscillation
 from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.motion.readings import ReadingErrors
 from jbf.records.recorded_load import recorded_load
@@ -219,7 +219,7 @@ def core_motion(
 
 def _from_rest(run: Run, velocity_m_s: Array) -> Array:
     """Speed, m/s, with the first sample at rest if the run begins with noise at standstill."""
-    if not begins_in_a_hum(run.time_s, velocity_m_s):
+    if not begins_with_oscillation(run.time_s, velocity_m_s):
         return velocity_m_s
     return np.concatenate(([0.0], velocity_m_s[1:]))
 

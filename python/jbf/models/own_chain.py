@@ -188,10 +188,10 @@ class OwnChain:
         """Force of the bearing, N, if the instrument is nonlinear; otherwise zeros."""
         if self.bare is None:
             return np.zeros(len(motion.columns["time_s"]))
-        found: Array = self.bare.predict(self._before_the_cell(parameters), [motion])[0]
+        found: Array = self.bare.predict(self._before_instrument(parameters), [motion])[0]
         return found
 
-    def _before_the_cell(self, parameters: Array) -> Array:
+    def _before_instrument(self, parameters: Array) -> Array:
         """Parameters of the chain of the core without those of the instrument."""
         instrument = {place for _, places in self.instrument for place in places}
         kept = [place for place in self.of_core if place not in instrument]
@@ -223,7 +223,7 @@ class OwnChain:
         kept = [place for place in self.of_core if place not in instrument]
         asked = [w for w in which if w not in instrument]
         columns = [len(self.held) + kept.index(w) for w in asked]
-        before = self._before_the_cell(parameters)
+        before = self._before_instrument(parameters)
         ((borne, slopes),) = self.bare.jacobian(before, [motion], columns)
         added, _ = self._user_forces(parameters, motion)
         found = {}

@@ -229,7 +229,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     drive = None if rig is None else the_rig(rig).drive
     of_drive = None if drive is None else DriveColumns.of(drive)
     if of_drive is not None:
-        of_drive.refuse_strangers(path, header_row, header)
+        of_drive.refuse_foreign_columns(path, header_row, header)
         required = of_drive.required(header, need_friction)
     else:
         required = _required(header, need_friction)

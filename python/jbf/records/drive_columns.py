@@ -104,10 +104,10 @@ class DriveColumns:
         found = ["time_s", one([*self.speed, *self.place])]
         return found + ([one([*self.friction])] if need_friction and self.friction else [])
 
-    def refuse_strangers(self, path: Path, row: int, header: Sequence[str]) -> None:
+    def refuse_foreign_columns(self, path: Path, row: int, header: Sequence[str]) -> None:
         """Raise an InputError if the file has a column of another kind of machine."""
         section = f'the rig\'s [drive] has motion = "{self.drive.motion}"'
-        for name, mend in _strangers(self).items():
+        for name, mend in _foreign_columns(self).items():
             if name in header:
                 problem = f"does not go with the rig: {section}"
                 if name in ("friction_n", "velocity_m_s", "position_m"):
@@ -169,7 +169,7 @@ def _friction(drive: Drive) -> dict[str, float]:
     return {"torque_percent" if drive.rated_force_n is None else "force_percent": drive.unit_n}
 
 
-def _strangers(columns: DriveColumns) -> dict[str, str]:
+def _foreign_columns(columns: DriveColumns) -> dict[str, str]:
     """Columns that this drive cannot have, and what to do about each."""
     first = next(iter(columns.friction), None)
     found = {}

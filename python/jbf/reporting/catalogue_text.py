@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from jbf.models.catalogue import Effect, Parameter, built_in, find_law, why_not
+from jbf.models.catalogue import Effect, Parameter, built_in, find_law, reason_not_applicable
 from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
 from jbf.reporting.effect_words import summary_of
 from jbf.reporting.paragraphs import columns, hanging
@@ -47,7 +47,7 @@ def effects_page(
     """
     pages = list(pages)
     if law is not None:
-        reasons_of = {e.name: why_not(e, law) for e in pages}
+        reasons_of = {e.name: reason_not_applicable(e, law) for e in pages}
         refused = {name: reason for name, reason in reasons_of.items() if reason is not None}
         said = OF_BEARING if find_law(law).needs_bearing else LINEAR
         there = effects_page([e for e in pages if e.name not in refused], None, said)

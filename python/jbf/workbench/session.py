@@ -10,7 +10,7 @@ from typing import Any
 
 from jbf.errors import InputError
 from jbf.models.catalogue import effects as catalogue
-from jbf.models.catalogue import find_effect, find_law, laws, why_not
+from jbf.models.catalogue import find_effect, find_law, laws, reason_not_applicable
 from jbf.models.chain import check_rig
 from jbf.models.model import Model
 from jbf.models.vocabulary import AUTO
@@ -266,7 +266,7 @@ class Session:
             {
                 "name": page.name,
                 "summary": page.summary,
-                "refused": None if law == AUTO else why_not(page, law),
+                "refused": None if law == AUTO else reason_not_applicable(page, law),
             }
             for page in catalogue().values()
         ]

@@ -8,7 +8,16 @@ import pytest
 from jbf import Model, Rig
 from jbf.control import TASKS, THESIS_BENCH, NoCompensation, Observed, run, thesis_model, tune
 from jbf.control.bench import with_noise
-from jbf.control.robustness import HARM, HELP, STRONG, Case, Outcome, cases, misled, robustness
+from jbf.control.robustness import (
+    HARM,
+    HELP,
+    STRONG,
+    Case,
+    Outcome,
+    cases,
+    fit_to_simulated_records,
+    robustness,
+)
 from jbf.models.catalogue import find_effect
 from shared import shared
 
@@ -70,7 +79,7 @@ def test_hidden_sensor_offset_alters_the_compensator_model_but_not_the_plant() -
 
 
 def test_fit_of_records_without_a_hidden_effect_recovers_the_model() -> None:
-    found, true = misled(BASE, BASE).parameters, BASE.parameters
+    found, true = fit_to_simulated_records(BASE, BASE).parameters, BASE.parameters
     for name in ("f_m", "U_tr_m_s", "gamma"):
         assert found[name].value == pytest.approx(true[name].value, rel=0.05), name
         assert abs(found[name].value - true[name].value) < 4.0 * found[name].stderr

@@ -17,9 +17,14 @@ from jbf.diagnosis.excitations import Excitation, excitations
 from jbf.diagnosis.experiment import propose
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power import power
-from jbf.diagnosis.separation import MOST_SAMPLES, Rival, filled_limits, motions, played
+from jbf.diagnosis.separation import MOST_SAMPLES, Rival, filled_limits, motions, run_from_motion
 from jbf.diagnosis.strength import strength_of
-from jbf.diagnosis.unseen import STRENGTHS, chance_to_name, propose_to_see, undetectable_effects
+from jbf.diagnosis.unseen import (
+    STRENGTHS,
+    mean_detection_probability,
+    propose_detection_run,
+    undetectable_effects,
+)
 from jbf.estimation.campaign import Campaign
 from linear_campaigns import coulomb_candidates, coulomb_run
 from rigsim.motions import Motion, polyline, sine, sweep
@@ -211,7 +216,7 @@ def test_probability_to_name_an_effect_is_the_mean_over_three_strengths(evidence
     """The gain of one parameter is noncentral chi-square with one degree of freedom."""
     assert STRENGTHS == (0.6, 1.0, 1.5)
     expected = np.mean([stats.ncx2.sf(32.0, 1, s**2 * evidence + 1e-12) for s in STRENGTHS])
-    assert chance_to_name(evidence, 32.0) == pytest.approx(float(expected), abs=1e-6)
+    assert mean_detection_probability(evidence, 32.0) == pytest.approx(float(expected), abs=1e-6)
 
 
 def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> None:
@@ -225,11 +230,11 @@ def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> N
     for excitation, run, motion in motions(tried, limits, step_s):
         changed = [m.problem.chain.predict(m.values(1.0), [motion])[0] for m in models]
         shown = [residual_square_after_fit(base, base.at(motion), f, step_s) for f in changed]
-        found = sum(chance_to_name(e, p) for e, p in zip(shown, prices, strict=True))
+        found = sum(mean_detection_probability(e, p) for e, p in zip(shown, prices, strict=True))
         total = float(np.sum(np.log1p(shown)))
         ranks.append((round(found, 2), total, excitation.words, shown, run))
     _, _, words, shown, run = max(ranks, key=lambda x: x[:2])
-    proposed = propose_to_see(tried, (), names, LIMITS)
+    proposed = propose_detection_run(tried, (), names, LIMITS)
     assert isinstance(proposed, Experiment)
     assert words in proposed.words
     clear = [e for e in shown if e > 2.0 * DEFAULT.least_separation]
@@ -240,7 +245,7 @@ def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> N
 
 def test_proposal_names_only_effects_that_its_run_can_detect() -> None:
     """Load-proportional friction is zero in any motion without a transmitted load."""
-    found = propose_to_see(no_effect(), (), ("inertia_leak", "torque_proportional"), LIMITS)
+    found = propose_detection_run(no_effect(), (), ("inertia_leak", "torque_proportional"), LIMITS)
     assert isinstance(found, Experiment)
     assert found.words.endswith("would show inertia_leak")
 
@@ -250,7 +255,7 @@ def test_proposal_names_only_effects_that_its_run_can_detect() -> None:
     [("torque_proportional", LIMITS), ("inertia_leak", Limits(1e-3, 1e-4, 10.0))],
 )
 def test_no_run_is_proposed_if_no_motion_can_show_the_effect(effect: str, limits: Limits) -> None:
-    found = propose_to_see(no_effect(), (), (effect,), limits)
+    found = propose_detection_run(no_effect(), (), (effect,), limits)
     assert isinstance(found, str)
     assert effect in found
 
@@ -263,7 +268,7 @@ def test_planned_motion_has_the_path_of_its_velocity(linear: bool) -> None:
     """At 0.1 m/s^2 the path after 2 s is 0.2 m; the angle of a shaft is path over radius."""
     rig = Rig() if linear else Rig.thesis()
     t = STEP_S * np.arange(101.0)
-    run = played(rig, Excitation("up", 0.1 * t, None), STEP_S, linear=linear)
+    run = run_from_motion(rig, Excitation("up", 0.1 * t, None), STEP_S, linear=linear)
     assert run.time_s == pytest.approx(t)
     assert run.velocity_m_s == pytest.approx(0.1 * t)
     radius_m = 1.0 if rig.bearing is None else rig.bearing.radius_m
@@ -276,12 +281,12 @@ def test_planned_motion_has_the_path_of_its_velocity(linear: bool) -> None:
 def test_planned_motion_has_the_given_conditions_or_the_load_of_the_rig() -> None:
     rig, v = Rig.thesis(), np.zeros(20)
     assert rig.load is not None
-    usual = played(rig, Excitation("rest", v, None), STEP_S, linear=False)
-    given = played(rig, Excitation("rest", v, 55.0, 31.0), STEP_S, linear=False)
+    usual = run_from_motion(rig, Excitation("rest", v, None), STEP_S, linear=False)
+    given = run_from_motion(rig, Excitation("rest", v, 55.0, 31.0), STEP_S, linear=False)
     assert np.unique(usual.load_n) == pytest.approx([rig.load.normal_n])
     assert np.unique(given.load_n) == pytest.approx([55.0])
     assert np.unique(given.temperature_c) == pytest.approx([31.0])
-    assert played(Rig(), Excitation("rest", v, None), STEP_S, linear=True).load_n is None
+    assert run_from_motion(Rig(), Excitation("rest", v, None), STEP_S, linear=True).load_n is None
 
 
 def candidates_of(*steps_s: float, position: bool = False) -> Candidates:

@@ -145,9 +145,11 @@ def test_share_of_a_change_not_absorbed_by_noise_is_a_likelihood_ratio(
     again = estimate_noise(there, samples.steps_s, samples.counted, most_n)
     before = samples.cost(noise, at_hand.noise)
     ratio = (samples.cost(there, again) - before) / (samples.cost(there, at_hand.noise) - before)
-    assert at_hand.not_forgiven(changes) == pytest.approx(np.clip(ratio, 0.02, 1.0), rel=1e-3)
+    assert at_hand.share_after_noise_refit(changes) == pytest.approx(
+        np.clip(ratio, 0.02, 1.0), rel=1e-3
+    )
 
 
 def test_smooth_change_is_absorbed_by_coloured_noise_unlike_a_fast_one(at_hand: RunsAtHand) -> None:
-    assert at_hand.not_forgiven(waves(at_hand, 0.2, 0.01)) < 0.2
-    assert at_hand.not_forgiven(waves(at_hand, 0.2, 3.0)) == 1.0
+    assert at_hand.share_after_noise_refit(waves(at_hand, 0.2, 0.01)) < 0.2
+    assert at_hand.share_after_noise_refit(waves(at_hand, 0.2, 3.0)) == 1.0

@@ -9,7 +9,7 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.confirmation import Confirmation, held_out_runs_confirm
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.standing import as_it_ended, best_predicting, confounders
+from jbf.diagnosis.standing import best_predicting, confounders, with_final_outcomes
 from jbf.diagnosis.verdict import name_is_supported, verdict
 from linear_campaigns import coulomb_candidates, linear_diagnosis, reversing_runs
 
@@ -134,7 +134,7 @@ def test_confounder_stays_in_the_model_if_held_out_error_falls(
 def test_ledger_reports_effects_that_became_confounders_or_were_replaced() -> None:
     added = [Trial(name, 1.0, 9.0, "added", "leads") for name in ("a", "b", "c")]
     steps = [Step((), 2.0, 2.0, 1.0, (added[0],)), Step(("a",), 1.0, 1.0, 1.0, tuple(added[1:]))]
-    ended = as_it_ended(steps, ("a", "b"), ("b",))
+    ended = with_final_outcomes(steps, ("a", "b"), ("b",))
     assert [step.effects for step in ended] == [(), ("a",)]
     outcomes = {trial.effect: trial.outcome for step in ended for trial in step.trials}
     assert outcomes == {"a": "added", "b": "confounder", "c": "replaced"}

@@ -15,8 +15,8 @@ from jbf.estimation.bootstrap import (
     bootstrap,
     check_repeats,
     innovation_sizes,
-    read_again,
-    recorded_again,
+    simulated_readings,
+    simulated_recording,
     with_error,
 )
 from jbf.estimation.campaign import Campaign
@@ -134,7 +134,7 @@ def prepared(request: pytest.FixtureRequest) -> Prepared:
 
 def test_resampled_motion_has_the_recorded_errors_with_random_signs(prepared: Prepared) -> None:
     run, motion = prepared.run, prepared.motion
-    again = read_again(prepared, np.full(len(run), 3.0), np.random.default_rng(1))
+    again = simulated_readings(prepared, np.full(len(run), 3.0), np.random.default_rng(1))
     moving = ~motion.resting
     assert 0.1 < np.mean(motion.resting) < 0.4
     bearing = prepared.rig.bearing
@@ -153,7 +153,7 @@ def test_resampling_keeps_friction_that_is_missing_or_of_unknown_sign(prepared: 
     known = prepared.motion.sign_known
     friction = np.where(np.arange(len(known)) == 57, np.nan, prepared.friction_n)
     some, random = replace(prepared, friction_n=friction), np.random.default_rng(1)
-    again = read_again(some, np.full(len(known), 99.0), random)
+    again = simulated_readings(some, np.full(len(known), 99.0), random)
     assert 0 < np.count_nonzero(~known) < len(known) // 2
     np.testing.assert_array_equal(again.friction_n[~known], friction[~known])
     kept = known & (np.arange(len(known)) != 57)
@@ -164,7 +164,7 @@ def test_resampling_keeps_friction_that_is_missing_or_of_unknown_sign(prepared: 
 def test_simulated_record_has_noise_of_the_fitted_rms_and_correlation(prepared: Prepared) -> None:
     noise = Noise(0.3, 0.5)
     n, known = len(prepared.run), prepared.motion.sign_known
-    again = recorded_again(prepared, np.full(n, 3.0), noise, 0.5, np.random.default_rng(7))
+    again = simulated_recording(prepared, np.full(n, 3.0), noise, 0.5, np.random.default_rng(7))
     kicks = np.random.default_rng(7).normal(0.0, 0.5, n)
     wanted = 3.0 + noise.coloured(kicks, prepared.step_s)
     np.testing.assert_allclose(again.friction_n[known], wanted[known])
@@ -173,7 +173,7 @@ def test_simulated_record_has_noise_of_the_fitted_rms_and_correlation(prepared: 
 def test_resampled_encoder_position_has_the_recorded_step_at_another_phase() -> None:
     rig, some, _ = campaign(5)
     (p,) = Campaign.prepare(rig, some[:1]).prepared
-    again = read_again(p, np.zeros(len(p.run)), np.random.default_rng(2)).angle_rad
+    again = simulated_readings(p, np.zeros(len(p.run)), np.random.default_rng(2)).angle_rad
     recorded, moving = np.unwrap(p.run.angle_rad), ~p.motion.resting
     size = min(change for change in np.abs(np.diff(recorded)) if change > 1e-12)
     steps = np.diff(again[moving]) / size

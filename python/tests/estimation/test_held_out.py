@@ -25,7 +25,7 @@ from jbf.estimation.left_out import (
     held_out_parts,
     held_out_residuals,
     held_out_rms,
-    only_witnesses,
+    indispensable_runs,
 )
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
@@ -173,7 +173,7 @@ def test_run_with_nearly_all_information_on_a_parameter_is_its_only_source(
 ) -> None:
     """Share of the minimum information, a sum of squared derivatives, in the other three runs."""
     others = float(np.sqrt(share * INSENSITIVE / 3.0))
-    assert only_witnesses(*solved(pushed_runs(others), "pushed")) == witnesses
+    assert indispensable_runs(*solved(pushed_runs(others), "pushed")) == witnesses
 
 
 @pytest.mark.usefixtures("push_effect")

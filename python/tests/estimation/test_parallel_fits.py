@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from by_hand import coulomb, four_runs
 from jbf import Rig
-from jbf.diagnosis.side_by_side import FEW, fits_at_once, side_by_side
+from jbf.diagnosis.side_by_side import FEW, parallel_fits, side_by_side
 from jbf.estimation.campaign import Campaign
 
 
@@ -62,9 +62,9 @@ def test_number_of_parallel_fits_is_that_of_threads_and_one_for_python_effects(
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
     for threads, expected in (("64", FEW), ("2", 2), ("1", 1)):
         monkeypatch.setenv("RAYON_NUM_THREADS", threads)
-        assert fits_at_once(campaign, "coulomb", ["sensor_offset"]) == expected
+        assert parallel_fits(campaign, "coulomb", ["sensor_offset"]) == expected
     monkeypatch.setenv("RAYON_NUM_THREADS", "4")
-    assert fits_at_once(campaign, "coulomb", ["own_drag"]) == 1
+    assert parallel_fits(campaign, "coulomb", ["own_drag"]) == 1
 
 
 def test_parallel_fits_have_the_same_values_as_sequential_fits() -> None:

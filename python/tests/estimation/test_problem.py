@@ -186,7 +186,7 @@ def test_fit_of_a_million_samples_is_the_regression_over_all_of_them() -> None:
         noise = 0.1 * np.random.default_rng(k).standard_normal(len(t))
         runs.append(Run.from_arrays(t, v, coulomb(t, v, v) + 0.3 + noise, name=f"{k:02}"))
     problem = coulomb_problem(runs, ["sensor_offset"])
-    assert not problem.few_numbers
+    assert not problem.fits_in_memory
     assert len(problem.thinned.campaign.prepared) == 5
     found = minimum(problem, [{}])
     assert found.converged

@@ -47,7 +47,7 @@ def test_force_per_ampere_or_percent_of_a_drive_includes_gear_and_screw(
     assert drive.unit_n == pytest.approx(unit)
     columns = DriveColumns.of(drive)
     assert columns.friction == pytest.approx({column: unit})
-    columns.refuse_strangers(Path("a.csv"), 1, [*columns.known, "own"])
+    columns.refuse_foreign_columns(Path("a.csv"), 1, [*columns.known, "own"])
 
 
 def test_units_and_sensor_name_of_a_drive_follow_from_its_motion_and_source() -> None:
@@ -134,7 +134,7 @@ def test_drive_requires_time_and_one_of_its_motion_and_friction_columns() -> Non
 )
 def test_unsuitable_drive_column_is_rejected_with_hint(drive: Drive, name: str, hint: str) -> None:
     columns = DriveColumns.of(drive)
-    error = input_error(columns.refuse_strangers, Path("a.csv"), 3, ["time_s", name])
+    error = input_error(columns.refuse_foreign_columns, Path("a.csv"), 3, ["time_s", name])
     assert (error.file, error.row, error.column) == ("a.csv", 3, name)
     assert hint in str(error.mend)
 

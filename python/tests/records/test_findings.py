@@ -11,7 +11,7 @@ import pytest
 from conftest import LAW, make_runs
 from jbf import Model, Rig, Run
 from jbf.cli import main
-from jbf.estimation.bootstrap import recorded_again
+from jbf.estimation.bootstrap import simulated_recording
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared
@@ -233,7 +233,7 @@ def test_resampled_record_has_the_same_motion_fault_as_the_original(fault: str) 
     prepared = Prepared.of(Rig.thesis(), wrong)
     (finding,) = prepared.examined.findings
     assert finding.channel in prepared.motion.aside
-    again = recorded_again(prepared, run.friction_n, WHITE, 0.3, np.random.default_rng(1))
+    again = simulated_recording(prepared, run.friction_n, WHITE, 0.3, np.random.default_rng(1))
     (same,) = Prepared.of(Rig.thesis(), again).examined.findings
     assert (same.kind, same.channel) == (finding.kind, finding.channel)
     assert same.size == pytest.approx(finding.size, rel=0.1)

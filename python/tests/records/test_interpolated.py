@@ -12,7 +12,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
 from jbf.records.findings.filled_in import find_filled_in
 from jbf.records.findings.interpolated import find_native, find_native_of, is_smooth
-from jbf.records.findings.polygon import lefts, polygon
+from jbf.records.findings.polygon import polygon, polygon_rms
 from known_motions import Array, quantised, reading_instants, reversing_force, white
 from scipy.signal import butter, filtfilt, lfilter
 
@@ -55,7 +55,7 @@ def test_polygon_residual_equals_that_of_dense_least_squares_for_any_period() ->
     expected = [least_squares_residual(*guess) for guess in guesses]
     residuals = [polygon(SHORT_S, DRAWN, *guess)[0] for guess in guesses]
     np.testing.assert_allclose(residuals, expected, rtol=1e-4)
-    of_many = lefts(SHORT_S, DRAWN, *np.array(guesses * 20).T)
+    of_many = polygon_rms(SHORT_S, DRAWN, *np.array(guesses * 20).T)
     np.testing.assert_allclose(of_many, expected * 20, rtol=1e-4)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from jbf.records.lagrange import weights_at_zero
 from jbf.records.motion.agreement import contradiction_of
-from jbf.records.motion.first_stroke import begins_in_a_hum
+from jbf.records.motion.first_stroke import begins_with_oscillation
 from jbf.records.motion.roughness import encoder_step, local_noise, noise_of, quantum_of, step_of
 from known_motions import path_of, places, quantised, white
 
@@ -111,4 +111,4 @@ def test_path_jump_over_ten_times_gap_or_noise_contradicts_speed(n: float, found
 )
 def test_first_stroke_below_a_thousandth_of_the_longest_is_a_rest(first: Any, hum: bool) -> None:
     speed = np.array([*first, *([-1.0] * 1001)])
-    assert begins_in_a_hum(np.arange(float(len(speed))), speed) == hum
+    assert begins_with_oscillation(np.arange(float(len(speed))), speed) == hum

@@ -151,7 +151,7 @@ class TextSource(Source):
                 self._firsts.setdefault(dated, instant)
                 self._origins[name] = (self._firsts[dated], order)
             columns.append(column)
-        held = [c for c in columns if self._holds_something(c, first)]
+        held = [c for c in columns if self._is_kept(c, first)]
         parts = merged(self.layout.parts, (cells for _, cells in self._rows(self._samples()))) or (
             Part(tuple(range(len(columns))), None, self.layout.rate_hz),
         )
@@ -177,7 +177,7 @@ class TextSource(Source):
         clocks = [part.clock for part in self.layout.parts]
         return next((at for at in places if at in clocks), None)
 
-    def _holds_something(self, column: Column, rows: Sequence[tuple[int, list[str]]]) -> bool:
+    def _is_kept(self, column: Column, rows: Sequence[tuple[int, list[str]]]) -> bool:
         """Return whether a column is kept.
 
         A column without name and values results from a delimiter at the end of each line.

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.digits import last_digit, resolution
-from jbf.records.findings.polygon import lefts, polygon, sharpened
+from jbf.records.findings.polygon import polygon, polygon_rms, sharpened
 from jbf.records.findings.steps import step_of
 
 Array = npt.NDArray[np.float64]
@@ -103,13 +103,13 @@ def find_native(time: Array, values: Array) -> Native | None:
         return None
     step = float(np.median(np.diff(time)))
     rounding = max(ROUNDING * float(np.ptp(values)), 4.0 * last_digit(values))
-    for first in _where_to_look(values, rounding):
+    for first in _search_windows(values, rounding):
         part = slice(first, first + WINDOW)
         t, y = time[part], values[part]
         noise = _noise(y, rounding)
         if noise == 0.0 or np.ptp(t) > 1.2 * WINDOW * step:
             continue
-        for found in _first_look(t, y, step, noise):
+        for found in _coarse_search(t, y, step, noise):
             period, phase = sharpened(t, y, *found)
             if polygon(t, y, period, phase)[0] < _exact(values, noise):
                 native = _extended_polygon(time, values, first, WINDOW, period, phase, noise)
@@ -149,7 +149,7 @@ def _exact(values: Array, noise: float) -> float:
     return float(max(EXACT * noise, min(digits, NEARLY * noise)))
 
 
-def _where_to_look(values: Array, rounding: float) -> list[int]:
+def _search_windows(values: Array, rounding: float) -> list[int]:
     """First samples of the search windows: along the record, and where it bends most often."""
     last = len(values) - WINDOW
     bends = np.abs(np.diff(values, 2)) > rounding
@@ -177,7 +177,7 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
     if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONGER * step:
         return None
     periods, phases = _grid(_beats(time, values, step))
-    each = lefts(t, y, periods, phases)
+    each = polygon_rms(t, y, periods, phases)
     # Any such polygon nearly fits a curve that was smoothed by a filter.
     usual = float(np.median(each))
     best = np.argsort(each, kind="stable")[:FOLLOWED]
@@ -306,7 +306,7 @@ def _at_ends(read: Array, values: Array) -> Array:
     return read
 
 
-def _first_look(t: Array, y: Array, step: float, noise: float) -> list[tuple[float, float]]:
+def _coarse_search(t: Array, y: Array, step: float, noise: float) -> list[tuple[float, float]]:
     """Find periods and phases, s, of polygons that nearly fit a window, best first.
 
     Several are returned, because with nearly as many corners as samples a wrong one may be closer
@@ -314,7 +314,7 @@ def _first_look(t: Array, y: Array, step: float, noise: float) -> list[tuple[flo
     """
     long_enough = len(t) - np.ceil(np.ptp(t) / (PERIODS * step)) - 2 >= LEAST_FREE
     periods, phases = _grid(PERIODS[long_enough] * step)
-    each = lefts(t, y, periods, phases)
+    each = polygon_rms(t, y, periods, phases)
     best = [k for k in np.argsort(each, kind="stable").tolist() if each[k] < LIKELY * noise]
     found = {periods[k]: phases[k] for k in reversed(best)}
     return [(period, found[period]) for period in dict.fromkeys(periods[best].tolist())][:FOLLOWED]

@@ -38,7 +38,7 @@ def polygon(time: Array, values: Array, period: float, phase: float) -> tuple[fl
     return float(left[0]), knots, corners
 
 
-def lefts(time: Array, values: Array, period: Array, phase: Array) -> Array:
+def polygon_rms(time: Array, values: Array, period: Array, phase: Array) -> Array:
     """RMS residuals of the best polygons for several periods and phases, shape (m,)."""
     at_once = max(AT_ONCE // len(time), 1)
     parts = [slice(k, k + at_once) for k in range(0, len(period), at_once)]
@@ -104,7 +104,7 @@ def sharpened(
         before = best[0]
         periods = np.repeat(best[1] + reach_period * steps, len(steps))
         phases = np.tile(best[2] + reach_phase * steps, len(steps))
-        left = lefts(time, values, periods, phases)
+        left = polygon_rms(time, values, periods, phases)
         least = int(np.argmin(left))
         if left[least] < best[0]:
             best = (float(left[least]), float(periods[least]), float(phases[least]))

@@ -23,7 +23,7 @@ from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of
 from jbf.records.motion.believed import NOT_AS_RECORDED, Believed, believed
 from jbf.records.motion.even_clock import even_clock
-from jbf.records.motion.first_stroke import begins_in_a_hum
+from jbf.records.motion.first_stroke import begins_with_oscillation
 from jbf.records.motion.position import recorded_position
 from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.rests import (
@@ -273,7 +273,7 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
     without_swings(rest, velocity, sign_known)
     # A run that begins in motion begins with a deflected contact. Noise at standstill is not
     # motion: with an unknown sign, models start at rest.
-    if n and begins_in_a_hum(time, velocity):
+    if n and begins_with_oscillation(time, velocity):
         sign_known[0] = False
     if n and not sign_known[0]:
         velocity[0] = 0.0

@@ -44,11 +44,11 @@ def recorded_position(run: Run, radius_m: float | None) -> Position | None:
     if run.position_m is not None:
         return Position(run.position_m, "position_m", "m", 1.0)
     if run.angle_rad is not None and run.speed_recorded:
-        return _by_its_speed(run.time_s, np.unwrap(run.angle_rad), run.velocity_m_s)
+        return _position_from_ratio(run.time_s, np.unwrap(run.angle_rad), run.velocity_m_s)
     return None
 
 
-def _by_its_speed(time: Array, angle: Array, speed: Array) -> Position | None:
+def _position_from_ratio(time: Array, angle: Array, speed: Array) -> Position | None:
     """Convert an angle of unknown radius to a path, by its ratio to the speed.
 
     None if this ratio is not constant.

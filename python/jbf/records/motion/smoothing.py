@@ -164,7 +164,7 @@ def is_even(readings: Readings, even_s: Array) -> bool:
 
     The instants are in s.
     """
-    part = _busiest(readings, CHOSEN)
+    part = _longest_path_window(readings, CHOSEN)
     few = readings.part(part)
     _, by_stamps = _likeliest_stamps(few)
     _, by_clock = _likeliest_stamps(replace(few, time_s=even_s[part]))
@@ -184,8 +184,8 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
     if n < SHORTEST:
         errors = replace(_start(readings), intensity=0.0)
         return Smoothed.of(readings, errors, np.ones(max(n - 1, 0)), np.zeros(n))
-    start = _of_likeliest_order(readings.part(_busiest(readings, CHOSEN)))
-    few = readings.part(_busiest(readings, LONGEST))
+    start = _of_likeliest_order(readings.part(_longest_path_window(readings, CHOSEN)))
+    few = readings.part(_longest_path_window(readings, LONGEST))
     errors, corners = _delayed(few, start)
     if starts:
         most = few.lower_bound(errors, corners) + START_GAIN
@@ -319,7 +319,7 @@ def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
     return found
 
 
-def _busiest(readings: Readings, longest: int) -> slice:
+def _longest_path_window(readings: Readings, longest: int) -> slice:
     """Window of at most `longest` samples with the longest path."""
     n = len(readings.time_s)
     if n <= longest:

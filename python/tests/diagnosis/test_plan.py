@@ -16,7 +16,7 @@ from jbf.diagnosis.plan import LEAST_RUNS, MOST_RUNS, Plan
 from jbf.diagnosis.planned import as_recorded
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power import non_centrality
-from jbf.diagnosis.separation import played
+from jbf.diagnosis.separation import run_from_motion
 from jbf.diagnosis.strength import strength_of
 from jbf.models.chain import core_motion, imposed
 from jbf.records.drive import Drive
@@ -42,7 +42,7 @@ def planned() -> Plan:
 def candidate_runs() -> list[tuple[str, Run]]:
     """Description and run of every motion within the limits."""
     return [
-        (e.words, replace(played(Rig(), e, STEP_S, linear=True), name=f"{k}"))
+        (e.words, replace(run_from_motion(Rig(), e, STEP_S, linear=True), name=f"{k}"))
         for k, e in enumerate(excitations(LIMITS, STEP_S))
     ]
 

@@ -8,7 +8,7 @@ import pytest
 from by_hand import Array
 from jbf import Rig
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.terms import TERMS
+from jbf.diagnosis.terms import TERMS, best_term_update
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_run
 from jbf.diagnosis.terms.proposal import Model, Proposal, is_accepted, price_of_term
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
@@ -17,7 +17,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from linear_campaigns import fit_from_truth, reversing_runs
+from linear_campaigns import coulomb_candidates, fit_from_truth, reversing_runs
 from scipy import stats
 from term_models import model_of
 
@@ -137,3 +137,25 @@ def test_term_is_not_accepted_if_held_out_runs_are_predicted_worse() -> None:
     problem = type(problem)(problem.campaign, problem.law, problem.clock, (), held)
     worse = problem.solution(off, fitted.solution.samples, WHITE)
     assert not is_accepted(replace(found, problem=problem, solution=worse), fitted)
+
+
+def test_random_effect_is_added_only_if_it_has_more_evidence_than_the_leading_effect() -> None:
+    candidates = coulomb_candidates(
+        reversing_runs(lambda i, t, f, random: f + white(i, len(t), random) + 0.3 * (-1.0) ** i)
+    )
+    fit = candidates.fitted(()).problem, candidates.converge(())
+    evidence = proposed(random_effect(model_of(*fit))).evidence
+    assert best_term_update(candidates, (), 1.01 * evidence) is None
+    update = best_term_update(candidates, (), 0.99 * evidence)
+    assert update is not None
+    assert [f.kind for f in update.campaign.more_findings] == ["level_by_run"]
+
+
+def test_variance_by_run_does_not_compete_with_an_effect() -> None:
+    candidates = coulomb_candidates(
+        reversing_runs(lambda i, t, f, random: f + (1.0 + i) * white(i, len(t), random))
+    )
+    assert best_term_update(candidates, (), 0.0) is None
+    update = best_term_update(candidates, ())
+    assert update is not None
+    assert [f.kind for f in update.campaign.more_findings] == ["noise_by_run"]

@@ -27,6 +27,7 @@ from pathlib import Path
 import jbf
 import numpy as np
 import numpy.typing as npt
+from jbf.errors import Unfinished
 
 Array = npt.NDArray[np.float64]
 Halves = tuple[list[jbf.Run], list[jbf.Run]]
@@ -202,7 +203,7 @@ def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], left: list[jbf.Run]) -> tuple[f
             try:
                 model = jbf.fit(rig, fitted, [*machine, *effects], law=law).model
                 errors[" + ".join([law, *effects])] = jbf.compare(model, left).rms_n
-            except jbf.InputError:
+            except (jbf.InputError, Unfinished):
                 continue
     best = min(errors, key=lambda name: errors[name])
     return errors[best], best
@@ -216,7 +217,10 @@ def row(task: Task) -> str:
         [replace(run, quantities=rig.quantities) for run in half] for half in task.cut(task.path)
     )
     begun = time.process_time()
-    found = jbf.diagnose(rig, fitted, law=task.law)
+    try:
+        found = jbf.diagnose(rig, fitted, law=task.law)
+    except Unfinished as error:
+        return f"| {task.title} | no answer: {error} |"
     took = time.process_time() - begun
     rms = jbf.compare(found.model, left).rms_n
     hand, model = by_hand(rig, fitted, left)

@@ -22,6 +22,7 @@ from jbf.diagnosis.selection import (
 )
 from jbf.diagnosis.terms import best_term_update
 from jbf.diagnosis.terms.shifts import DELAY
+from jbf.errors import Unfinished
 from jbf.estimation.left_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.noise_floor import noise_floor
@@ -52,13 +53,34 @@ class Selected:
     refused: tuple[Remainder, ...] = ()
 
 
+NOT_FINISHED = "the fits of further effects take too long on these records: not all were tried"
+
+
 def select(candidates: Candidates) -> Selected:
     """Add effects and terms of the observation model, the largest evidence first.
 
     The selection ends when no further one is accepted. The start model is the law with the machine
     of a drive. If no effect is accepted and the residual has structure, all candidates are fitted
     once, and then pairs of them. The score of a strong effect at its null may be small.
+
+    Raises
+    ------
+    Unfinished
+        The first round exceeds the budget. A later round that exceeds it ends the selection.
     """
+    completed: list[Selected] = []
+    try:
+        return _select(candidates, completed)
+    except Unfinished:
+        if not completed:
+            raise
+        last = completed[-1]
+        last.candidates.campaign.work.renew()
+        return replace(last, refused=(Remainder("effects", NOT_FINISHED, 0.0),))
+
+
+def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
+    """Select, and append the result of each completed round."""
     policy = candidates.policy
     present, steps = start_model(candidates), []
     follow: Follow = "promising"
@@ -74,6 +96,7 @@ def select(candidates: Candidates) -> Selected:
         candidates.reached.candidates, candidates.reached.present = candidates, present
         found = try_candidates(candidates, present, follow)
         steps.append(step(candidates, present, found.trials))
+        completed.append(Selected(candidates, present, list(steps)))
         may_update = updates < policy.most_terms
         update, grown = None, present
         if found.leader is not None:

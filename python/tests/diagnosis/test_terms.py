@@ -8,16 +8,18 @@ import pytest
 from by_hand import Array
 from jbf import Rig
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.rounds import select
 from jbf.diagnosis.terms import TERMS, best_term_update
 from jbf.diagnosis.terms.noise_variance import heavy_tails, variance_by_run
 from jbf.diagnosis.terms.proposal import Model, Proposal, is_accepted, price_of_term
 from jbf.diagnosis.terms.random_effects import random_effect, without_random_effect
+from jbf.errors import Unfinished
 from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from linear_campaigns import coulomb_candidates, fit_from_truth, reversing_runs
+from linear_campaigns import coulomb_candidates, fit_from_truth, linear_runs, reversing_runs
 from scipy import stats
 from term_models import model_of
 
@@ -159,3 +161,19 @@ def test_variance_by_run_does_not_compete_with_an_effect() -> None:
     update = best_term_update(candidates, ())
     assert update is not None
     assert [f.kind for f in update.campaign.more_findings] == ["noise_by_run"]
+
+
+def test_selection_that_exceeds_its_budget_ends_with_the_completed_rounds() -> None:
+    whole = coulomb_candidates(linear_runs("offset and drag"))
+    whole.campaign.work.renew()
+    present = select(whole).present
+    assert len(present) == 2
+    limited = coulomb_candidates(linear_runs("offset and drag"))
+    limited.campaign.work.renew(0.5 * whole.campaign.work.taken)
+    ended = select(limited)
+    assert set(ended.present) < set(present)
+    assert [r.axis for r in ended.refused] == ["effects"]
+    limited = coulomb_candidates(linear_runs("offset and drag"))
+    limited.campaign.work.renew(1e-3 * whole.campaign.work.taken)
+    with pytest.raises(Unfinished):
+        select(limited)

@@ -45,8 +45,7 @@ HAND_EFFECTS = (
     ("stroke_dependence",),
     ("dry_load_dependence", "zero_load_dependence"),
 )
-"""Effects that are tried by hand beside the machine; those that a recording cannot show are left
-out."""
+"""Effects that are tried by hand in addition to the machine, if the recording can show them."""
 
 
 def columns(path: Path) -> dict[str, Array]:

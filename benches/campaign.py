@@ -106,7 +106,7 @@ def main() -> None:
     fits = max(asked.rounds // 3, 3)
     row("records made ready", timed(lambda: Campaign.prepare(rig, runs), fits))
     row(f"`jbf.fit`, {count} parameters", timed(lambda: jbf.fit(rig, runs, EFFECTS), fits))
-    print(f"\nThe fit: converged {found.converged}, RMS {found.rms_n:.4f} N ({found.message})")
+    print(f"\nThe fit: converged {found.converged}, RMS {found.rms:.4f} N ({found.message})")
 
 
 if __name__ == "__main__":

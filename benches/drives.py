@@ -101,7 +101,7 @@ def recorded(run: AxisRun, joint: bool) -> jbf.Run:
     path = {"angle_rad" if joint else "position_m": run.path}
     made = jbf.Run.from_arrays(
         run.time_s,
-        run.velocity_m_s,
+        run.velocity,
         run.force_n,
         load_n=run.load_n,
         temperature_c=run.temperature_c,
@@ -134,7 +134,7 @@ def simulated(task: Task) -> tuple[jbf.Rig, list[jbf.Run], float]:
         records = [
             replace(
                 r,
-                force_n=strange.apply(r.time_s, r.path / PULLEY_M, r.velocity_m_s, r.force_n, rng),
+                force_n=strange.apply(r.time_s, r.path / PULLEY_M, r.velocity, r.force_n, rng),
             )
             for r in records
         ]
@@ -143,11 +143,11 @@ def simulated(task: Task) -> tuple[jbf.Rig, list[jbf.Run], float]:
 
 def answer(task: Task) -> Answer:
     """Simulate a campaign, diagnose it and assess the result."""
-    rig, runs, noise_n = simulated(task)
+    rig, runs, noise_rms = simulated(task)
     begun = time.process_time()
     found = jbf.diagnose(rig, runs[:FITTED], law="coulomb")
     took = time.process_time() - begun
-    left = jbf.compare(found.model, runs[FITTED:]).rms_n / noise_n
+    left = jbf.compare(found.model, runs[FITTED:]).rms / noise_rms
     named = (*found.machine, *found.effects)
     return Answer(task, judged(task, found), found.verdict, named, left, took)
 

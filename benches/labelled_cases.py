@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from jbf import effects as catalogue
 from jbf import read_run
+from jbf.renamed import current_effect
 
 SLOWEST_M_S = 5e-4
 
@@ -40,16 +41,16 @@ def held_out_rms(model: Path, folder: Path, work: Path) -> float:
         jbf("predict", model, path, "--out", work / "p.csv")
         predicted = np.loadtxt(work / "p.csv", delimiter=",", skiprows=1)[:, 1]
         run = read_run(path)
-        assert run.friction_n is not None
-        kept = np.abs(run.velocity_m_s) >= SLOWEST_M_S
-        total += float(np.sum((run.friction_n - predicted)[kept] ** 2))
+        assert run.friction is not None
+        kept = np.abs(run.velocity) >= SLOWEST_M_S
+        total += float(np.sum((run.friction - predicted)[kept] ** 2))
         count += int(kept.sum())
     return float(np.sqrt(total / count))
 
 
 def judge(truth: dict[str, Any], found: dict[str, Any]) -> str:
     """Assess a diagnosis: `right`, `tied`, `wrong` or `abstained`, against what can be known."""
-    hidden = set(truth["effects"])
+    hidden = {current_effect(name) for name in truth["effects"]}
     named = set(found["effects"])
     if truth["foreign"] or hidden - set(catalogue()):
         extra = named - hidden
@@ -90,7 +91,7 @@ def main() -> None:
         tally[verdict] = tally.get(verdict, 0) + 1
         print(
             f"{name:8}{hidden:34}{found['verdict']:13}{','.join(found['effects']) or '-':34}"
-            f"{verdict:11}{rms / truth['noise_n']:10.4f}{seconds:7.1f}",
+            f"{verdict:11}{rms / truth['noise_rms']:10.4f}{seconds:7.1f}",
             flush=True,
         )
     print(tally)

@@ -115,7 +115,7 @@ def main() -> None:
             found = jbf.diagnose(recording.rig, recording.runs)
         named = ", ".join(found.effects) or "-"
         kinds = ", ".join(sorted({finding.kind for finding in found.findings})) or "-"
-        error = found.steps[-1].holdout_rms_n / found.steps[-1].noise_n
+        error = found.steps[-1].held_out_rms / found.steps[-1].noise_rms
         print(f"| {name} | `{found.verdict}` | {named} | {error:.2f} | {kinds} |", flush=True)
 
 

@@ -30,7 +30,7 @@ def main() -> int:
     """Simulate, diagnose and report; fail if the names differ from the hidden effects."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split(":")[0])
     parser.add_argument("--hours", type=float, default=24.0)
-    parser.add_argument("--effect", default="inertia_leak", help="what is hidden, or none")
+    parser.add_argument("--effect", default="inertia", help="what is hidden, or none")
     parser.add_argument("--law", default="coulomb")
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
@@ -57,7 +57,7 @@ def main() -> int:
     begun, worked = time.monotonic(), time.process_time()
     found = jbf.diagnose(jbf.Rig(), runs, law=given.law, progress=told)
     wall, cpu = time.monotonic() - begun, time.process_time() - worked
-    left = jbf.compare(found.model, [other]).rms_n / float(str(truth["noise_n"]))
+    left = jbf.compare(found.model, [other]).rms / float(str(truth["noise_n"]))
     named = (*found.machine, *found.effects)
     print(f"{found.verdict}: {', '.join(named) or 'nothing'}; held out {left:.3f}")
     print(f"{wall:.0f} s, {cpu:.0f} s of the processor, at most {_peak_gib():.2f} GiB")

@@ -1,10 +1,10 @@
 """Whether effects are found as often as their power says: `python benches/power_kept.py`.
 
 The diagnosis of simulated campaigns without hidden effects reports two strengths per effect. At
-`found_80`, 80 of 100 similar campaigns would show it; at `alone_80`, it would be named alone. The
-fitted model then simulates the same motions with the effect at that strength and with similar
-noise, and the campaign is diagnosed. `--out F` stores one JSON line per campaign, in the format of
-`benches/promises.py`; a second call with the same file continues.
+`detectable_80`, 80 of 100 similar campaigns would show it; at `distinguishable_80`, it would be
+named alone. The fitted model then simulates the same motions with the effect at that strength and
+with similar noise, and the campaign is diagnosed. `--out F` stores one JSON line per campaign, in
+the format of `benches/promises.py`; a second call with the same file continues.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def with_effect(
         a - b for a, b in zip(strong.predict_many(runs), bare.predict_many(runs), strict=True)
     ]
     return [
-        replace(run, friction_n=run.friction_n + change)
+        replace(run, friction=run.friction + change)
         for run, change in zip(again, changes, strict=True)
     ]
 
@@ -75,7 +75,7 @@ def campaign(seed: int, effects: Sequence[str] | None = None) -> Iterator[dict[s
     # Separate noise for each: with common noise all or none of the effects would be found.
     draws = itertools.count(1000 * seed)
     for power in found.power:
-        for kind, value in (("found", power.found_80), ("alone", power.alone_80)):
+        for kind, value in (("found", power.detectable_80), ("alone", power.distinguishable_80)):
             draw = next(draws)
             if value is None or power.always or power.effect not in (effects or [power.effect]):
                 continue

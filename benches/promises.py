@@ -87,8 +87,8 @@ def _promises() -> Iterator[Promise]:
     )
     yield Promise("what no catalogue has: no name", "95 %", foreign, lambda row: not row["named"])
     for words, kind in (
-        ("an effect at its `found_80`: found", "power_found"),
-        ("an effect at its `alone_80`: named alone", "power_alone"),
+        ("an effect at its `detectable_80`: found", "power_found"),
+        ("an effect at its `distinguishable_80`: named alone", "power_alone"),
     ):
         yield Promise(words, "80 %", lambda row, kind=kind: bool(row["kind"] == kind), right)
 

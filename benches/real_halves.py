@@ -191,7 +191,7 @@ def plan(folder: Path, law: str) -> Iterator[Task]:
 
 def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], left: list[jbf.Run]) -> tuple[float, str]:
     """The smallest error of the fits by hand on the other half, and the model."""
-    machine = ["sensor_offset", "inertia_leak"]
+    machine = ["sensor_offset", "inertia"]
     if all(run.angle_rad is not None for run in fitted):
         machine.append("gravity")
     errors: dict[str, float] = {}
@@ -201,7 +201,7 @@ def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], left: list[jbf.Run]) -> tuple[f
                 continue
             try:
                 model = jbf.fit(rig, fitted, [*machine, *effects], law=law).model
-                errors[" + ".join([law, *effects])] = jbf.compare(model, left).rms_n
+                errors[" + ".join([law, *effects])] = jbf.compare(model, left).rms
             except (jbf.InputError, Unfinished):
                 continue
     best = min(errors, key=lambda name: errors[name])
@@ -221,7 +221,7 @@ def row(task: Task) -> str:
     except Unfinished as error:
         return f"| {task.title} | no answer: {error} |"
     took = time.process_time() - begun
-    rms = jbf.compare(found.model, left).rms_n
+    rms = jbf.compare(found.model, left).rms
     hand, model = by_hand(rig, fitted, left)
     names = ", ".join(found.effects) or "-"
     return (

@@ -24,16 +24,16 @@ MASS_KG, OFFSET_N = 95.1, -3.2
 
 def without_inertia(run: jbf.Run) -> jbf.Run:
     """Friction from a drive force: minus the inertial force of the mass and the sensor offset."""
-    assert run.friction_n is not None
-    acceleration = impose(run, None).acceleration_m_s2
-    friction = run.friction_n - MASS_KG * acceleration - OFFSET_N
-    return replace(run, friction_n=friction, name=f"{run.name}, inertia taken off")
+    assert run.friction is not None
+    acceleration = impose(run, None).acceleration
+    friction = run.friction - MASS_KG * acceleration - OFFSET_N
+    return replace(run, friction=friction, name=f"{run.name}, inertia taken off")
 
 
 def table(title: str, run: jbf.Run) -> None:
     """Fit each law and print its RMS, its time and its parameters."""
-    assert run.friction_n is not None
-    print(f"{title}: {len(run)} samples, RMS of the record {np.std(run.friction_n):.3g} N")
+    assert run.friction is not None
+    print(f"{title}: {len(run)} samples, RMS of the record {np.std(run.friction):.3g} N")
     for law in jbf.laws().values():
         if law.needs_bearing:
             continue
@@ -41,7 +41,7 @@ def table(title: str, run: jbf.Run) -> None:
         fit = jbf.fit(jbf.Rig(), [run], law=law.name)
         took = time.monotonic() - begun
         values = ", ".join(f"{n} {p.value:.4g}" for n, p in fit.parameters.items())
-        print(f"  {law.name:16}{fit.rms_n:8.3f} N  {took:5.1f} s  {values}", flush=True)
+        print(f"  {law.name:16}{fit.rms:8.3f} N  {took:5.1f} s  {values}", flush=True)
 
 
 def diagnosed(title: str, run: jbf.Run) -> None:
@@ -50,7 +50,7 @@ def diagnosed(title: str, run: jbf.Run) -> None:
     print(f"{title}: diagnosed beside coulomb in {found.elapsed_s:.0f} s: {found.verdict}")
     for step in found.steps:
         names = ", ".join(step.effects) or "the law alone"
-        print(f"  {step.rms_n:8.3f} N, left-out half {step.holdout_rms_n:8.3f} N  {names}")
+        print(f"  {step.rms:8.3f} N, left-out half {step.held_out_rms:8.3f} N  {names}")
 
 
 def main() -> int:

@@ -79,8 +79,8 @@ def measured(truth: Truth, random: np.random.Generator, coloured: bool) -> list[
         {
             name: replace(
                 r,
-                velocity_m_s=meter.velocity(r.velocity_m_s, random),
-                friction_n=meter.friction(r.friction_n, float(r.time_s[1]), random),
+                velocity=meter.velocity(r.velocity, random),
+                friction=meter.friction(r.friction, float(r.time_s[1]), random),
                 angle_rad=meter.angle(r.angle_rad),
             )
             for name, r in truth.records.items()

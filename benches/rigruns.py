@@ -40,8 +40,8 @@ def runs_of(records: dict[str, rigsim.Record]) -> list[jbf.Run]:
     return [
         jbf.Run.from_arrays(
             r.time_s,
-            r.velocity_m_s,
-            r.friction_n,
+            r.velocity,
+            r.friction,
             angle_rad=r.angle_rad,
             load_n=r.load_n,
             temperature_c=r.temperature_c,

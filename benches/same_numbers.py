@@ -71,7 +71,7 @@ def answers(name: str, options: dict[str, Any], seed: int) -> Row:
         "fit": {
             "parameters": {n: [p.value, p.stderr, p.note] for n, p in fit.parameters.items()},
             "correlations": fit.correlations.tolist(),
-            "rms_n": fit.rms_n,
+            "rms": fit.rms,
             "noise": [fit.noise.memory_s, fit.noise.colour],
             "samples": fit.samples,
             "doubtful": list(fit.doubtful),
@@ -84,7 +84,7 @@ def answers(name: str, options: dict[str, Any], seed: int) -> Row:
         run = found.experiment.run
         row["experiment"] = [
             digest(run.time_s),
-            digest(run.velocity_m_s),
+            digest(run.velocity),
             found.experiment.evidence,
         ]
     if name in ("coulomb_drag", "none"):

@@ -99,12 +99,12 @@ def diagnosed(task: Task) -> Answer:
     begun = time.process_time()
     found = jbf.diagnose(rig, runs[:FITTED], law=task.law)
     took = time.process_time() - begun
-    machine = {"inertia_leak"}
+    machine = {"inertia"}
     if plant.gravity:
         machine.add("gravity" if plant.swings else "sensor_offset")
     true = {*machine, *(name for name in task.hidden if name in EFFECTS)}
     terms = jbf.fit(rig, runs[:FITTED], sorted(true), law="coulomb")
-    errors = [jbf.compare(m, runs[FITTED:]).rms_n for m in (found.model, terms.model)]
+    errors = [jbf.compare(m, runs[FITTED:]).rms for m in (found.model, terms.model)]
     words = (
         f"{drawn.kind} {logger.rate_hz:.0f} Hz {logger.stamps} {logger.speed} {logger.force} "
         f"late {logger.speed_late:+.2f} {logger.force_late:+.2f}"
@@ -117,7 +117,7 @@ def diagnosed(task: Task) -> Answer:
         found.verdict,
         found.model.law,
         (*found.machine, *found.effects),
-        tuple(f"{r.axis} {r.share:.2g} ({r.where[:60]})" for r in found.unexplained),
+        tuple(f"{r.axis} {r.share:.2g} ({r.where[:60]})" for r in found.residual_structure),
         errors[0] / errors[1],
         took,
     )
@@ -162,7 +162,7 @@ def line(a: Answer) -> str:
     hidden = "+".join(a.task.hidden) or "nothing"
     return (
         f"{a.task.seed} {a.judged}: {hidden} -> {a.verdict} {'+'.join(a.named)} ({a.law}) "
-        f"x{a.ratio:.3f} {a.cpu_s:.0f} s [{a.drawn}] {'; '.join(a.unexplained)}"
+        f"x{a.ratio:.3f} {a.cpu_s:.0f} s [{a.drawn}] {'; '.join(a.residual_structure)}"
     )
 
 

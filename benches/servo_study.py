@@ -44,11 +44,11 @@ def study(seed: int) -> dict[str, Any]:
     campaign = servosim.simulate(seed)
     drawn = campaign.drawn
     plant, logger = drawn.plant, drawn.logger
-    effects = {"inertia_leak.m_e_kg": plant.inertia}
+    effects = {"inertia.m_e": plant.inertia}
     if plant.gravity:
-        name = "gravity.G_n" if plant.swings else "sensor_offset.b_n"
+        name = "gravity.G" if plant.swings else "sensor_offset.b"
         effects[name] = plant.gravity
-    true = {"F_c_n": plant.coulomb, "F_v_n_s_m": plant.viscous, **effects}
+    true = {"F_c": plant.coulomb, "F_v": plant.viscous, **effects}
     row: dict[str, Any] = {
         "seed": seed,
         "kind": drawn.kind,
@@ -103,10 +103,10 @@ def summary(rows: list[dict[str, Any]]) -> str:
         f"{sum(r.get('close', False) for r in rows)}; errors: {len(rows) - len(fitted)}"
     ]
     groups = {
-        "F_c": ["F_c_n"],
-        "F_v": ["F_v_n_s_m"],
-        "inertia": ["inertia_leak.m_e_kg"],
-        "gravity": ["gravity.G_n", "sensor_offset.b_n"],
+        "F_c": ["F_c"],
+        "F_v": ["F_v"],
+        "inertia": ["inertia.m_e"],
+        "gravity": ["gravity.G", "sensor_offset.b"],
     }
     for label, names in groups.items():
         z = [abs(r["z"][n]) for r in fitted for n in names if n in r["z"]]

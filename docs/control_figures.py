@@ -61,7 +61,7 @@ def starts() -> None:
 
 def reversals() -> None:
     """Print the peaks at slow reversals: of all steps, of logged ones, and with more damping."""
-    damped = thesis_model(**{"drive_compliance.c_n_m_s_rad": 1.0})
+    damped = thesis_model(**{"drive_compliance.c": 1.0})
     for row in ("velocity sine", "velocity triangle"):
         for scheme in ("learning", "coulomb"):
             r = run(None, scheme, TASKS[row])

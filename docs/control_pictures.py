@@ -64,7 +64,7 @@ def settled() -> Figure:
     belts = np.array([10.0, 20.0, 30.0, 40.0, 60.0, 100.0, 200.0, 400.0, 1000.0])
     lines = {row: [] for row in control.TASKS if row != "velocity square"}
     for k in belts:
-        soft = control.thesis_model(**{"drive_compliance.k_n_m_rad": float(k)})
+        soft = control.thesis_model(**{"drive_compliance.k": float(k)})
         found = tables(soft, bench, schemes={"coulomb": Coulomb()}, seeds=SEEDS)
         for row, ratios in lines.items():
             ratios.append(found[row, "coulomb"].ratio or np.nan)

@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 FOLDER = Path(__file__).resolve().parent / "effects"
 RIG = jbf.Rig.thesis()
 LAW = {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0}
-IN_NEWTONS = {"F_c_n": 12.0, "F_s_n": 12.0, "F_v_n_s_m": 60.0}
+IN_NEWTONS = {"F_c": 12.0, "F_s": 12.0, "F_v": 60.0}
 RATE_HZ = 200.0
 NOISE_N = 0.1
 PLAIN, WITH = "0.3", "tab:red"
@@ -51,7 +51,7 @@ SHOWN = {
     ),
     "load_dependence": Shown({"p": 0.8, "q": 1.0}, load_share=0.6),
     "film_memory": Shown({"factor": 0.35}),
-    "wear_in": Shown({"a": 0.6, "s_0": 1.0}, "eight periods of 1 rad/s"),
+    "running_in": Shown({"a": 0.6, "s_0": 1.0}, "eight periods of 1 rad/s"),
     "dwell_stiction": Shown(
         {"a": 0.15, "t_0": 3.0, "m": 0.7, "s_0": 3e-3}, "starts after rests of 1, 3 and 9 s"
     ),
@@ -93,7 +93,7 @@ SHOWN = {
     "presliding": Shown({"sigma": 300.0}),
     "coulomb_drag": Shown({"F_d": 4.0}),
     "quadratic_drag": Shown({"c": 500.0}),
-    "inertia_leak": Shown({"m_e": 30.0}),
+    "inertia": Shown({"m_e": 30.0}),
     "zero_load_dependence": Shown({"k": 0.03}),
     "gravity": Shown({"G": 4.0, "theta_0": 0.5}, "a sine of 1 rad/s"),
     "cogging": Shown({"A": 2.0, "pitch": 0.02, "phase": 0.5}, "a sine of 0.5 rad/s"),
@@ -180,7 +180,7 @@ def record(effect: Effect, folder: Path) -> None:
         kept = slice(None, None, 4)
         jbf.Run.from_arrays(
             motion.time_s[kept],
-            motion.velocity_m_s[kept],
+            motion.velocity[kept],
             (model.predict(motion) + noise)[kept],
             angle_rad=motion.angle_rad[kept],
             load_n=motion.load_n[kept],
@@ -194,7 +194,7 @@ def draw(effect: Effect) -> Figure:
     plain, changed = (model.predict(motion) for model in models_of(effect))
     figure = Figure(figsize=(9.0, 3.4), layout="constrained")
     plane, along = figure.subplots(1, 2)
-    _curves(plane, motion.velocity_m_s, plain, changed)
+    _curves(plane, motion.velocity, plain, changed)
     plane.set(xlabel="speed, m/s", ylabel="friction, N")
     _curves(along, motion.time_s, plain, changed)
     along.set(xlabel="time, s")
@@ -229,7 +229,7 @@ def page(effect: Effect) -> str:
     law, options = "`journal`, Table 4.2", ""
     if "journal" in effect.refused:
         options = "--law coulomb "
-        law = f"`coulomb`, {IN_NEWTONS['F_c_n']:g} N and {IN_NEWTONS['F_v_n_s_m']:g} N s/m"
+        law = f"`coulomb`, {IN_NEWTONS['F_c']:g} N and {IN_NEWTONS['F_v']:g} N s/m"
     lines = [
         f"# {effect.name}",
         "",

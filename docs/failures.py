@@ -54,19 +54,19 @@ SHOWN = (
         "velocity",
         "Along the speed",
         "dry friction that falls more steeply than the law's",
-        {"stribeck_excess.a": 0.1, "stribeck_excess.v_s_m_s": 0.006, "stribeck_excess.n": 1.5},
+        {"stribeck_excess.a": 0.1, "stribeck_excess.v_s": 0.006, "stribeck_excess.n": 1.5},
     ),
     Shown(
         "direction",
         "By direction",
         "a zero of the cell that is 0.6 N off",
-        {"sensor_offset.b_n": 0.6},
+        {"sensor_offset.b": 0.6},
     ),
     Shown(
         "acceleration",
         "Along the acceleration",
         "3 kg that the cell accelerates with the shaft",
-        {"inertia_leak.m_e_kg": 3.0},
+        {"inertia.m_e": 3.0},
     ),
     Shown(
         "angle",
@@ -74,9 +74,7 @@ SHOWN = (
         "friction that goes by 20 % over each turn",
         {"position_ripple.a": 0.2, "position_ripple.theta_0_rad": 1.0},
     ),
-    Shown(
-        "time", "In time", "a zero that wanders by 0.05 N each second", {"sensor_drift.d_n_s": 0.05}
-    ),
+    Shown("time", "In time", "a zero that wanders by 0.05 N each second", {"sensor_drift.d": 0.05}),
     Shown("run", "From run to run", "another dry level in each run", None, _levels),
     Shown(
         "time since a rest",
@@ -86,14 +84,14 @@ SHOWN = (
             "dwell_stiction.a": 0.15,
             "dwell_stiction.t_0_s": 1.0,
             "dwell_stiction.m": 0.7,
-            "dwell_stiction.s_0_m": 3e-3,
+            "dwell_stiction.s_0": 3e-3,
         },
     ),
     Shown(
         "distance since a reversal",
         "After reversals",
         "a contact that bends before it slides",
-        {"presliding.sigma_1_m": 800.0},
+        {"presliding.sigma": 800.0},
     ),
     Shown("frequency", "In the spectrum", "a hum of 0.6 N at 7.3 Hz", None, _hum),
     Shown("bursts", "In bursts", "a knock of 5 N in each run", None, _knock),
@@ -171,7 +169,7 @@ def page(drawn: bool) -> str:
         parts.append(
             f"## {shown.title}\n"
             f"![Residual of the law alone: {shown.hidden}](../images/failures/{name})\n\n"
-            f"**Looks like.** {looks(shown, found)} RMS {found.rms_n / found.noise_n:.2g} times "
+            f"**Looks like.** {looks(shown, found)} RMS {found.rms / found.noise_rms:.2g} times "
             f"the noise.\n\n**Here it is** {shown.hidden}.\n\n"
             f"**Usually it comes from** {advice.causes}.\n\n"
             f"**What to do.** {sentence(advice.to_do)}\n"

@@ -16,13 +16,13 @@ IMAGES = Path(__file__).resolve().parent / "images" / "laws"
 VALUES = {
     "journal": {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0},
     "journal_full": {"f_m": 0.26, "U_tr_m_s": 0.06, "K0": 7.5e5, "gamma": 33.0},
-    "coulomb": {"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 20.0},
-    "stribeck": {"F_c_n": 5.0, "F_s_n": 8.0, "v_s_m_s": 0.01, "delta": 1.0, "F_v_n_s_m": 20.0},
-    "seven_parameter": {"F_c_n": 5.0, "F_v_n_s_m": 20.0, "k_t_n_m": 1e4},
-    "dahl": {"F_c_n": 5.0, "sigma_0_n_m": 1e3, "F_v_n_s_m": 20.0},
-    "lugre": {"F_c_n": 5.0, "F_s_n": 8.0, "v_s_m_s": 0.01, "sigma_0_n_m": 2e3, "F_v_n_s_m": 20.0},
-    "maxwell_slip": {"F_c_n": 5.0, "sigma_0_n_m": 1e3, "F_v_n_s_m": 20.0},
-    "elasto_plastic": {"F_c_n": 5.0, "sigma_0_n_m": 1e3, "F_v_n_s_m": 20.0},
+    "coulomb": {"F_c": 5.0, "F_s": 5.0, "F_v": 20.0},
+    "stribeck": {"F_c": 5.0, "F_s": 8.0, "v_s": 0.01, "delta": 1.0, "F_v": 20.0},
+    "seven_parameter": {"F_c": 5.0, "F_v": 20.0, "k_t": 1e4},
+    "dahl": {"F_c": 5.0, "sigma_0": 1e3, "F_v": 20.0},
+    "lugre": {"F_c": 5.0, "F_s": 8.0, "v_s": 0.01, "sigma_0": 2e3, "F_v": 20.0},
+    "maxwell_slip": {"F_c": 5.0, "sigma_0": 1e3, "F_v": 20.0},
+    "elasto_plastic": {"F_c": 5.0, "sigma_0": 1e3, "F_v": 20.0},
 }
 """Parameters of each law.
 

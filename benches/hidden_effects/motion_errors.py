@@ -12,8 +12,8 @@ def held_out(model: jbf.Model, runs: list[jbf.Run]) -> dict[str, float]:
     """Return RMS and mean absolute error over the runs, N."""
     errors = []
     for run in runs:
-        assert run.friction_n is not None
-        kept = np.abs(run.velocity_m_s) >= SLOWEST_M_S
-        errors.append((run.friction_n - model.predict(run))[kept])
+        assert run.friction is not None
+        kept = np.abs(run.velocity) >= SLOWEST_M_S
+        errors.append((run.friction - model.predict(run))[kept])
     all_ = np.concatenate(errors)
-    return {"rms_n": float(np.sqrt(np.mean(all_**2))), "mae_n": float(np.mean(np.abs(all_)))}
+    return {"rms": float(np.sqrt(np.mean(all_**2))), "mae_n": float(np.mean(np.abs(all_)))}

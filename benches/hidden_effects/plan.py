@@ -11,7 +11,7 @@ from rigsim import BY_THERMOMETER, CATALOGUE, FOREIGN
 
 KINDS = ("single", "none", "pair", "foreign", "poor", "tied")
 STRENGTHS = (0.6, 1.0, 1.5)
-SLOW = ("drive_compliance", "sensor_lag", "inertia_leak", "film_memory", "presliding")
+SLOW = ("drive_compliance", "sensor_lag", "inertia", "film_memory", "presliding")
 """Effects that slow sweeps show hardly or not at all."""
 ALIKE = ("coulomb_drag", "sensor_offset", "direction_asymmetry", "quadratic_drag", "time_delay")
 """Effects that runs without reversal show, but may not distinguish."""

@@ -65,7 +65,7 @@ class Rivals:
 
         def score(fit: jbf.Fit) -> float:
             free = len(fit.parameters)
-            return fit.samples * 2.0 * math.log(fit.rms_n) + free * math.log(fit.samples)
+            return fit.samples * 2.0 * math.log(fit.rms) + free * math.log(fit.samples)
 
         chosen: list[str] = []
         best = score(self.bare)
@@ -108,7 +108,7 @@ class Rivals:
     def _library(self, runs: list[jbf.Run]) -> tuple[Array, Array]:
         own = dict(zip(self.bare.parameters, self.bare.model.values.tolist(), strict=True))
         base = np.concatenate([self.bare.model.predict(run) for run in runs])
-        record = np.concatenate([run.friction_n for run in runs if run.friction_n is not None])
+        record = np.concatenate([run.friction for run in runs if run.friction is not None])
         columns = []
         for effect in jbf.effects().values():
             values = {f"{effect.name}.{p.name}": p.starts[0] for p in effect.parameters}

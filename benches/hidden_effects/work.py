@@ -40,7 +40,7 @@ def simulate(task: Task, campaign: str | Campaign) -> tuple[jbf.Rig, list[jbf.Ru
 def after_run(task: Task, run: jbf.Run) -> str:
     """Assess the diagnosis after another run has been added."""
     # Every sample is used as a knot because a fast sine has few samples.
-    knots = zip(run.time_s.tolist(), run.velocity_m_s.tolist(), strict=True)
+    knots = zip(run.time_s.tolist(), run.velocity.tolist(), strict=True)
     first = standard(task.campaign)
     more = Campaign(first.name, (*first.motions, polyline("next", list(knots))), first.load_shares)
     rig, runs, _ = simulate(task, more)
@@ -97,14 +97,14 @@ def work(task: Task, with_rivals: bool) -> Row:
             found.effects,
             alternatives,
             foreign=foreign,
-            unseen=found.unseen,
+            unseen=found.not_detectable,
         ),
-        "unseen": list(found.unseen),
-        "held_out_over_noise": held_out(found.model, others)["rms_n"] / (truth["noise_n"] * colour),
+        "unseen": list(found.not_detectable),
+        "held_out_over_noise": held_out(found.model, others)["rms"] / (truth["noise_n"] * colour),
         "effect_over_noise": max(truth["effect_to_noise"].values(), default=0.0) / colour,
-        "unexplained": [str(r.where) for r in found.unexplained],
-        "rms_over_floor": found.steps[-1].rms_n / found.steps[-1].noise_n,
-        "holdout_over_rms": found.steps[-1].holdout_rms_n / found.steps[-1].rms_n,
+        "unexplained": [str(r.where) for r in found.residual_structure],
+        "rms_over_floor": found.steps[-1].rms / found.steps[-1].noise_rms,
+        "holdout_over_rms": found.steps[-1].held_out_rms / found.steps[-1].rms,
         "seconds": seconds,
     }
     if row["judged"] == "right" and not foreign:

@@ -18,7 +18,7 @@ class Case:
         The hidden effects and the recording artefacts.
     strength
         Strength of the artefacts: `mild`, `usual`, `severe`, or `-` if unknown.
-    noise_n
+    noise_rms
         White noise of the clean recording (1 s.d.), N.
     runs, held_out
         Folders: `rig.toml` and runs; clean runs of the same rig with other motions.
@@ -30,7 +30,7 @@ class Case:
     effects: tuple[str, ...]
     artefacts: tuple[str, ...]
     strength: str
-    noise_n: float
+    noise_rms: float
     runs: str
     held_out: str
     effect_over_noise: float = 0.0

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from case import Case
+from jbf.renamed import current_effect
 
 
 def cases(folder: Path, held_out: Path) -> list[Case]:
@@ -27,7 +28,7 @@ def cases(folder: Path, held_out: Path) -> list[Case]:
         found.append(
             Case(
                 name,
-                tuple(truth["effects"]),
+                tuple(map(current_effect, truth["effects"])),
                 tuple(truth.get("artefacts", ())),
                 truth.get("strength", "-"),
                 truth["noise_n"],

@@ -36,9 +36,9 @@ def held_out(model: jbf.Model, runs: Sequence[jbf.Run]) -> tuple[float, float]:
     """RMS of record minus prediction, N: of all moving samples, and of those after settling."""
     every, late = [], []
     for run in runs:
-        assert run.friction_n is not None
-        moves = np.abs(run.velocity_m_s) >= SLOWEST_M_S
-        error = run.friction_n - model.predict(run)
+        assert run.friction is not None
+        moves = np.abs(run.velocity) >= SLOWEST_M_S
+        error = run.friction - model.predict(run)
         every.append(error[moves])
         late.append(error[moves & (run.time_s >= run.time_s[0] + SETTLED_S)])
     rms = [float(np.sqrt(np.mean(np.concatenate(part) ** 2))) for part in (every, late)]
@@ -68,8 +68,8 @@ def answered(case: Case) -> Row:
         "found": told,
         "not_found": silent,
         "untrue_findings": untrue,
-        "held_out_over_noise": rms / case.noise_n,
-        "held_out_settled": settled / case.noise_n,
+        "held_out_over_noise": rms / case.noise_rms,
+        "held_out_settled": settled / case.noise_rms,
         "seconds": seconds,
         "cpu_s": cpu_s,
     }

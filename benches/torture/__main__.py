@@ -62,11 +62,11 @@ def judge(case: Case) -> tuple[str, list[str]]:
         return said, [*wrong, "more than one line"] if "\n" in said else wrong
     wrong += complaints(case, found.fit)
     last = found.steps[-1]
-    if not all(np.isfinite([last.rms_n, last.noise_n, last.holdout_rms_n])):
-        wrong.append(f"errors {last.rms_n:g}, {last.noise_n:g}, {last.holdout_rms_n:g}")
+    if not all(np.isfinite([last.rms, last.noise_rms, last.held_out_rms])):
+        wrong.append(f"errors {last.rms:g}, {last.noise_rms:g}, {last.held_out_rms:g}")
     samples = sum(map(len, case.runs))
-    if found.verdict == "adequate" and samples > 100 and last.rms_n > FAR_OFF * case.noise_n > 0.0:
-        wrong.append(f"adequate at {last.rms_n / case.noise_n:.1f} times the noise")
+    if found.verdict == "adequate" and samples > 100 and last.rms > FAR_OFF * case.noise_rms > 0.0:
+        wrong.append(f"adequate at {last.rms / case.noise_rms:.1f} times the noise")
     json.dumps(found.to_dict(), allow_nan=False)
     return found.verdict, wrong
 

@@ -20,7 +20,7 @@ KINDS = ("friction", "friction", "friction", "noise", "zeros", "constant", "own 
 class Case:
     """A campaign and its known noise.
 
-    Attributes ---------- noise_n
+    Attributes ---------- noise_rms
         Standard deviation of the part that no model can explain, N. nan if unknown: for noise
         alone, and for a speed that jumps at every sample, which no machine has.
     """
@@ -29,7 +29,7 @@ class Case:
     rig: jbf.Rig
     runs: list[jbf.Run]
     law: str
-    noise_n: float
+    noise_rms: float
 
 
 def _sine(t: Array, top: float, random: Random) -> Array:

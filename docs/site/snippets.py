@@ -62,7 +62,7 @@ def _campaign(folder: Path) -> None:
     shutil.copy(DEMO / "unseen" / "triangle_0.5.csv", folder / "other_runs")
     shutil.copy(DEMO / "two_way_0.25.csv", folder / "run.csv")
     motion = jbf.read_run(folder / "run.csv")
-    bare = jbf.Run.from_arrays(motion.time_s, motion.velocity_m_s, angle_rad=motion.angle_rad)
+    bare = jbf.Run.from_arrays(motion.time_s, motion.velocity, angle_rad=motion.angle_rad)
     for name in ("motion.csv", "planned_runs/slow.csv"):
         bare.write_csv(folder / name)
     rig = jbf.Rig.thesis("4.2")
@@ -79,11 +79,11 @@ def _warm_campaign(folder: Path) -> None:
     for number, path in enumerate(sorted((folder / "runs").glob("*.csv"))):
         run = jbf.read_run(path)
         warmth_c = 42.0 + 2.0 * np.sin(0.7 * run.time_s + number) + 0.05 * run.time_s
-        grip_n = 0.35 * (warmth_c - 40.0) * np.tanh(run.velocity_m_s / 0.01)
+        grip_n = 0.35 * (warmth_c - 40.0) * np.tanh(run.velocity / 0.01)
         jbf.Run.from_arrays(
             run.time_s,
-            run.velocity_m_s,
-            run.friction_n + grip_n,
+            run.velocity,
+            run.friction + grip_n,
             angle_rad=run.angle_rad,
             load_n=run.load_n,
             temperature_c=warmth_c,
@@ -108,8 +108,8 @@ def _measurement(folder: Path) -> None:
         "",
         "Zeit;Versuch;Reibkraft [N];Weg [mm];Geschwindigkeit [mm/s];Normalkraft [N]",
     ]
-    for number, r in enumerate(axis_campaign(14, ("inertia_leak",))[0]):
-        columns = zip(r.time_s, r.path, r.velocity_m_s, r.force_n, r.load_n, strict=True)
+    for number, r in enumerate(axis_campaign(14, ("inertia",))[0]):
+        columns = zip(r.time_s, r.path, r.velocity, r.force_n, r.load_n, strict=True)
         for t, x, v, f, n in columns:
             seconds = 40 * number + t
             row = f"{seconds:.2f};{number + 1};{f:.3f};{1e3 * x:.2f};{1e3 * v:.3f};{n:.0f}"
@@ -126,9 +126,9 @@ def _joint(folder: Path) -> None:
 
     turns, motor_n_m_a = 50.0, 0.08
     (folder / "joint").mkdir()
-    hidden = ("gravity", "inertia_leak", "viscous_thinning")
+    hidden = ("gravity", "inertia", "viscous_thinning")
     for r in axis_campaign(14, hidden, swing=8.0)[0]:
-        motor_rpm = r.velocity_m_s * turns * 60.0 / (2.0 * np.pi)
+        motor_rpm = r.velocity * turns * 60.0 / (2.0 * np.pi)
         current_a = r.force_n / (turns * motor_n_m_a)
         rows = np.column_stack((r.time_s, r.path, motor_rpm, current_a))
         names = "time_s,angle_rad,motor_speed_rpm,current_a"

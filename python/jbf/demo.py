@@ -52,7 +52,7 @@ def run(
     say(
         f"{len(plain.before.runs)} runs, every effect tried: {plain.verdict}"
         f" ({', '.join(plain.effects) or 'nothing added'})."
-        f" Held-out RMS {step.holdout_rms_n:.3g} N, noise {step.noise_n:.3g} N."
+        f" Held-out RMS {step.held_out_rms:.3g} N, noise {step.noise_rms:.3g} N."
     )
     say("\n== What had been hidden ==\n")
     say(_truth(hidden, out / "hidden"))
@@ -79,9 +79,9 @@ def _compare_on_new_motion(diagnosis: Diagnosis, folder: Path) -> str:
     full = compare(diagnosis.model, runs)
     name = runs[0].name
     return (
-        f"{name}: the law alone misses it by {bare.rms_n:.3g} N RMS, with"
-        f" {' and '.join(diagnosis.effects) or 'nothing'} added {full.rms_n:.3g} N;"
-        f" the noise on it is {full.noise_n:.3g} N."
+        f"{name}: the law alone misses it by {bare.rms:.3g} N RMS, with"
+        f" {' and '.join(diagnosis.effects) or 'nothing'} added {full.rms:.3g} N;"
+        f" the noise on it is {full.noise_rms:.3g} N."
     )
 
 

@@ -137,7 +137,7 @@ class Unfinished(InputError):
         if fit is not None:
             model = " + ".join([fit.model.law, *fit.model.effects])
             unit = fit.model.rig.quantities.force
-            best = f"the best so far is {model}, RMS {fit.rms_n:.3g} {unit}, not finished"
+            best = f"the best so far is {model}, RMS {fit.rms:.3g} {unit}, not finished"
         super().__init__(
             problem=f"no answer from these runs in {steps:.1g} steps of the model; {best}",
             mend="check that times are in seconds, or take a law without memory, such as stribeck, "

@@ -20,7 +20,7 @@ Array = npt.NDArray[np.float64]
 Friction = Callable[[Array, Array, Array], Array]
 
 STEP_S = 0.02
-LAW = {"F_c_n": 5.0, "F_v_n_s_m": 20.0}
+LAW = {"F_c": 5.0, "F_v": 20.0}
 
 
 def one_way(
@@ -30,7 +30,7 @@ def one_way(
     way: float = 1.0,
     rate: float = 2.0,
     duration_s: float = 10.0,
-    noise_n: float = 0.0,
+    noise_rms: float = 0.0,
     seed: int = 0,
 ) -> Run:
     """A run at 0.05 to 0.15 m/s in one direction.
@@ -41,42 +41,42 @@ def one_way(
     t = np.arange(0.0, duration_s + 0.5 * STEP_S, STEP_S)
     v = way * (0.1 + 0.05 * np.sin(rate * t))
     a = way * 0.05 * rate * np.cos(rate * t)
-    noise = noise_n * np.random.default_rng(seed).standard_normal(len(t))
+    noise = noise_rms * np.random.default_rng(seed).standard_normal(len(t))
     return Run.from_arrays(t, v, friction(t, v, a) + noise, name=name)
 
 
 def wandering(
-    name: str, friction: Friction, *, way: float, rate: float, noise_n: float, seed: int
+    name: str, friction: Friction, *, way: float, rate: float, noise_rms: float, seed: int
 ) -> Run:
     """A run like `one_way` whose speed has two frequencies without a common period."""
     t = np.arange(0.0, 10.0 + 0.5 * STEP_S, STEP_S)
     other = 0.6180340 * rate
     v = way * (0.1 + 0.03 * np.sin(rate * t) + 0.02 * np.sin(other * t + 1.0))
     a = way * (0.03 * rate * np.cos(rate * t) + 0.02 * other * np.cos(other * t + 1.0))
-    noise = noise_n * np.random.default_rng(seed).standard_normal(len(t))
+    noise = noise_rms * np.random.default_rng(seed).standard_normal(len(t))
     return Run.from_arrays(t, v, friction(t, v, a) + noise, name=name)
 
 
-def four_runs(friction: Friction, *, noise_n: float, seed: int = 0) -> list[Run]:
+def four_runs(friction: Friction, *, noise_rms: float, seed: int = 0) -> list[Run]:
     """Two `wandering` runs in each direction: any three determine the prediction of the fourth."""
     plan = (("a", 1.0, 12.0), ("b", -1.0, 14.0), ("c", 1.0, 10.0), ("d", -1.0, 16.0))
     return [
-        wandering(name, friction, way=way, rate=rate, noise_n=noise_n, seed=4 * seed + i)
+        wandering(name, friction, way=way, rate=rate, noise_rms=noise_rms, seed=4 * seed + i)
         for i, (name, way, rate) in enumerate(plan)
     ]
 
 
-def there_and_back(friction: Friction, *, noise_n: float = 0.0, seed: int = 0) -> list[Run]:
+def there_and_back(friction: Friction, *, noise_rms: float = 0.0, seed: int = 0) -> list[Run]:
     """A run in each direction of motion, named `there` and `back`; no sample is at rest."""
     return [
-        one_way("there", friction, noise_n=noise_n, seed=2 * seed),
-        one_way("back", friction, way=-1.0, rate=3.0, noise_n=noise_n, seed=2 * seed + 1),
+        one_way("there", friction, noise_rms=noise_rms, seed=2 * seed),
+        one_way("back", friction, way=-1.0, rate=3.0, noise_rms=noise_rms, seed=2 * seed + 1),
     ]
 
 
 def coulomb(t: Array, v: Array, a: Array) -> Array:
     """Dry friction of 5 N and viscous friction of 20 N s/m."""
-    return LAW["F_c_n"] * np.sign(v) + LAW["F_v_n_s_m"] * v
+    return LAW["F_c"] * np.sign(v) + LAW["F_v"] * v
 
 
 def along(more_n: float) -> Friction:
@@ -95,7 +95,7 @@ def assert_recovered(
 @cache
 def _computed() -> tuple[Fit, Comparison]:
     """A computed fit and comparison, in which the functions below replace numbers."""
-    fitted = fit(Rig(), there_and_back(coulomb, noise_n=0.1), law="coulomb")
+    fitted = fit(Rig(), there_and_back(coulomb, noise_rms=0.1), law="coulomb")
     compared = compare(Model(Rig(), "coulomb", parameters=LAW), there_and_back(along(1.0)))
     campaign = compared.campaign
     # Records without noise have a finding that states this.
@@ -108,12 +108,12 @@ def _computed() -> tuple[Fit, Comparison]:
 def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) -> Fit:
     """A fit of three law parameters, one of which is held, and of the sensor offset if given."""
     parameters = {
-        "F_c_n": ParameterValue(4.9876, 0.0123),
-        "F_s_n": ParameterValue(6.0, None, "held fixed", held=True),
-        "F_v_n_s_m": ParameterValue(20.44, 0.52),
+        "F_c": ParameterValue(4.9876, 0.0123),
+        "F_s": ParameterValue(6.0, None, "held fixed", held=True),
+        "F_v": ParameterValue(20.44, 0.52),
     }
     if "sensor_offset" in effects:
-        parameters["sensor_offset.b_n"] = ParameterValue(-0.25, 0.025)
+        parameters["sensor_offset.b"] = ParameterValue(-0.25, 0.025)
     table = np.array([[1.0, -0.9, 0.45], [-0.9, 1.0, 0.1], [0.45, 0.1, 1.0]])
     size = len(parameters) - 1
     fitted = _computed()[0]
@@ -122,8 +122,8 @@ def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) 
         model=Model(Rig(), "coulomb", effects, parameters),
         parameters=parameters,
         correlations=table[:size, :size],
-        rms_n=0.525,
-        noise_floor_n=0.5,
+        rms=0.525,
+        noise_floor=0.5,
         noise=replace(fitted.noise, colour=0.25, memory_s=0.15),
         samples=1001,
         converged=True,
@@ -131,23 +131,23 @@ def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) 
     )
 
 
-def comparison_by_hand(rms_n: float, runs_rms_n: tuple[float, float]) -> Comparison:
+def comparison_by_hand(rms: float, runs_rms: tuple[float, float]) -> Comparison:
     """A comparison with one failure and a noise floor of 0.5 N."""
     computed = _computed()[1]
     counts = (501, 500)
     runs = tuple(
-        replace(r, rms_n=x, samples=n)
-        for r, x, n in zip(computed.runs, runs_rms_n, counts, strict=True)
+        replace(r, rms=x, samples=n)
+        for r, x, n in zip(computed.runs, runs_rms, counts, strict=True)
     )
     direction = next(f for f in computed.failures if f.axis == "direction")
     pattern = replace(direction, where="record above the model", share=0.6)
-    return replace(computed, rms_n=rms_n, noise_n=0.5, runs=runs, failures=(pattern,))
+    return replace(computed, rms=rms, noise_rms=0.5, runs=runs, failures=(pattern,))
 
 
 TRIALS = (
     Trial("sensor_offset", 0.525, 812.4, "added", "largest evidence"),
     Trial("sensor_drift", 1.5, 55.0, "ties", "fits as well as sensor_offset"),
-    Trial("inertia_leak", 2.0, 7.4, "rejected", "sensor_offset leads by 805"),
+    Trial("inertia", 2.0, 7.4, "rejected", "sensor_offset leads by 805"),
     Trial("sensor_lag", 2.5, -26.2, "no gain", "gains no more than chance would"),
 )
 RESIDUAL_STRUCTURE = (
@@ -173,7 +173,7 @@ def diagnosis_by_hand(verdict: Any) -> Diagnosis:
         weights={e: {e: 0.62, **dict.fromkeys(ties, 0.38)} if ties else {e: 1.0} for e in effects},
         steps=steps,
         failures=before.failures if verdict != "adequate" else (),
-        unexplained=RESIDUAL_STRUCTURE if verdict == "unexplained" else (),
+        residual_structure=RESIDUAL_STRUCTURE if verdict == "unexplained" else (),
         next_experiment="record a rest" if ties else None,
         fit=fit_by_hand(effects),
         before=before,
@@ -181,5 +181,5 @@ def diagnosis_by_hand(verdict: Any) -> Diagnosis:
         elapsed_s=12.5,
         level=Level.shared(DEFAULT, 12, 2000.0, 0.1),
         not_tried={"position_ripple": "not every run has the shaft's angle"},
-        unseen=("backlash",) if verdict == "adequate" else (),
+        not_detectable=("backlash",) if verdict == "adequate" else (),
     )

@@ -88,7 +88,7 @@ def rig() -> Rig:
 @pytest.fixture(scope="session")
 def runs() -> list[Run]:
     """Three short runs with a load-independent drag that the base law lacks."""
-    return make_runs({"coulomb_drag": {"F_d_n": DRAG_N}})
+    return make_runs({"coulomb_drag": {"F_d": DRAG_N}})
 
 
 @pytest.fixture(scope="session")

@@ -17,7 +17,7 @@ from jbf.estimation.solution import Solution
 from scipy import signal
 
 STEP_S = 0.02
-HELD = {"F_s_n": 6.0}
+HELD = {"F_s": 6.0}
 """Breakaway friction (N), which motions without reversals do not determine."""
 VALUES = {**LAW, **HELD}
 

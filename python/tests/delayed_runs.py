@@ -55,7 +55,7 @@ def reversing_campaign(
     drift: float = 0.0,
     *,
     seed: int = 0,
-    noise_n: float = NOISE_N,
+    noise_rms: float = NOISE_N,
     speed_noise_m_s: float = 0.0,
 ) -> Campaign:
     """Reversing runs of 20 s; `delays_s` are those in the middle of each run.
@@ -66,7 +66,7 @@ def reversing_campaign(
     t = np.arange(0.0, DURATION_S + 0.01, STEP_S)
     for i, delay_s in enumerate(delays_s):
         v = reversing_speed(i, t - delay_s - drift * (t - 0.5 * DURATION_S))
-        force = coulomb(t, v, v) + noise_n * random.standard_normal(len(t))
+        force = coulomb(t, v, v) + noise_rms * random.standard_normal(len(t))
         speed = reversing_speed(i, t) + speed_noise_m_s * random.standard_normal(len(t))
         runs.append(Run.from_arrays(t, speed, force, name=f"run {i}"))
     return Campaign.prepare(Rig(), runs)
@@ -77,7 +77,7 @@ def one_way_campaign(
     drift: float = 0.0,
     *,
     seed: int = 0,
-    noise_n: float = ONE_WAY_NOISE_N,
+    noise_rms: float = ONE_WAY_NOISE_N,
     constant_speed: int | None = None,
     durations_s: Sequence[float] | None = None,
 ) -> Campaign:
@@ -91,7 +91,7 @@ def one_way_campaign(
         swing = 0.0 if i == constant_speed else 0.05
         t = np.arange(0.0, duration_s + 0.01, STEP_S)
         v = one_way_speed(i, t - delay_s - drift * t, swing)
-        force = coulomb(t, v, v) + noise_n * random.standard_normal(len(t))
+        force = coulomb(t, v, v) + noise_rms * random.standard_normal(len(t))
         runs.append(Run.from_arrays(t, one_way_speed(i, t, swing), force, name=f"run {i}"))
     return Campaign.prepare(Rig(), runs)
 

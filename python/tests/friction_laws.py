@@ -181,7 +181,7 @@ def record(
     speed: Speed,
     t: Array,
     friction: Array,
-    noise_n: float,
+    noise_rms: float,
     seed: int,
     name: str = "run",
     count_m: float = 1e-7,
@@ -193,7 +193,7 @@ def record(
     return Run.from_arrays(
         t,
         v + 1e-4 * np.max(np.abs(v)) * rng.standard_normal(len(t)),
-        friction + noise_n * rng.standard_normal(len(t)),
+        friction + noise_rms * rng.standard_normal(len(t)),
         position_m=count_m * np.round(position / count_m),
         name=name,
     )

@@ -68,7 +68,7 @@ def axis_run(record: AxisRun, path: str) -> Run:
     column: dict[str, Any] = {path: record.path}
     return Run.from_arrays(
         record.time_s,
-        record.velocity_m_s,
+        record.velocity,
         record.force_n,
         load_n=record.load_n,
         temperature_c=record.temperature_c,
@@ -79,20 +79,20 @@ def axis_run(record: AxisRun, path: str) -> Run:
 
 def _drive(seed: int, path: str, *effects: str, swing: float = 1.0) -> Simulated:
     records, truth = axis_campaign(seed, effects, swing=swing)
-    noise_n: Any = truth["noise_n"]
-    return Rig(), [axis_run(record, path) for record in records], noise_n
+    noise_rms: Any = truth["noise_n"]
+    return Rig(), [axis_run(record, path) for record in records], noise_rms
 
 
 def _stribeck_slide() -> Simulated:
     """Three runs of a slide whose Stribeck curve is defined here, independently of jbf."""
-    noise_n, runs = 0.2, []
+    noise_rms, runs = 0.2, []
     for k, (amplitude, period_s) in enumerate([(0.02, 4.0), (0.1, 3.0), (0.05, 2.5)]):
         t = np.arange(0.0, 24.0, 0.01)
         v = amplitude * np.sin(2.0 * np.pi * t / period_s)
         friction = np.sign(v) * (6.0 + 5.0 * np.exp(-((v / 0.01) ** 2)) + 30.0 * np.abs(v))
-        noise = noise_n * np.random.default_rng(k).standard_normal(len(t))
+        noise = noise_rms * np.random.default_rng(k).standard_normal(len(t))
         runs.append(Run.from_arrays(t, v, friction + noise, name=f"run {k}"))
-    return Rig(), runs, noise_n
+    return Rig(), runs, noise_rms
 
 
 def _recorded(seed: int, artefact: str, *effects: str) -> Simulated:

@@ -39,8 +39,8 @@ law = "coulomb"
 clock = "journal"
 effects = []
 [parameters]
-F_c_n = {value = 5.0, stderr = 0.1}
-F_v_n_s_m = {value = 20.0, stderr = 1.0}
+F_c = {value = 5.0, stderr = 0.1}
+F_v = {value = 20.0, stderr = 1.0}
 """
 RIG = """\
 [bearing]

@@ -22,9 +22,9 @@ def path_of(time_s: Any) -> Any:
     return -0.2 / 1.7 * np.cos(1.7 * time_s + 0.4) - 0.05 / 4.3 * np.cos(4.3 * time_s)
 
 
-def reversing_force(time_s: Any, seed: int, noise_n: float = 0.3) -> Array:
+def reversing_force(time_s: Any, seed: int, noise_rms: float = 0.3) -> Array:
     """Friction of 20 N that reverses, with white noise independent at each instant, N."""
-    force: Array = 20.0 * np.tanh(50.0 * np.sin(0.3 * time_s)) + white(len(time_s), seed, noise_n)
+    force: Array = 20.0 * np.tanh(50.0 * np.sin(0.3 * time_s)) + white(len(time_s), seed, noise_rms)
     return force
 
 

@@ -62,10 +62,10 @@ HIDDEN: dict[str, tuple[Friction, float]] = {
 def linear_runs(hidden: str) -> list[Run]:
     """Four runs of 10 s, each in one direction."""
     if hidden == "mass in one run":
-        first = wandering("a", mass(3.2), way=1.0, rate=12.0, noise_n=0.1, seed=0)
-        return [first, *four_runs(coulomb, noise_n=0.1)[1:]]
-    friction, noise_n = HIDDEN[hidden]
-    return four_runs(friction, noise_n=noise_n)
+        first = wandering("a", mass(3.2), way=1.0, rate=12.0, noise_rms=0.1, seed=0)
+        return [first, *four_runs(coulomb, noise_rms=0.1)[1:]]
+    friction, noise_rms = HIDDEN[hidden]
+    return four_runs(friction, noise_rms=noise_rms)
 
 
 @shared
@@ -99,9 +99,9 @@ def reversing_runs(
     return records
 
 
-def coulomb_run(t: Any, v: Any, seed: int, *, noise_n: float = 0.1, **columns: Any) -> Run:
+def coulomb_run(t: Any, v: Any, seed: int, *, noise_rms: float = 0.1, **columns: Any) -> Run:
     """A run with Coulomb friction and white noise at these times and speeds, named by its seed."""
-    noise = noise_n * np.random.default_rng(seed).standard_normal(len(t))
+    noise = noise_rms * np.random.default_rng(seed).standard_normal(len(t))
     return Run.from_arrays(t, v, coulomb(t, v, v) + noise, name=f"{seed}", **columns)
 
 
@@ -115,8 +115,8 @@ def fit_from_truth(campaign: Campaign, *effects: str) -> tuple[Problem, Solution
 
     F_s, which these motions do not determine, is fixed.
     """
-    problem = Problem(campaign, "coulomb", "journal", effects, {"F_s_n": 6.0})
-    known = {"F_s_n": 6.0, **LAW, "sensor_offset.b_n": 0.0}
+    problem = Problem(campaign, "coulomb", "journal", effects, {"F_s": 6.0})
+    known = {"F_s": 6.0, **LAW, "sensor_offset.b": 0.0}
     known |= {"time_delay.tau_s": 0.01, "sensor_lag.tau_s": 0.01}
     start = problem.starts({name: known[name] for name in problem.names})[0]
     near = problem.solution(start, problem.samples_at(start), WHITE, False)
@@ -128,12 +128,12 @@ class Textbook:
 
     def __init__(self, runs: list[Run]) -> None:
         # The motions of `four_runs` do not depend on the friction.
-        accelerations = four_runs(lambda t, v, a: a, noise_n=0.0)
+        accelerations = four_runs(lambda t, v, a: a, noise_rms=0.0)
         self.x = [
-            np.stack([np.sign(r.velocity_m_s), r.velocity_m_s, np.asarray(a.friction_n)], axis=1)
+            np.stack([np.sign(r.velocity), r.velocity, np.asarray(a.friction)], axis=1)
             for r, a in zip(runs, accelerations, strict=True)
         ]
-        self.y = [np.asarray(run.friction_n) for run in runs]
+        self.y = [np.asarray(run.friction) for run in runs]
         self.samples = sum(map(len, self.y))
 
     def square(self, columns: int, fitted: list[int], predicted: list[int]) -> float:

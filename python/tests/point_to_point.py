@@ -8,7 +8,7 @@ from jbf import Run
 
 STEP_S, SUBSTEPS = 0.002, 4
 COULOMB_N, BREAKAWAY_N, VISCOUS_N_S_M, MASS_KG = 8.0, 10.0, 15.0, 2.0
-TRUTH = {"F_c_n": COULOMB_N, "F_v_n_s_m": VISCOUS_N_S_M, "inertia_leak.m_e_kg": MASS_KG}
+TRUTH = {"F_c": COULOMB_N, "F_v": VISCOUS_N_S_M, "inertia.m_e": MASS_KG}
 STIFFNESS_N_M, DAMPING_N_S_M = 4.0e3, 160.0
 ROUNDED_S = 0.1
 COUNT_M, SPEED_NOISE_M_S, FORCE_NOISE_N = 1e-7, 1e-4, 0.3

@@ -23,7 +23,7 @@ Mask = npt.NDArray[np.bool_]
 
 STEP_S = 0.02
 SPEED_M_S = 0.1
-VALUES = {**LAW, "F_s_n": LAW["F_c_n"]}
+VALUES = {**LAW, "F_s": LAW["F_c"]}
 """Dry friction, breakaway friction (N) and viscous friction (N s/m) of every slide."""
 
 
@@ -34,10 +34,10 @@ def numbers_in(pattern: str, text: str) -> tuple[float, ...]:
     return tuple(map(float, match.groups()))
 
 
-def slide(velocity: Array, name: str, *, step_s: float = STEP_S, noise_n: float = 0.1) -> Run:
+def slide(velocity: Array, name: str, *, step_s: float = STEP_S, noise_rms: float = 0.1) -> Run:
     """A recorded slide with the given velocity (m/s), Coulomb friction and white noise."""
     time_s = step_s * np.arange(len(velocity))
-    noise = noise_n * np.random.default_rng(ord(name[0])).standard_normal(len(velocity))
+    noise = noise_rms * np.random.default_rng(ord(name[0])).standard_normal(len(velocity))
     return Run.from_arrays(time_s, velocity, coulomb(time_s, velocity, velocity) + noise, name=name)
 
 

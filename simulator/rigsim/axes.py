@@ -66,7 +66,7 @@ AXIS_EFFECTS: dict[str, dict[str, Spread]] = {
     "sensor_offset": {"b": Spread(0.3, 0.8, "N", 1.0, signed=True)},
     "sensor_hysteresis": {"w": Spread(0.3, 0.9, "N", 1.0)},
     "sensor_nonlinearity": {"c": Spread(0.8e-3, 1.6e-3, "1/N^2", 1.0, signed=True)},
-    "inertia_leak": {"m_e": Spread(3.0, 8.0, "kg", 1.0)},
+    "inertia": {"m_e": Spread(3.0, 8.0, "kg", 1.0)},
     "dry_temperature_dependence": {"a": Spread(0.006, 0.015, "1/K", 1.0, signed=True)},
     "viscous_temperature_dependence": {"B": Spread(400.0, 1000.0, "K", 1.0)},
 }
@@ -93,7 +93,7 @@ class AxisRun:
     name: str
     time_s: Vector
     path: Vector
-    velocity_m_s: Vector
+    velocity: Vector
     force_n: Vector
     load_n: Vector
     temperature_c: Vector | None = None
@@ -124,7 +124,7 @@ def axis_campaign(
     """
     rng = np.random.default_rng([seed, 77])
     hidden = {name: draw_axis(name, rng, strength) for name in effects}
-    law = {"F_c_n": float(rng.uniform(3.0, 9.0)), "F_v_n_s_m": float(rng.uniform(15.0, 60.0))}
+    law = {"F_c": float(rng.uniform(3.0, 9.0)), "F_v": float(rng.uniform(15.0, 60.0))}
     noise_n = float(rng.uniform(0.15, 0.35))
     if temperature is None and set(effects) & set(OF_TEMPERATURE):
         temperature = "wandering"
@@ -164,7 +164,7 @@ def _run(
         name=f"{i}_load_{load[0]:g}",
         time_s=time,
         path=np.round(path * COUNTS_PER_M) / COUNTS_PER_M,
-        velocity_m_s=speed + 2e-4 * rng.standard_normal(len(time)),
+        velocity=speed + 2e-4 * rng.standard_normal(len(time)),
         force_n=force + noise_n * rng.standard_normal(len(time)),
         load_n=load,
         temperature_c=celsius,
@@ -187,11 +187,11 @@ def _force(
         return hidden.get(effect, {}).get(key, 0.0)
 
     tau_s = hidden.get("warm_up", {}).get("tau", 1.0)
-    level = law["F_c_n"] + of("dry_load_dependence", "mu") * load
+    level = law["F_c"] + of("dry_load_dependence", "mu") * load
     ahead = np.where(v > 0.0, 1.0, -1.0)
     level = level * (1.0 + of("dry_asymmetry", "a") * ahead) + ahead * _peak(hidden, v)
     level = level * _along_the_stroke(hidden, path)
-    slope = law["F_v_n_s_m"] + of("viscous_load_dependence", "c") * load
+    slope = law["F_v"] + of("viscous_load_dependence", "c") * load
     slope = slope + of("viscous_asymmetry", "b") * ahead
     if celsius is not None:
         level = level * (1.0 + of("dry_temperature_dependence", "a") * (celsius - REFERENCE_C))
@@ -201,7 +201,7 @@ def _force(
     slope = 1.0 / (1.0 / slope + of("viscous_thinning", "w") * np.abs(v) / slope)
     hangs = of("gravity", "theta_0")
     weight = of("gravity", "G") * np.sin(path / ARM_M - hangs)
-    carried = weight + of("inertia_leak", "m_e") * a
+    carried = weight + of("inertia", "m_e") * a
     push = of("zero_load_dependence", "k") * load + of("sensor_offset", "b")
     # A gear requires more than the carried force when it drives, and returns less when driven back.
     lost = of("torque_proportional", "mu") * np.where(carried * v > 0.0, carried, -carried)

@@ -30,7 +30,7 @@ class Contact:
     def __init__(self, effects: Parameters, film: Film, f_m: float) -> None:
         self.film = film
         self.f_m = f_m
-        self.wear = effects.get("wear_in")
+        self.wear = effects.get("running_in")
         self.dwell = effects.get("dwell_stiction")
         self.excess = effects.get("stribeck_excess")
         self.ripple = effects.get("position_ripple")

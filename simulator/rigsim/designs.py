@@ -24,7 +24,7 @@ COUNTS_PER_TURN = (8192, 10000, 15000, 20000, 36000)
 PUSHES_N = {
     "coulomb_drag": ("F_d",),
     "quadratic_drag": ("c",),
-    "inertia_leak": ("m_e",),
+    "inertia": ("m_e",),
     "sensor_offset": ("b",),
     "sensor_drift": ("d",),
     "sensor_hysteresis": ("w",),

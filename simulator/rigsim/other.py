@@ -6,12 +6,12 @@ from .lubricant import Parameters
 
 
 class OtherFriction:
-    """`coulomb_drag`, `quadratic_drag` and `inertia_leak`, added to the bearing friction."""
+    """`coulomb_drag`, `quadratic_drag` and `inertia`, added to the bearing friction."""
 
     def __init__(self, effects: Parameters) -> None:
         self.coulomb = effects.get("coulomb_drag", {}).get("F_d", 0.0)
         self.quadratic = effects.get("quadratic_drag", {}).get("c", 0.0)
-        self.leak = effects.get("inertia_leak", {}).get("m_e", 0.0)
+        self.leak = effects.get("inertia", {}).get("m_e", 0.0)
 
     def force(self, v: float, sign: int, acceleration: float) -> float:
         """Extra force (N) at surface speed `v` (m/s) and acceleration (m/s^2)."""

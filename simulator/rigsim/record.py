@@ -17,8 +17,8 @@ class Record:
 
     time_s: Vector
     angle_rad: Vector
-    velocity_m_s: Vector
-    friction_n: Vector
+    velocity: Vector
+    friction: Vector
     load_n: Vector
     clean_friction_n: Vector
     temperature_c: Vector | None = None
@@ -28,8 +28,8 @@ class Record:
         columns = (
             self.time_s,
             self.angle_rad,
-            self.velocity_m_s + 0.0,
-            self.friction_n,
+            self.velocity + 0.0,
+            self.friction,
             self.load_n,
         )
         rows = ["time_s,angle_rad,velocity_m_s,friction_n,load_n"]

@@ -46,8 +46,8 @@ def test_simulated_record_is_repeated_by_the_same_seed_and_changed_by_another():
     two, again = simulate_campaign(3, ["coulomb_drag"], campaign=SHORT)
     other, _ = simulate_campaign(4, ["coulomb_drag"], campaign=SHORT)
     assert truth == again
-    np.testing.assert_array_equal(one["bi"].friction_n, two["bi"].friction_n)
-    assert not np.array_equal(one["bi"].friction_n, other["bi"].friction_n)
+    np.testing.assert_array_equal(one["bi"].friction, two["bi"].friction)
+    assert not np.array_equal(one["bi"].friction, other["bi"].friction)
 
 
 def test_rig_noise_and_effect_size_of_a_seed_do_not_depend_on_other_effects():
@@ -60,7 +60,7 @@ def test_rig_noise_and_effect_size_of_a_seed_do_not_depend_on_other_effects():
 
 def test_reported_noise_equals_the_standard_deviation_of_the_recorded_noise():
     records, truth = simulate_campaign(6, campaign=SHORT)
-    gap = np.concatenate([r.friction_n - r.clean_friction_n for r in records.values()])
+    gap = np.concatenate([r.friction - r.clean_friction_n for r in records.values()])
     assert np.std(gap) == pytest.approx(truth["noise_n"], rel=0.1)
     assert 0.01 <= truth["noise_n"] / (truth["base"]["f_m"] * truth["base"]["load_n"]) <= 0.025
     assert all(w == 0.0 for w in truth["effect_to_noise"].values())
@@ -77,7 +77,7 @@ def test_coloured_noise_has_its_variance_and_lag_one_correlation():
 def test_recorded_speed_at_rest_is_zero_and_the_angle_is_in_encoder_counts():
     rng = np.random.default_rng(1)
     record = simulate_run(Base(), {}, SHORT.motions[0], noise=Noise(0.1), rng=rng)
-    assert record.velocity_m_s[0] == 0.0
+    assert record.velocity[0] == 0.0
     counts = record.angle_rad * 2387.3
     np.testing.assert_allclose(counts, np.round(counts), atol=1e-6)
 
@@ -88,11 +88,11 @@ def test_foreign_effect_changes_the_record_and_repeats_with_its_seed(name):
     motion = SHORT.motions[0]
     base = draw_base(1)
     runs = [
-        simulate_run(base, {}, motion, foreign=strange, rng=np.random.default_rng(7)).friction_n
+        simulate_run(base, {}, motion, foreign=strange, rng=np.random.default_rng(7)).friction
         for _ in range(2)
     ]
     np.testing.assert_array_equal(runs[0], runs[1])
-    gap = runs[0] - simulate_run(base, {}, motion).friction_n
+    gap = runs[0] - simulate_run(base, {}, motion).friction
     assert np.sqrt(np.mean(gap**2)) > 0.02
 
 

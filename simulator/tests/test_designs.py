@@ -47,7 +47,7 @@ def test_drawn_effect_sizes_scale_with_the_friction_of_the_rig(name):
     )
     small, large = (draw_effect(name, d.base, np.random.default_rng(1)) for d in (light, heavy))
     ratio = heavy.base.f_m * heavy.base.load_n / (light.base.f_m * light.base.load_n)
-    proportional = {"coulomb_drag": "F_d", "sensor_offset": "b", "inertia_leak": "m_e"}
+    proportional = {"coulomb_drag": "F_d", "sensor_offset": "b", "inertia": "m_e"}
     proportional["sensor_hysteresis"] = "w"
     if name in proportional:
         assert large[proportional[name]] / small[proportional[name]] == pytest.approx(ratio)

@@ -14,7 +14,7 @@ STOP = stop_and_go("stop", [(0.5, 1), (5.0, -1)], 0.05, 0.5, 1.0, 9.0)
 
 def force(motion, **changes):
     record = simulate_run(BASE, {"drive_compliance": DRIVE | changes}, motion)
-    return record.time_s, record.friction_n
+    return record.time_s, record.friction
 
 
 def fixed_step(motion, step, every):
@@ -59,8 +59,8 @@ def test_friction_behind_a_stiff_drive_agrees_with_that_of_a_rigid_drive():
     motion = sine("swing", 4.0, 0.127, 2.0)
     _, stiff = force(motion, k=2e4, c=5.0)
     rigid = simulate_run(BASE, {}, motion)
-    moving = np.abs(rigid.velocity_m_s) > 0.002
-    assert np.max(np.abs(stiff - rigid.friction_n)[moving]) < 0.02
+    moving = np.abs(rigid.velocity) > 0.002
+    assert np.max(np.abs(stiff - rigid.friction)[moving]) < 0.02
 
 
 def test_friction_of_a_drive_at_rest_is_constant_and_below_the_static_limit():
@@ -84,8 +84,8 @@ def test_friction_work_behind_a_compliant_drive_is_close_to_a_rigid_drive():
     motion = sine("swing", 13.0, 0.127, 1.0)
     record = simulate_run(BASE, {"drive_compliance": DRIVE}, motion, rate_hz=500.0)
     rigid = simulate_run(BASE, {}, motion, rate_hz=500.0)
-    loss = trapezoid(record.friction_n * record.velocity_m_s, record.time_s)
-    rigid_loss = trapezoid(rigid.friction_n * rigid.velocity_m_s, rigid.time_s)
+    loss = trapezoid(record.friction * record.velocity, record.time_s)
+    rigid_loss = trapezoid(rigid.friction * rigid.velocity, rigid.time_s)
     stored = 0.5 * (BASE.f_m * BASE.load_n) ** 2 * ARM / DRIVE["k"]
     assert loss > 0.0
     assert abs(loss - rigid_loss) < stored + 0.2 * rigid_loss
@@ -94,5 +94,5 @@ def test_friction_work_behind_a_compliant_drive_is_close_to_a_rigid_drive():
 def test_presliding_friction_behind_a_drive_settles_at_the_base_friction():
     motion = polyline("run", [(0.0, 0.0), (1.0, 0.03), (20.0, 0.03)])
     both = {"drive_compliance": DRIVE, "presliding": {"sigma": 2000.0}}
-    with_both = simulate_run(BASE, both, motion).friction_n[-1]
-    assert with_both == pytest.approx(simulate_run(BASE, {}, motion).friction_n[-1], rel=1e-4)
+    with_both = simulate_run(BASE, both, motion).friction[-1]
+    assert with_both == pytest.approx(simulate_run(BASE, {}, motion).friction[-1], rel=1e-4)

@@ -14,7 +14,7 @@ STOP = stop_and_go("stop", [(0.5, 1), (8.0, -1)], 0.05, 1.0, 2.0, 14.0)
 
 
 def force(effects, motion=SWING, **options):
-    return simulate_run(BASE, effects, motion, **options).friction_n
+    return simulate_run(BASE, effects, motion, **options).friction
 
 
 def hold(speed, seconds=40.0):
@@ -45,8 +45,8 @@ SMALL = {
 def test_effect_vanishes_as_its_parameter_approaches_the_null(name):
     small = SMALL.get(name) or dict.fromkeys(NULLS[name], 1e-9)
     plain = simulate_run(BASE, {}, STOP)
-    moving = plain.velocity_m_s != 0.0  # at rest a bristle of any stiffness holds its force
-    gap = force({name: drawn(name) | small}, STOP) - plain.friction_n
+    moving = plain.velocity != 0.0  # at rest a bristle of any stiffness holds its force
+    gap = force({name: drawn(name) | small}, STOP) - plain.friction
     assert np.max(np.abs(gap[moving])) < 1e-3
 
 
@@ -54,20 +54,20 @@ def test_drags_and_inertia_add_the_forces_of_their_closed_forms():
     extra = {
         "coulomb_drag": {"F_d": 0.7},
         "quadratic_drag": {"c": 50.0},
-        "inertia_leak": {"m_e": 4.0},
+        "inertia": {"m_e": 4.0},
     }
     record = simulate_run(BASE, extra, SWING)
-    v, t = record.velocity_m_s, record.time_s
+    v, t = record.velocity, record.time_s
     expected = 0.7 * np.sign(v) + 50.0 * v * abs(v) + 4.0 * 0.127 * np.cos(t)
-    np.testing.assert_allclose(record.friction_n - force({}), expected, atol=1e-9)
+    np.testing.assert_allclose(record.friction - force({}), expected, atol=1e-9)
 
 
 def test_sensor_lag_acts_as_a_first_order_filter_of_the_force():
     lagged = force({"sensor_lag": {"tau": 0.1}}, rate_hz=2000.0)
     plain = simulate_run(BASE, {}, SWING, rate_hz=2000.0)
     rate = np.gradient(lagged, 1.0 / 2000.0)
-    inner = np.abs(plain.velocity_m_s) > 0.005
-    np.testing.assert_allclose((lagged + 0.1 * rate)[inner], plain.friction_n[inner], atol=2e-3)
+    inner = np.abs(plain.velocity) > 0.005
+    np.testing.assert_allclose((lagged + 0.1 * rate)[inner], plain.friction[inner], atol=2e-3)
 
 
 def test_presliding_friction_settles_at_the_base_friction():
@@ -79,7 +79,7 @@ def test_presliding_friction_settles_at_the_base_friction():
 def test_presliding_force_is_constant_while_the_shaft_rests():
     motion = polyline("stop", [(0.0, 0.03), (3.0, 0.03), (4.0, 0.0), (9.0, 0.0)])
     record = simulate_run(BASE, {"presliding": {"sigma": 2000.0}}, motion)
-    rest = record.friction_n[record.time_s >= 4.0]
+    rest = record.friction[record.time_s >= 4.0]
     assert rest[0] > 1.0
     np.testing.assert_allclose(rest, rest[0], rtol=1e-9)
 
@@ -112,9 +112,9 @@ def test_ripple_and_asymmetry_scale_bearing_friction_but_not_drag():
     }
     record = simulate_run(BASE, effects, SWING, start_angle_rad=2.0)
     factor = 1.0 + 0.2 * np.cos(record.angle_rad - 1.0)
-    factor *= 1.0 + 0.1 * np.sign(record.velocity_m_s)
-    expected = force({}) * factor + 0.5 * np.sign(record.velocity_m_s)
-    np.testing.assert_allclose(record.friction_n, expected, atol=1e-9)
+    factor *= 1.0 + 0.1 * np.sign(record.velocity)
+    expected = force({}) * factor + 0.5 * np.sign(record.velocity)
+    np.testing.assert_allclose(record.friction, expected, atol=1e-9)
 
 
 def test_time_delay_shifts_the_record_by_whole_samples():
@@ -129,16 +129,16 @@ def test_backlash_holds_the_journal_until_the_gap_is_crossed():
     plain = simulate_run(BASE, {}, SWING)
     t = record.time_s
     closes = 2.0 * math.pi - math.acos(gap * BASE.bearing.radius_m / 0.127 - 1.0)
-    np.testing.assert_allclose(record.friction_n[t < 3.14], plain.friction_n[t < 3.14], atol=1e-7)
-    assert np.all(record.friction_n[(t > 3.15) & (t < closes)] == 0.0)
-    assert np.all(record.friction_n[(t > closes) & (t < 6.28)] < 0.0)
-    np.testing.assert_array_equal(record.velocity_m_s, plain.velocity_m_s)
+    np.testing.assert_allclose(record.friction[t < 3.14], plain.friction[t < 3.14], atol=1e-7)
+    assert np.all(record.friction[(t > 3.15) & (t < closes)] == 0.0)
+    assert np.all(record.friction[(t > closes) & (t < 6.28)] < 0.0)
+    np.testing.assert_array_equal(record.velocity, plain.velocity)
 
 
 def test_load_dependence_reproduces_the_second_published_table_at_its_load():
     share = math.log(83.5 / 104.0)
     p = {"p": math.log(0.05 / 0.06) / share, "q": math.log(6.25e5 / 7.5e5) / share}
-    other = simulate_run(Base(load_n=83.5, U_tr=0.05, K0=6.25e5), {}, SWING).friction_n
+    other = simulate_run(Base(load_n=83.5, U_tr=0.05, K0=6.25e5), {}, SWING).friction
     np.testing.assert_allclose(force({"load_dependence": p}, load_n=83.5), other, atol=1e-7)
     np.testing.assert_array_equal(force({"load_dependence": p}), force({}))
 
@@ -189,7 +189,7 @@ def test_vogel_viscosity_at_a_steady_temperature_equals_a_thinner_oil():
     oil = replace(BASE.bearing, viscosity_pa_s=BASE.bearing.viscosity_pa_s * thin)
     other = replace(BASE, U_tr=BASE.U_tr / thin, bearing=oil)
     warm = force({"vogel_viscosity": {"B": 800.0}}, warmth=Warmth(45.0))
-    thinner = simulate_run(other, {}, SWING).friction_n
+    thinner = simulate_run(other, {}, SWING).friction
     np.testing.assert_allclose(warm, thinner, atol=1e-5)
     assert np.max(np.abs(warm - force({}))) > 0.5
 

@@ -48,30 +48,30 @@ def test_transition_eccentricity_agrees_with_the_reference_to_eight_digits():
 def test_steady_friction_agrees_with_reference_values(speed, f):
     record = simulate_run(BASE, {}, hold(speed))
     digits = 5e-6 if speed > 0.1 else 1e-7
-    assert record.friction_n[-1] / BASE.load_n == pytest.approx(f, abs=digits)
+    assert record.friction[-1] / BASE.load_n == pytest.approx(f, abs=digits)
 
 
 @pytest.mark.parametrize("speed", [0.003, 0.05, 0.2])
 def test_steady_friction_satisfies_the_force_balance(speed):
     record = simulate_run(BASE, {}, hold(speed))
-    assert record.friction_n[-1] / BASE.load_n == pytest.approx(balance(BASE, speed), rel=1e-7)
+    assert record.friction[-1] / BASE.load_n == pytest.approx(balance(BASE, speed), rel=1e-7)
 
 
 def test_friction_changes_sign_with_the_direction_of_motion():
     forward = simulate_run(BASE, {}, sine("forward", 10.0, 0.127, 1.0))
     backward = simulate_run(BASE, {}, sine("backward", 10.0, -0.127, 1.0))
-    np.testing.assert_allclose(forward.friction_n, -backward.friction_n, atol=1e-9)
+    np.testing.assert_allclose(forward.friction, -backward.friction, atol=1e-9)
 
 
 def test_friction_of_the_backward_half_period_mirrors_that_of_the_forward_one():
     motion = sine("bi", 4.0 * math.pi, 0.127, 2.0)
     record = simulate_run(BASE, {}, motion, rate_hz=100 / math.pi)
     half = 50
-    tail = record.friction_n[-2 * half :]
+    tail = record.friction[-2 * half :]
     np.testing.assert_allclose(tail[1:half], -tail[half + 1 :][: half - 1], atol=1e-4)
 
 
 def test_friction_is_zero_at_rest_before_the_first_motion():
     record = simulate_run(BASE, {}, polyline("rest", [(0.0, 0.0), (2.0, 0.0), (3.0, 0.05)]))
-    assert np.all(record.friction_n[record.time_s <= 2.0] == 0.0)
-    assert record.friction_n[-1] > 0.0
+    assert np.all(record.friction[record.time_s <= 2.0] == 0.0)
+    assert record.friction[-1] > 0.0

@@ -33,27 +33,27 @@ def test_recording_without_artefacts_has_only_noise_and_is_repeatable():
     assert truth == CLEAN_TRUTH
     assert truth["recording"] == []
     for name, record in CLEAN.items():
-        np.testing.assert_array_equal(record.friction_n, again[name].friction_n)
-        noise = record.friction_n - record.clean_friction_n
+        np.testing.assert_array_equal(record.friction, again[name].friction)
+        noise = record.friction - record.clean_friction_n
         assert np.std(noise) == pytest.approx(NOISE_N, rel=0.1)
 
 
 @pytest.mark.parametrize("name", ARTEFACTS)
 def test_artefact_changes_only_the_columns_of_its_channel(name):
     of = {
-        "force": {"friction_n"},
+        "force": {"friction"},
         "position": {"angle_rad"},
-        "speed": {"velocity_m_s", "angle_rad"},
-        "time": {"friction_n", "velocity_m_s", "angle_rad"},
+        "speed": {"velocity", "angle_rad"},
+        "time": {"friction", "velocity", "angle_rad"},
         "load": {"load_n"},
-        "rig": {"friction_n"},
+        "rig": {"friction"},
     }
     if name == "gaps":
         return
     changed = set()
     for clean, record, _ in pairs(name):
         np.testing.assert_array_equal(record.time_s, clean.time_s)
-        for column in ("friction_n", "velocity_m_s", "angle_rad", "load_n"):
+        for column in ("friction", "velocity", "angle_rad", "load_n"):
             if not np.array_equal(getattr(record, column), getattr(clean, column)):
                 changed.add(column)
     assert changed <= of[ARTEFACTS[name].channel]
@@ -78,9 +78,9 @@ def test_artefact_reports_finite_sizes_and_is_repeatable(name, strength):
         assert entry["kind"] != name or entry["size"] == sizes[entry["run"]]
         assert np.isfinite(list(entry["size"].values())).all()
     for run, record in records.items():
-        np.testing.assert_array_equal(record.friction_n, again[run].friction_n)
-        assert np.isfinite(record.friction_n).all()
-        assert np.isfinite(record.velocity_m_s).all()
+        np.testing.assert_array_equal(record.friction, again[run].friction)
+        assert np.isfinite(record.friction).all()
+        assert np.isfinite(record.velocity).all()
         assert (np.diff(record.time_s) > 0.0).all()
 
 
@@ -89,7 +89,7 @@ def test_recording_artefact_is_not_changed_by_a_second_artefact():
     both, two = recorded_with("spikes", "noisy_load")
     assert one == two
     for name, record in alone.items():
-        np.testing.assert_array_equal(record.friction_n, both[name].friction_n)
+        np.testing.assert_array_equal(record.friction, both[name].friction)
 
 
 def test_slow_force_channel_is_interpolated_or_held_as_reported():
@@ -97,8 +97,8 @@ def test_slow_force_channel_is_interpolated_or_held_as_reported():
     for seed in (0, 6, 13, 25, 68, 92):
         records, sizes = recorded_with("slow_force", strength="severe", seed=seed)
         for name, record in records.items():
-            bends = np.diff(record.friction_n, 2)
-            still = np.mean(np.diff(record.friction_n) == 0.0)
+            bends = np.diff(record.friction, 2)
+            still = np.mean(np.diff(record.friction) == 0.0)
             straight = np.mean(np.abs(bends) < 1e-9)
             assert (still if sizes[name]["held"] else straight) > 0.25
             seen.add(sizes[name]["held"])
@@ -133,33 +133,33 @@ def test_jitter_has_the_expected_rms_and_leaves_the_time_stamps_evenly_spaced():
 
 def test_offset_artefact_of_each_run_has_the_reported_size():
     for clean, record, size in pairs("retared"):
-        np.testing.assert_allclose(record.friction_n - clean.friction_n, size["zero_n"])
+        np.testing.assert_allclose(record.friction - clean.friction, size["zero_n"])
 
 
 def test_gain_artefact_of_each_run_has_the_reported_size():
     for clean, record, size in pairs("gain_by_run"):
-        gap = record.friction_n - clean.friction_n
+        gap = record.friction - clean.friction
         np.testing.assert_allclose(gap, (size["gain"] - 1.0) * clean.clean_friction_n, atol=1e-12)
 
 
 def test_saturation_clips_the_force_at_the_reported_limit():
     clipped = 0.0
     for _, record, size in pairs("saturation"):
-        assert np.max(np.abs(record.friction_n)) <= size["limit_n"]
+        assert np.max(np.abs(record.friction)) <= size["limit_n"]
         clipped += size["share_clipped"]
     assert clipped > 0.01
 
 
 def test_quantisation_rounds_the_force_to_the_reported_step():
     for _, record, size in pairs("quantised"):
-        steps = record.friction_n / size["step_n"]
+        steps = record.friction / size["step_n"]
         np.testing.assert_allclose(steps, np.round(steps), atol=1e-9)
         assert 1.5 <= size["step_n"] / NOISE_N <= 3.5
 
 
 def test_spikes_have_the_reported_count_and_exceed_9_9_standard_deviations():
     for clean, record, size in pairs("spikes"):
-        gap = np.abs(record.friction_n - clean.friction_n)
+        gap = np.abs(record.friction - clean.friction)
         assert np.sum(gap > 0.0) == size["samples"]
         assert np.max(gap) == pytest.approx(size["largest_n"])
         assert (gap[gap > 0.0] > 9.9 * NOISE_N).all()
@@ -167,9 +167,9 @@ def test_spikes_have_the_reported_count_and_exceed_9_9_standard_deviations():
 
 def test_dropouts_of_the_force_repeat_the_last_value():
     for clean, record, size in pairs("dropout"):
-        changed = np.flatnonzero(record.friction_n != clean.friction_n)
+        changed = np.flatnonzero(record.friction != clean.friction)
         assert 0 < len(changed) <= size["samples"]
-        assert np.mean(np.diff(record.friction_n)[changed - 1] == 0.0) == 1.0
+        assert np.mean(np.diff(record.friction)[changed - 1] == 0.0) == 1.0
 
 
 def test_position_glitches_have_the_reported_count_and_size():
@@ -184,13 +184,13 @@ def test_gaps_remove_the_reported_rows_and_keep_the_others_unchanged():
         assert len(clean.time_s) - len(record.time_s) == size["rows"]
         assert np.max(np.diff(record.time_s)) >= size["stretch_s"]
         kept = np.isin(clean.time_s, record.time_s)
-        np.testing.assert_array_equal(record.friction_n, clean.friction_n[kept])
+        np.testing.assert_array_equal(record.friction, clean.friction[kept])
 
 
 def test_heavy_tailed_noise_exceeds_4_standard_deviations_in_1_of_1000_samples():
     tails = []
     for _, record, _ in pairs("heavy_tails"):
-        tails.append((record.friction_n - record.clean_friction_n) / NOISE_N)
+        tails.append((record.friction - record.clean_friction_n) / NOISE_N)
     noise = np.concatenate(tails)
     assert np.mean(np.abs(noise) > 4.0) > 1e-3  # white noise: 6e-5
 
@@ -198,7 +198,7 @@ def test_heavy_tailed_noise_exceeds_4_standard_deviations_in_1_of_1000_samples()
 def test_force_dependent_noise_is_larger_at_large_forces():
     ratios = []
     for clean, record, size in pairs("noise_with_force"):
-        noise = record.friction_n - record.clean_friction_n
+        noise = record.friction - record.clean_friction_n
         large = np.abs(clean.clean_friction_n) > np.median(np.abs(clean.clean_friction_n))
         ratios.append(np.std(noise[large]) / np.std(noise[~large]))
         assert size["at_peak"] >= 1.0
@@ -208,7 +208,7 @@ def test_force_dependent_noise_is_larger_at_large_forces():
 def test_noise_level_of_each_run_is_the_reported_one_and_differs_between_runs():
     levels = []
     for _, record, size in pairs("noise_by_run"):
-        noise = np.std(record.friction_n - record.clean_friction_n)
+        noise = np.std(record.friction - record.clean_friction_n)
         assert noise == pytest.approx(size["times"] * NOISE_N, rel=0.1)
         levels.append(size["times"])
     assert len(set(levels)) == len(levels)
@@ -216,7 +216,7 @@ def test_noise_level_of_each_run_is_the_reported_one_and_differs_between_runs():
 
 def test_long_memory_noise_is_correlated_over_a_fifth_of_a_second():
     for clean, record, size in pairs("long_memory"):
-        extra = record.friction_n - clean.friction_n
+        extra = record.friction - clean.friction
         apart = round(0.2 / (clean.time_s[1] - clean.time_s[0]))
         centred = extra - np.mean(extra)
         assert np.mean(centred[apart:] * centred[:-apart]) > 0.4 * np.mean(centred**2)
@@ -236,23 +236,23 @@ def test_backward_velocity_is_the_difference_quotient_of_the_encoder_counts():
         np.testing.assert_allclose(counts, np.round(counts), atol=1e-6)
         radius = CLEAN_TRUTH["base"]["bearing"]["radius_m"]
         wanted = np.diff(record.angle_rad) * radius / step
-        np.testing.assert_allclose(record.velocity_m_s[1:], wanted, atol=1e-9)
+        np.testing.assert_allclose(record.velocity[1:], wanted, atol=1e-9)
 
 
 def test_coarse_velocity_is_averaged_over_5_samples_and_close_to_the_truth():
     for clean, record, size in pairs("coarse_velocity"):
         step = clean.time_s[1] - clean.time_s[0]
         assert size["over_s"] == pytest.approx(5.0 * step)
-        assert np.std(record.velocity_m_s - clean.velocity_m_s) < 0.2 * np.std(clean.velocity_m_s)
+        assert np.std(record.velocity - clean.velocity) < 0.2 * np.std(clean.velocity)
 
 
 def test_filtered_velocity_is_delayed_by_45_ms():
     for clean, record, size in pairs("filtered_velocity"):
         assert size["cut_hz"] == pytest.approx(5.0)
-        delayed = np.interp(clean.time_s - 0.045, clean.time_s, clean.velocity_m_s)
+        delayed = np.interp(clean.time_s - 0.045, clean.time_s, clean.velocity)
         kept = clean.time_s > 0.3  # a filter of second order and 5 Hz delays by 45 ms
-        gap = np.std((record.velocity_m_s - delayed)[kept])
-        assert gap < 0.6 * np.std((record.velocity_m_s - clean.velocity_m_s)[kept]) + 2e-4
+        gap = np.std((record.velocity - delayed)[kept])
+        assert gap < 0.6 * np.std((record.velocity - clean.velocity)[kept]) + 2e-4
 
 
 def test_noisy_load_has_the_reported_noise_around_the_true_load():

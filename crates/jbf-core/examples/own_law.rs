@@ -52,7 +52,7 @@ fn main() -> Result<(), ParameterError> {
         power: 0.1,
     };
     let mut effects = Effects::NONE;
-    effects.set("inertia_leak", &[2.0])?;
+    effects.set("inertia", &[2.0])?;
     effects.set("presliding", &[1e5])?;
     effects.set("sensor_lag", &[0.01])?;
     let chain = Chain::round(law, effects, None);

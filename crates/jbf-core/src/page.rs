@@ -132,7 +132,7 @@ impl Bound {
 ///
 /// ```
 /// use jbf_core::page::{Mirror, Parameter};
-/// const B: Parameter = Parameter::new("b_n", "N", "reading without force", [-1e5, 1e5], &[0.3])
+/// const B: Parameter = Parameter::new("b", "N", "reading without force", [-1e5, 1e5], &[0.3])
 ///     .null(0.0)
 ///     .signed();
 /// assert_eq!((B.null, B.mirror, B.log), (Some(0.0), Mirror::Negate, false));

@@ -147,7 +147,7 @@ fn nothing_of_ones_own_changes_nothing() {
 #[test]
 fn an_infinite_null_is_refused() {
     let error = Bristle::new(&[f64::INFINITY]).expect_err("vanishes");
-    assert_eq!(error.name(), "sigma_1_m");
+    assert_eq!(error.name(), "sigma");
     assert!(Bristle::new(&[-1.0]).is_err() && Bristle::new(&[]).is_err());
 }
 

@@ -68,5 +68,5 @@ fn what_is_wrong_is_named() {
         refused("journal", &TABLE_4_2, &[("sensor_lag", &[])]),
         "tau_s"
     );
-    assert_eq!(refused("coulomb", &[6.0, -1.0, 0.0], &[]), "F_s_n");
+    assert_eq!(refused("coulomb", &[6.0, -1.0, 0.0], &[]), "F_s");
 }

@@ -26,6 +26,7 @@ from jbf.cli.commands import COMMANDS
 from jbf.cli.completion import SHELLS, Completion
 from jbf.cli.examples import HEAD, Help
 from jbf.errors import InputError, closest, did_you_mean
+from jbf.renamed import current_option
 
 _MODULES = {"import": "import_files"}
 """Modules of commands whose name is a Python keyword."""
@@ -159,6 +160,9 @@ def _configure_process() -> None:
 
 def _dispatch(arguments: list[str]) -> int:
     try:
+        with warnings.catch_warnings():
+            warnings.showwarning = _show
+            arguments = [current_option(word) for word in arguments]
         _check_command(arguments)
         chosen = parser(arguments).parse_args(arguments)
         run = chosen.run

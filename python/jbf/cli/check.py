@@ -53,10 +53,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     wanted = {"--json": arguments.json, "--resume": arguments.resume}
     outputs.check(wanted, outputs.read_by(arguments))
-    policy = level.policy(arguments)
     check_jobs(arguments.jobs)
     jobs = processes(arguments.jobs, 2 * arguments.campaigns)
     model = inputs.model(arguments.model)
+    policy = level.policy(arguments, model.rig.quantities)
     runs = read_runs(arguments.runs, model.rig)
     name = identity(model, runs, policy)
     done = [] if arguments.resume is None else _known(Path(arguments.resume), name)

@@ -59,7 +59,6 @@ def _add_next_run(parser: Parser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command."""
-    policy = level.policy(arguments)
     if arguments.many is not None:
         if arguments.hold_out:
             raise InputError(
@@ -75,11 +74,12 @@ def run(arguments: argparse.Namespace) -> int:
         )
     wanted = {"--out": arguments.out, "--json": arguments.json, "--report": arguments.report}
     wanted["--next-run"] = arguments.next_run
-    asked = limits.limits(arguments, arguments.next_duration_s)
     outputs.check(wanted, outputs.read_by(arguments))
     if arguments.law not in (None, AUTO):
         find_law(arguments.law)
     rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)
+    policy = level.policy(arguments, rig.quantities)
+    asked = limits.limits(arguments, arguments.next_duration_s, rig.quantities)
     outputs.check(wanted, [run.path for run in runs if run.path])
     runs, held = hold_out.split(runs, arguments)
 

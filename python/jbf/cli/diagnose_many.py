@@ -119,7 +119,7 @@ def _table(found: dict[str, Diagnosis | JbfError]) -> list[str]:
         last = result.steps[-1]
         effects = ", ".join(result.effects) or "-"
         unit = "" if head else f" {result.model.rig.quantities.force}"
-        held_out, noise = (f"{number(x)}{unit}" for x in (last.holdout_rms_n, last.noise_n))
+        held_out, noise = (f"{number(x)}{unit}" for x in (last.held_out_rms, last.noise_rms))
         row = (name, result.verdict, effects, held_out, noise)
         rows.append(row)
     return [*columns(rows, "<<<>>", 0), *([""] if failed else []), *failed]

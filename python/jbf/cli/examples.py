@@ -15,7 +15,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "compare": ("jbf compare model.toml runs/ --report compare.html",),
     "fit": (
         "jbf fit rig.toml runs/ --out model.toml",
-        "jbf fit rig.toml runs/ --law lugre --effects inertia_leak,sensor_offset --out model.toml",
+        "jbf fit rig.toml runs/ --law lugre --effects inertia,sensor_offset --out model.toml",
         "jbf fit rig.toml runs/ --fix f_m=0.26 --bootstrap 50 --out model.toml",
     ),
     "diagnose": (
@@ -24,11 +24,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "jbf diagnose --many rigs --jobs 2 --report reports",
     ),
     "power": (
-        "jbf power rig.toml planned/ --noise-n 0.5",
+        "jbf power rig.toml planned/ --noise 0.5",
         "jbf power model.toml planned/ --json power.json",
     ),
     "check": ("jbf check model.toml runs/ -n 200 --resume answers.jsonl",),
-    "plan": ("jbf plan rig.toml --minutes 10 --max-velocity-m-s 0.1 --noise-n 0.5 --out planned",),
+    "plan": ("jbf plan rig.toml --minutes 10 --max-velocity 0.1 --noise 0.5 --out planned",),
     "predict": (
         "jbf predict model.toml motion.csv --out friction.csv",
         "jbf predict model.toml motion.csv --out -",

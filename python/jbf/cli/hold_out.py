@@ -71,7 +71,7 @@ def error_for_json(model: Model, held: Sequence[Run]) -> dict[str, Any]:
     from jbf.comparison.comparison import compare
 
     error = compare(model, held).to_dict()
-    return {"hold_out": {key: error[key] for key in ("rms_n", "noise_n", "runs")}}
+    return {"hold_out": {key: error[key] for key in ("rms", "noise_rms", "runs")}}
 
 
 def words(model: Model, error: dict[str, Any]) -> str:
@@ -82,10 +82,10 @@ def words(model: Model, error: dict[str, Any]) -> str:
 
     found = error["hold_out"]
     unit = model.rig.quantities.force
-    ratio = against_noise(found["rms_n"], found["noise_n"] or 0.0)
-    runs = ", ".join(f"{run['run']} {run['rms_n']:.3g}" for run in found["runs"])
+    ratio = against_noise(found["rms"], found["noise_rms"] or 0.0)
+    runs = ", ".join(f"{run['run']} {run['rms']:.3g}" for run in found["runs"])
     return (
         f"\n\nHeld out ({count_of(len(found['runs']), 'run')}, used for nothing else): RMS "
-        f"{found['rms_n']:.4g} {unit}, {ratio}"
+        f"{found['rms']:.4g} {unit}, {ratio}"
         f"\n  {runs}"
     )

@@ -5,10 +5,13 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.units.quantity import number_in
+
 if TYPE_CHECKING:
     from jbf.diagnosis import Limits
 
-SPEED, SHARPNESS = "--max-velocity-m-s", "--max-acceleration-m-s2"
+SPEED, SHARPNESS, LOADS = "--max-velocity", "--max-acceleration", "--loads"
 
 
 def add(
@@ -31,38 +34,56 @@ def add(
     group.add_argument(
         SPEED,
         metavar="X",
-        type=float,
         required=needed,
-        help=f"of the rig (of a rotary drive in rad/s){usual}",
+        help=f"maximum speed of the rig, in its unit or as '0.2 rad/s'{usual}",
     )
     group.add_argument(
         SHARPNESS,
         metavar="X",
-        type=float,
-        help=f"of the rig (of a rotary drive in rad/s^2); {sharpest}",
+        help=f"maximum acceleration of the rig, in its unit or as '5 rad/s^2'; {sharpest}",
     )
-    for option, what in (
-        ("--loads-n", "loads that the rig can be put under"),
-        ("--temperatures-c", "temperatures that it can be recorded at"),
-    ):
-        group.add_argument(
-            option,
-            metavar=("LOW", "HIGH"),
-            nargs=2,
-            type=float,
-            help=f"{what}; {otherwise}",
-        )
+    group.add_argument(
+        LOADS,
+        metavar=("LOW", "HIGH"),
+        nargs=2,
+        help=f"lowest and highest load, in N or as '2 kN'; {otherwise}",
+    )
+    group.add_argument(
+        "--temperatures-c",
+        metavar=("LOW", "HIGH"),
+        nargs=2,
+        type=float,
+        help=f"lowest and highest temperature, in degrees Celsius; {otherwise}",
+    )
 
 
-def limits(arguments: argparse.Namespace, duration_s: float) -> Limits:
-    """Return the limits given by the options, for runs of the given duration in seconds."""
+def limits(
+    arguments: argparse.Namespace, duration_s: float, quantities: Quantities = OF_BEARING
+) -> Limits:
+    """Return the limits given by the options, for runs of the given duration in seconds.
+
+    Raises
+    ------
+    InputError
+        A value is not a number in the unit of the rig, or a limit is not positive.
+    """
     from jbf.diagnosis import Limits
 
-    loads_n, celsius = arguments.loads_n, arguments.temperatures_c
+    speed, acceleration, loads = arguments.max_velocity, arguments.max_acceleration, arguments.loads
+    celsius = arguments.temperatures_c
+    unit = quantities.speed
+
+    def in_newtons(load: str) -> float:
+        return number_in("N", load, LOADS)
+
     return Limits(
-        velocity_m_s=arguments.max_velocity_m_s,
-        acceleration_m_s2=arguments.max_acceleration_m_s2,
+        velocity=None if speed is None else number_in(unit, speed, SPEED),
+        acceleration=(
+            None
+            if acceleration is None
+            else number_in(f"{unit.removesuffix('/s')}/s^2", acceleration, SHARPNESS)
+        ),
         duration_s=duration_s,
-        load_n=None if loads_n is None else tuple(loads_n),
+        load_n=None if loads is None else (in_newtons(loads[0]), in_newtons(loads[1])),
         temperature_c=None if celsius is None else tuple(celsius),
     )

@@ -148,7 +148,7 @@ def keep(stop: Stopped, out: str | None) -> Kept:
     found = stop.fit
     model = " + ".join([found.model.law, *found.model.effects])
     unit = found.model.rig.quantities.force
-    told = f"interrupted; the best so far is {model}, RMS {found.rms_n:.3g} {unit}"
+    told = f"interrupted; the best so far is {model}, RMS {found.rms:.3g} {unit}"
     if out is None:
         say(found.summary(), {})
         return Kept(f"{told}, not finished")

@@ -47,14 +47,15 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--json": arguments.json}
     outputs.check(wanted, outputs.read_by(arguments))
     model = power.machine(arguments)
+    quantities = model.rig.quantities
     with shown("planning"):
         found = plan(
             model,
-            limits=limits.limits(arguments, arguments.run_s),
+            limits=limits.limits(arguments, arguments.run_s, quantities),
             minutes=arguments.minutes,
-            noise_n=power.noise_n(arguments, model),
+            noise_rms=power.noise_rms(arguments, model),
             step_s=arguments.step_s,
-            policy=level.policy(arguments),
+            policy=level.policy(arguments, quantities),
         )
     texts = {}
     if arguments.out:

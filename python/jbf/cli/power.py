@@ -14,6 +14,7 @@ from jbf.models.catalogue import parameters_of
 from jbf.models.model import Model
 from jbf.records.run_files import read_runs
 from jbf.reporting.json import json_text
+from jbf.units.quantity import number_in
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
@@ -35,29 +36,29 @@ def add(commands: Commands) -> None:
 
 
 def add_noise(parser: Parser) -> None:
-    """Add `--noise-n`."""
+    """Add `--noise`."""
     parser.add_argument(
-        "--noise-n",
+        "--noise",
         metavar="X",
-        type=float,
-        help="standard deviation of the noise on the friction (of a rotary drive in N m); of a "
-        "model that was fitted what the fit left",
+        help="standard deviation of the noise of the friction, in the unit of the rig or as "
+        "'0.1 N' (default: the residual of the fitted model)",
     )
 
 
-def noise_n(arguments: argparse.Namespace, model: Model) -> float:
-    """Return the noise given by `--noise-n`, or the RMS residual of the fitted model.
+def noise_rms(arguments: argparse.Namespace, model: Model) -> float:
+    """Return the noise given by `--noise`, or the RMS residual of the fitted model.
 
     Raises
     ------
     InputError
         Neither is available.
     """
-    left = model.fit.get("rms_n")  # N
-    found = left if arguments.noise_n is None else arguments.noise_n
-    if found is None or isinstance(found, str):
-        raise InputError(problem="--noise-n is missing", mend="say how large the noise will be")
-    return float(found)
+    if arguments.noise is not None:
+        return number_in(model.rig.quantities.force, arguments.noise, "--noise")
+    left = model.fit.get("rms", model.fit.get("rms_n"))  # files before 0.1.0 have "rms_n"
+    if left is None or isinstance(left, str):
+        raise InputError(problem="--noise is missing", mend="state the expected noise")
+    return float(left)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -67,10 +68,11 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = {"--json": arguments.json}
     outputs.check(wanted, outputs.read_by(arguments))
     model = machine(arguments)
-    size_n = noise_n(arguments, model)
+    noise = noise_rms(arguments, model)
     runs = read_runs(arguments.runs, model.rig, need_friction=False)
+    policy = level.policy(arguments, model.rig.quantities)
     with shown("power"):
-        found = planned_power(model, runs, noise_n=size_n, policy=level.policy(arguments))
+        found = planned_power(model, runs, noise_rms=noise, policy=policy)
     if arguments.json:
         outputs.write({arguments.json: json_text(found.to_dict())})
     outputs.say(found.summary(), wanted)

@@ -38,12 +38,12 @@ def _signs(v: Array) -> Places:
 
 
 def _direction(campaign: Campaign, u_tr: float | None) -> Binned:
-    places = [_signs(p.motion.velocity_m_s) for p in campaign.prepared]
+    places = [_signs(p.motion.velocity) for p in campaign.prepared]
     return Binned("direction", _both_directions([Bin()]), places)
 
 
 def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
-    speeds = np.concatenate([np.abs(p.motion.velocity_m_s) for p in campaign.prepared])
+    speeds = np.concatenate([np.abs(p.motion.velocity) for p in campaign.prepared])
     moving = speeds[speeds > 0.0]
     edges = np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1])
     # At constant speed the quantiles are equal except for rounding; empty bins are removed.
@@ -56,7 +56,7 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
     bins += [Bin(centre=m, unit=unit, direction=1) for m in middle]
     places = []
     for p in campaign.prepared:
-        v = p.motion.velocity_m_s
+        v = p.motion.velocity
         size = np.digitize(np.abs(v), edges)
         places.append(np.where(v > 0, size + count, np.where(v < 0, size, -1)).astype(np.intp))
     return Binned("velocity", tuple(bins), places)
@@ -64,7 +64,7 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
 
 def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
     """Lubrication regimes of a law with a film; thirds of the recorded speeds for any other law."""
-    speeds = [np.abs(p.motion.velocity_m_s) for p in campaign.prepared]
+    speeds = [np.abs(p.motion.velocity) for p in campaign.prepared]
     axis: Axis = "regime"
     if u_tr is not None:
         names: tuple[str, ...] = ("boundary", "mixed", "full film")
@@ -88,7 +88,7 @@ def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
 def _acceleration(campaign: Campaign, u_tr: float | None) -> Binned:
     places = []
     for p in campaign.prepared:
-        v, a = p.motion.velocity_m_s, p.motion.acceleration_m_s2
+        v, a = p.motion.velocity, p.motion.acceleration
         steady = np.abs(a) < 0.02 * float(np.max(np.abs(a), initial=0.0))
         kind = np.where(a * v > 0, 1, 0) + np.where(v > 0, 2, 0)
         places.append(np.where(steady | (v == 0.0), -1, kind).astype(np.intp))
@@ -104,7 +104,7 @@ def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
         kind = np.minimum((turned / width).astype(np.intp), ANGLE_BINS - 1)
         # Friction that depends on angle changes sign with the motion: two sets of bins show the sum
         # and the difference.
-        signed = np.where(p.motion.velocity_m_s < 0, kind, kind + ANGLE_BINS)
+        signed = np.where(p.motion.velocity < 0, kind, kind + ANGLE_BINS)
         places.append(np.where(p.motion.resting, -1, signed).astype(np.intp))
     return Binned("angle", _both_directions([Bin(centre=m, unit="deg") for m in middles]), places)
 
@@ -116,7 +116,7 @@ def _time(campaign: Campaign, u_tr: float | None) -> Binned:
     places = []
     for p in campaign.prepared:
         kind = np.digitize(p.run.time_s - p.run.time_s[0], edges[1:-1])
-        places.append(np.where(p.motion.velocity_m_s > 0, kind + TIME_BINS, kind).astype(np.intp))
+        places.append(np.where(p.motion.velocity > 0, kind + TIME_BINS, kind).astype(np.intp))
     return Binned("time", _both_directions(spans, with_rest=True), places)
 
 
@@ -133,7 +133,7 @@ def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array])
     for p, v in zip(campaign.prepared, values, strict=True):
         ok = np.isfinite(v) & (v > 0)
         kind = np.digitize(v, edges)
-        kind = np.where(p.motion.velocity_m_s > 0, kind + len(spans), kind)
+        kind = np.where(p.motion.velocity > 0, kind + len(spans), kind)
         places.append(np.where(ok & ~p.motion.resting, kind, -1).astype(np.intp))
     return Binned(axis, _both_directions(spans), places)
 
@@ -151,7 +151,7 @@ def _time_since_rest(p: Prepared) -> Array:
 
 
 def _distance_since_reversal(p: Prepared) -> Array:
-    v = p.motion.velocity_m_s
+    v = p.motion.velocity
     travelled = np.concatenate(
         ([0.0], np.cumsum(0.5 * (np.abs(v[1:]) + np.abs(v[:-1])) * np.diff(p.run.time_s)))
     )

@@ -30,7 +30,7 @@ class RunComparison:
     """Comparison of one run: RMS over the samples that count; 0 N if none counts."""
 
     name: str
-    rms_n: float
+    rms: float
     samples: int
 
 
@@ -42,9 +42,9 @@ class Comparison(Result):
     ----------
     samples
         The samples that count: those in motion with a known sign.
-    rms_n
+    rms
         Root mean square of record minus prediction over the samples that count, N.
-    noise_n
+    noise_rms
         Noise floor of the record, from the data only, N; zero where it is not known.
     failures
         Axes along which the residual has a pattern, strongest first.
@@ -55,8 +55,8 @@ class Comparison(Result):
     model: Model
     campaign: Campaign
     samples: Samples
-    rms_n: float
-    noise_n: float
+    rms: float
+    noise_rms: float
     runs: tuple[RunComparison, ...]
     failures: tuple[Failure, ...]
     predictions: list[Array]
@@ -71,9 +71,9 @@ class Comparison(Result):
         """Return the comparison as a dictionary for JSON."""
         return {
             **self.model.units_for_json(),
-            "rms_n": self.rms_n,
-            "noise_n": self.noise_n or None,
-            "runs": [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in self.runs],
+            "rms": self.rms,
+            "noise_rms": self.noise_rms or None,
+            "runs": [{"run": r.name, "rms": r.rms, "samples": r.samples} for r in self.runs],
             "failures": [f.to_dict() for f in self.failures],
             "findings": [f.to_dict() for f in self.findings],
         }
@@ -99,7 +99,7 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
     pages = parameters_of(model.law, tuple(model.effects))
     effects = active_effects(model.effects, pages, model.values)
     samples = samples_near_jumps(campaign.samples, campaign.prepared, predictions, effects)
-    residuals = [p.friction_n - f for f, p in zip(predictions, campaign.prepared, strict=True)]
+    residuals = [p.friction - f for f, p in zip(predictions, campaign.prepared, strict=True)]
     noise = noise_floor(campaign.prepared, samples)
     runs = tuple(
         RunComparison(
@@ -109,14 +109,14 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
         )
         for p, r, counted in zip(campaign.prepared, residuals, samples.counted, strict=True)
     )
-    square = sum(r.rms_n**2 * r.samples for r in runs) / max(samples.count, 1)
+    square = sum(r.rms**2 * r.samples for r in runs) / max(samples.count, 1)
     u_tr = transition_speed(model.law, model.values.tolist())
     return Comparison(
         model=model,
         campaign=campaign,
         samples=samples,
-        rms_n=float(np.sqrt(square)),
-        noise_n=noise,
+        rms=float(np.sqrt(square)),
+        noise_rms=noise,
         runs=runs,
         failures=find_failures(campaign, samples, residuals, u_tr, noise),
         predictions=predictions,

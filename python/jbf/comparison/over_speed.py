@@ -47,8 +47,8 @@ def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
     """Mean friction by speed over all samples that count, for each direction with motion."""
     rest = added_by(comparison, non_friction_effects(comparison))
     prepared, samples = comparison.campaign.prepared, comparison.samples
-    speed = samples.flat([p.motion.velocity_m_s for p in prepared])
-    measured = samples.flat([p.friction_n - f for p, f in zip(prepared, rest, strict=True)])
+    speed = samples.flat([p.motion.velocity for p in prepared])
+    measured = samples.flat([p.friction - f for p, f in zip(prepared, rest, strict=True)])
     modelled = samples.flat([m - f for m, f in zip(comparison.predictions, rest, strict=True)])
     found = []
     for way in (1.0, -1.0):

@@ -19,7 +19,7 @@ from jbf.models.model import Model
 Array = npt.NDArray[np.float64]
 
 NO_FRICTION = (
-    "inertia_leak",
+    "inertia",
     "gravity",
     "cogging",
     "cogging_2",
@@ -60,7 +60,7 @@ def non_friction_effects(comparison: Comparison) -> tuple[str, ...]:
 def friction_readings(comparison: Comparison) -> list[Array]:
     """Readings of each run minus the contributions that the model attributes to other forces, N."""
     rest = added_by(comparison, non_friction_effects(comparison))
-    return [p.friction_n - f for p, f in zip(comparison.campaign.prepared, rest, strict=True)]
+    return [p.friction - f for p, f in zip(comparison.campaign.prepared, rest, strict=True)]
 
 
 def explained_residual(before: Comparison, after: Comparison) -> dict[str, list[Array]]:

@@ -67,11 +67,11 @@ def find_failures(
     samples: Samples,
     residuals: Sequence[Array],
     u_tr: float | None,
-    noise_n: float,
+    noise_rms: float,
 ) -> tuple[Failure, ...]:
     """Axes along which record minus prediction has a pattern, strongest first."""
     axes = all_axes(campaign, u_tr)
-    patterns = (pattern_along(axis, samples, residuals, noise_n) for axis in axes)
+    patterns = (pattern_along(axis, samples, residuals, noise_rms) for axis in axes)
     return tuple(sorted((f for f in patterns if f is not None), key=lambda f: -f.share))
 
 
@@ -88,7 +88,7 @@ def pattern_along(
     axis: Binned,
     samples: Samples,
     residuals: Sequence[Array],
-    noise_n: float,
+    noise_rms: float,
     least_share: float = LEAST_SHARE,
     significance: float = SIGNIFICANCE,
     told_of: Sequence[Array] | None = None,
@@ -97,7 +97,7 @@ def pattern_along(
 
     Parameters
     ----------
-    noise_n
+    noise_rms
         Standard deviation of the noise without a pattern, N.
     least_share
         Fraction of the mean square that the means of the bins must explain beyond chance.
@@ -113,8 +113,8 @@ def pattern_along(
     used = int(np.count_nonzero(counts))
     explained = float(np.sum(counts * means**2))
     # By chance, the mean of each bin explains one noise variance.
-    chance = used * noise_n**2
-    spread = np.sqrt(2.0 * used) * noise_n**2
+    chance = used * noise_rms**2
+    spread = np.sqrt(2.0 * used) * noise_rms**2
     share = (explained - chance) / total if total > 0 else 0.0
     if share < least_share or explained < chance + significance * spread:
         return None

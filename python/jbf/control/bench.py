@@ -150,12 +150,12 @@ Four bearings of 12.7 mm at 104 N yield 2.89 V for a friction coefficient of 1.
 
 ELASTIC: Mapping[str, Mapping[str, float]] = {
     "belt": {
-        "drive_compliance.k_n_m_rad": 40.0,
-        "drive_compliance.c_n_m_s_rad": 0.5,
-        "drive_compliance.J_kg_m2": 1.8e-4,
+        "drive_compliance.k": 40.0,
+        "drive_compliance.c": 0.5,
+        "drive_compliance.J": 1.8e-4,
     },
     # The shaft turns by one encoder count before it slides.
-    "contact": {"presliding.sigma_1_m": 0.26 * COUNTS_PER_RAD / _core.thesis_bearing()["radius_m"]},
+    "contact": {"presliding.sigma": 0.26 * COUNTS_PER_RAD / _core.thesis_bearing()["radius_m"]},
     "nothing": {},
 }
 """Compliance between motor and sliding contact: the timing belt, the contact, or none.

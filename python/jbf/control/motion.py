@@ -49,7 +49,7 @@ def follow(
         Position control of a run without an angle, or a run that does not move.
     """
     radius_m = 1.0 if rig.bearing is None else rig.bearing.radius_m
-    values = recorded.velocity_m_s / radius_m
+    values = recorded.velocity / radius_m
     if not recorded.speed_recorded and recorded.angle_rad is not None:
         values = np.gradient(np.unwrap(recorded.angle_rad), recorded.time_s)
     if control == "position":

@@ -36,20 +36,20 @@ Compensation helps below `HELP` and harms above `HARM`.
 """
 
 STRONG: Mapping[str, Mapping[str, float]] = {
-    "drive_compliance": {"k_n_m_rad": 60.0, "c_n_m_s_rad": 0.02, "J_kg_m2": 1e-3},
+    "drive_compliance": {"k": 60.0, "c": 0.02, "J": 1e-3},
     "thermal_thinning": {"beta_q_1_j": 0.3, "tau_s": 60.0},
     "shear_thinning": {"U_c_m_s": 0.05},
     "film_memory": {"factor": 0.3},
-    "presliding": {"sigma_1_m": 5e3},
+    "presliding": {"sigma": 5e3},
     "dwell_stiction": {"a": 0.1, "t_0_s": 1.0},
-    "stribeck_excess": {"a": 0.1, "v_s_m_s": 0.005},
+    "stribeck_excess": {"a": 0.1, "v_s": 0.005},
     "direction_asymmetry": {"a": 0.3},
     "position_ripple": {"a": 0.3},
-    "wear_in": {"a": 0.5, "s_0_m": 0.2},
-    "coulomb_drag": {"F_d_n": 10.0},
-    "quadratic_drag": {"c_n_s2_m2": 200.0},
-    "inertia_leak": {"m_e_kg": 2.0},
-    "sensor_offset": {"b_n": 5.0},
+    "running_in": {"a": 0.5, "s_0": 0.2},
+    "coulomb_drag": {"F_d": 10.0},
+    "quadratic_drag": {"c": 200.0},
+    "inertia": {"m_e": 2.0},
+    "sensor_offset": {"b": 5.0},
 }
 """Parameters of hidden effects that change friction by tens of percent.
 
@@ -143,7 +143,7 @@ def fit_to_simulated_records(base: Model, seen: Model) -> Model:
         clean = Run(f"run {i}", time_s, speed, angle_rad=angle, position_m=way)
         friction = seen.predict(clean)
         noise = rng.normal(0.0, 0.02 * float(np.max(np.abs(friction))), len(friction))
-        runs.append(replace(clean, friction_n=friction + noise))
+        runs.append(replace(clean, friction=friction + noise))
     start = {n: p.value for n, p in base.parameters.items()}
     found = fit(base.rig, runs, base.effects, law=base.law, clock=base.clock, start=start)
     return found.model

@@ -193,7 +193,7 @@ class Candidates:
         base = self.converge(present)
         samples = effective_share(base) * base.samples.count
         least = self.policy.least_effect_share(self.campaign.motion_share)
-        return Level.shared(self.policy, len(self.names), samples, base.rms_n, least)
+        return Level.shared(self.policy, len(self.names), samples, base.rms, least)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
         """Fit these effects well enough for ranking, starting from a smaller model's solution."""
@@ -302,7 +302,7 @@ class Candidates:
         there = problem.solution(start, samples, near.noise, False)
         there = settle(problem, there, samples)
         # With run-specific parameters a wrong law can be more likely and yet have a far larger RMS.
-        astray = there.rms_n > self.policy.leader_rms * near.rms_n
+        astray = there.rms > self.policy.leader_rms * near.rms
         if likelihood_gain(there, near) > 0.0 and not astray:
             fitted.improve(there)
         return fitted.current_solution()

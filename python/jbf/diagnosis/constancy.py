@@ -24,7 +24,7 @@ from jbf.estimation.long_run import score_square
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect
-from jbf.models.parameter_units import shown_name, unit_of
+from jbf.models.parameter_units import unit_of
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -182,12 +182,11 @@ def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
     place = problem.open[best]
     name, page = problem.names[place], problem.parameters[problem.names[place]]
     unit = unit_of(name, page, problem.law, problem.campaign.rig.quantities)
-    said = shown_name(name, page, unit)
     more = "higher" if step > 0.0 else "lower"
     if problem.log[place]:
         part = float(np.expm1(np.clip(step, -TOLD, TOLD)))
         if abs(step) > TOLD:
             # One step gives no more information about a value so far away.
-            return f"{said} many times as {'large' if step > 0.0 else 'small'}"
-        return f"{said} {100.0 * abs(part):.3g} % {more}"
-    return f"{said} {abs(step):.2g}{'' if unit == '-' else f' {unit}'} {more}"
+            return f"{name} many times as {'large' if step > 0.0 else 'small'}"
+        return f"{name} {100.0 * abs(part):.3g} % {more}"
+    return f"{name} {abs(step):.2g}{'' if unit == '-' else f' {unit}'} {more}"

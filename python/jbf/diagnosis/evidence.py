@@ -85,7 +85,7 @@ def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bo
     """Whether two models differ by less than the quantisation error of a mean reading."""
     samples = common_samples(richer.samples, simpler.samples)
     ways = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
-    return bool(samples.rms(ways) < campaign.steps_rms_n(simpler.rms_n))
+    return bool(samples.rms(ways) < campaign.steps_rms(simpler.rms))
 
 
 def evidence_on_common_samples(
@@ -145,7 +145,7 @@ def swap_cost(
     if first >= policy.contender:
         return first
     solution = candidates.converge(effects, near)
-    if solution.rms_n > policy.leader_rms * whole.rms_n:
+    if solution.rms > policy.leader_rms * whole.rms:
         # Where the model is wrong, the whitest residual is not the smallest one.
         return float("inf")
     # An effect without evidence of its own replaces nothing: its fit may be better only because it

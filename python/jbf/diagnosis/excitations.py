@@ -34,7 +34,7 @@ class Limits:
 
     Attributes
     ----------
-    velocity_m_s, acceleration_m_s2
+    velocity, acceleration
         Largest surface speed and acceleration. From the runs: the largest values recorded, and at
         least the acceleration of a sine of the largest speed at 2 rad/s.
     duration_s
@@ -52,14 +52,14 @@ class Limits:
         A limit is not positive, or a lower limit exceeds the upper one.
     """
 
-    velocity_m_s: float | None = None
-    acceleration_m_s2: float | None = None
+    velocity: float | None = None
+    acceleration: float | None = None
     duration_s: float = 60.0
     load_n: tuple[float, float] | None = None
     temperature_c: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        named = {name: getattr(self, name) for name in ("velocity_m_s", "acceleration_m_s2")}
+        named = {name: getattr(self, name) for name in ("velocity", "acceleration")}
         named["duration_s"] = self.duration_s
         pairs = [(name, value) for name, value in named.items() if value is not None]
         pairs += [("load_n", value) for value in self.load_n or ()]
@@ -91,9 +91,9 @@ class Limits:
     def filled(self, campaign: Campaign) -> Limits:
         """Return the limits with None replaced by the values of the runs."""
         motions = [p.motion for p in campaign.prepared]
-        top = self.velocity_m_s or max(float(np.max(np.abs(m.velocity_m_s))) for m in motions)
-        seen = max(float(np.quantile(np.abs(m.acceleration_m_s2), 0.999)) for m in motions)
-        sharp = self.acceleration_m_s2 or max(seen, USUAL_RATE_RAD_S * top)
+        top = self.velocity or max(float(np.max(np.abs(m.velocity))) for m in motions)
+        seen = max(float(np.quantile(np.abs(m.acceleration), 0.999)) for m in motions)
+        sharp = self.acceleration or max(seen, USUAL_RATE_RAD_S * top)
         loads = [p.run.load_n for p in campaign.prepared if p.run.load_n is not None]
         load = self.load_n
         if load is None and campaign.has_loads and loads:
@@ -113,7 +113,7 @@ class Excitation:
     ----------
     words
         Description of the motion.
-    velocity_m_s
+    velocity
         Speed at equal time steps, m/s.
     load_n
         Load, N; None for the usual load.
@@ -122,7 +122,7 @@ class Excitation:
     """
 
     words: str
-    velocity_m_s: Array
+    velocity: Array
     load_n: float | None
     temperature_c: float | None = None
 
@@ -133,7 +133,7 @@ def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Itera
     warmths = (
         (None,) if limits.temperature_c is None else tuple(dict.fromkeys(limits.temperature_c))
     )
-    top, sharp = limits.velocity_m_s, limits.acceleration_m_s2
+    top, sharp = limits.velocity, limits.acceleration
     assert top is not None
     assert sharp is not None
     time = np.arange(0.0, limits.duration_s, step_s)

@@ -89,13 +89,13 @@ def propose(
         )
     excitation, run = chosen
     sigma = float(np.sqrt(best / len(run)))
-    noise_n = max(model.noise_n for model in models.values())
+    noise_rms = max(model.noise_rms for model in models.values())
     unit = candidates.campaign.rig.quantities.force
     words = (
         f"record {excitation.words} for {limits.duration_s:g} s: there {names} differ by "
-        f"{sigma * noise_n:.2g} {unit} RMS after a new fit, {sigma:.2g} times the noise"
+        f"{sigma * noise_rms:.2g} {unit} RMS after a new fit, {sigma:.2g} times the noise"
     )
-    return Experiment(words, run, sigma * noise_n, sigma, best)
+    return Experiment(words, run, sigma * noise_rms, sigma, best)
 
 
 def _names(rivals: Sequence[Sequence[Names]]) -> str:

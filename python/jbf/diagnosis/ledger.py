@@ -16,7 +16,7 @@ class Trial:
     ----------
     effect
         Name of the candidate.
-    rms_n
+    rms
         Fit RMS with it, N.
     evidence
         Twice the gain in log likelihood, less the acceptance threshold for the candidate's
@@ -31,7 +31,7 @@ class Trial:
     """
 
     effect: str
-    rms_n: float
+    rms: float
     evidence: float
     outcome: Outcome
     reason: str
@@ -49,14 +49,14 @@ class Extrapolation:
     ----------
     run
         Its name.
-    rms_n
+    rms
         RMS of the error of that prediction, N; not included in the held-out error.
     where
         Description of the range that it exceeds.
     """
 
     run: str
-    rms_n: float
+    rms: float
     where: str
 
     def to_dict(self) -> dict[str, Any]:
@@ -72,22 +72,22 @@ class Step:
     ----------
     effects
         Effects of the model.
-    rms_n
+    rms
         RMS over the runs that it was fitted to, N.
-    holdout_rms_n
+    held_out_rms
         RMS over runs, or parts of runs, each held out of the fit that predicts it, N.
-    noise_n
+    noise_rms
         Noise floor, N; zero where it is not known.
     trials
         The candidates that competed for the next place.
     extrapolations
-        Errors of runs that exceed the range of all others; parts of them count in `holdout_rms_n`.
+        Errors of runs that exceed the range of all others; parts of them count in `held_out_rms`.
     """
 
     effects: tuple[str, ...]
-    rms_n: float
-    holdout_rms_n: float
-    noise_n: float
+    rms: float
+    held_out_rms: float
+    noise_rms: float
     trials: tuple[Trial, ...] = ()
     extrapolations: tuple[Extrapolation, ...] = ()
 
@@ -95,9 +95,9 @@ class Step:
         """Return a JSON-serialisable dict."""
         return {
             "effects": list(self.effects),
-            "rms_n": self.rms_n,
-            "holdout_rms_n": self.holdout_rms_n,
-            "noise_n": self.noise_n or None,
+            "rms": self.rms,
+            "held_out_rms": self.held_out_rms,
+            "noise_rms": self.noise_rms or None,
             "tried": [t.to_dict() for t in self.trials],
             "extrapolated": [e.to_dict() for e in self.extrapolations],
         }

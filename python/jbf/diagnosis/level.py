@@ -51,7 +51,7 @@ class Level:
 
     Attributes
     ----------
-    false_alarms
+    false_alarm_rate
         False-alarm rate: share of campaigns without a missing effect in which noise may name one.
     candidates
         Number of candidate effects.
@@ -59,21 +59,21 @@ class Level:
         Significance level of the gain of a single candidate.
     blocks
         Number of blocks of the residual whose signs were reversed; zero before calibration.
-    imperfection
+    artefact_margin
         Artefact margin: gain that recording artefacts may add to the gain in white noise.
-    worth
+    min_gain
         Gain of an effect of the minimum effect size.
     decoys, decoys_named
         Number of decoy campaigns (`decoys`), and number of those in which a decoy would have been
         named.
     """
 
-    false_alarms: float
+    false_alarm_rate: float
     candidates: int
     chance: float
     blocks: int = 0
-    imperfection: float = 0.0
-    worth: float = 0.0
+    artefact_margin: float = 0.0
+    min_gain: float = 0.0
     decoys: int = 0
     decoys_named: int = 0
 
@@ -83,7 +83,7 @@ class Level:
         policy: Policy,
         candidates: int,
         samples: float,
-        noise_n: float,
+        noise_rms: float,
         least_share: float = 0.0,
     ) -> Level:
         """The level shared among candidates, for white noise.
@@ -92,15 +92,15 @@ class Level:
         ----------
         samples
             Number of independent samples.
-        noise_n
+        noise_rms
             RMS of the residual, N.
         least_share
             Smallest share of the mean square that an effect must explain.
         """
-        least = max(policy.indifference, policy.indifference_n / max(noise_n, 1e-300))
-        chance = policy.false_alarms / max(candidates, 1)
-        worth = max(least**2, least_share) * samples
-        return cls(policy.false_alarms, candidates, chance, 0, policy.imperfection, worth)
+        least = max(policy.min_effect_share, policy.min_effect / max(noise_rms, 1e-300))
+        chance = policy.false_alarm_rate / max(candidates, 1)
+        min_gain = max(least**2, least_share) * samples
+        return cls(policy.false_alarm_rate, candidates, chance, 0, policy.artefact_margin, min_gain)
 
     @property
     def critical(self) -> float:
@@ -108,9 +108,9 @@ class Level:
         return _gain_from_noise(self.chance)
 
     @property
-    def white(self) -> float:
+    def white_noise_threshold(self) -> float:
         """Gain of one parameter in white noise at the rate shared among the candidates."""
-        return _gain_from_noise(self.false_alarms / max(self.candidates, 1))
+        return _gain_from_noise(self.false_alarm_rate / max(self.candidates, 1))
 
     @property
     def significant(self) -> float:
@@ -118,7 +118,7 @@ class Level:
 
         It is the larger of `critical` and `white` plus the artefact margin.
         """
-        return max(self.critical, self.white + self.imperfection)
+        return max(self.critical, self.white_noise_threshold + self.artefact_margin)
 
     def price(self, parameters: int, samples: int) -> float:
         """Threshold for the gain of a number of parameters.
@@ -126,11 +126,15 @@ class Level:
         Each parameter beyond the first adds the penalty of Schwarz (1978).
         """
         more = max(parameters, 1) - 1
-        return max(self.significant, self.worth) + more * float(np.log(max(samples, 1)))
+        return max(self.significant, self.min_gain) + more * float(np.log(max(samples, 1)))
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
-        return {**vars(self), "critical": self.critical, "white": self.white}
+        return {
+            **vars(self),
+            "critical": self.critical,
+            "white_noise_threshold": self.white_noise_threshold,
+        }
 
 
 @cache
@@ -310,7 +314,7 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     silent = max(level.candidates - len(told), 0)
     # Count the draws with a name; untested candidates may add theirs.
     false = np.arange(1, DRAWS + 1) / DRAWS + silent * least
-    allowed = np.flatnonzero(false <= level.false_alarms)
+    allowed = np.flatnonzero(false <= level.false_alarm_rate)
     own = float(least[allowed[-1]]) if len(allowed) else float(0.5 * least[0])
     return replace(level, chance=min(level.chance, own), blocks=len(blocks))
 

@@ -10,7 +10,7 @@ from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.scales import scales
 
-LEVEL, STIFFNESS = "F_c_n", "sigma_0_n_m"
+LEVEL, STIFFNESS = "F_c", "sigma_0"
 
 
 def limitations(
@@ -24,7 +24,7 @@ def limitations(
         Fitted values by name; those of a bristle give the presliding displacement.
     """
     said = campaign.rig.quantities
-    speed = campaign.samples.flat([p.motion.velocity_m_s for p in campaign.prepared])
+    speed = campaign.samples.flat([p.motion.velocity for p in campaign.prepared])
     if not len(speed):
         return ()
     found = []

@@ -13,7 +13,7 @@ from jbf.diagnosis.candidates import Candidates
 Names = tuple[str, ...]
 
 OFFSET = "sensor_offset"
-TERMS = (OFFSET, "inertia_leak", "gravity")
+TERMS = (OFFSET, "inertia", "gravity")
 """Effects that are not friction and that no law can represent."""
 
 

@@ -105,6 +105,6 @@ def one_round(
     except Unfinished as stop:
         raise Unfinished(steps=stop.steps, fit=fitted, file=campaign.named) from None
     ledger = replace(
-        step(candidates, chosen, trials), rms_n=comparison.rms_n, noise_n=comparison.noise_n
+        step(candidates, chosen, trials), rms=comparison.rms, noise_rms=comparison.noise_rms
     )
     return OneRound(fitted, ledger, comparison, strengths)

@@ -81,7 +81,7 @@ def plan(
     *,
     limits: Limits,
     minutes: float,
-    noise_n: float,
+    noise_rms: float,
     step_s: float = 0.02,
     policy: Policy = DEFAULT,
 ) -> Plan:
@@ -95,7 +95,7 @@ def plan(
         Limits of the rig; its speed must be given, and `duration_s` is that of each run.
     minutes
         Total duration of all runs, min.
-    noise_n
+    noise_rms
         Standard deviation of the noise on the friction, N (for a rotary drive N m).
     step_s
         Sampling interval, s.
@@ -110,15 +110,15 @@ def plan(
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     of_kind(limits, Limits, "limits", "give a jbf.Limits")
-    for name, value in (("minutes", minutes), ("noise_n", noise_n), ("step_s", step_s)):
+    for name, value in (("minutes", minutes), ("noise_rms", noise_rms), ("step_s", step_s)):
         if not (np.isfinite(number(value, name)) and value > 0.0):
             raise InputError(key=name, problem=f"{value:g} is not above zero", mend="give more")
-    if limits.velocity_m_s is None:
+    if limits.velocity is None:
         raise InputError(
             problem="the limit velocity_m_s is missing", mend="say how fast the rig may go"
         )
-    if limits.acceleration_m_s2 is None:
-        limits = replace(limits, acceleration_m_s2=USUAL_RATE_RAD_S * limits.velocity_m_s)
+    if limits.acceleration is None:
+        limits = replace(limits, acceleration=USUAL_RATE_RAD_S * limits.velocity)
     count = int(min(60.0 * minutes / limits.duration_s, 2.0 * MOST_RUNS) + 1e-9)
     if count < LEAST_RUNS:
         raise InputError(
@@ -142,15 +142,15 @@ def plan(
     # A few of the motions, slow and fast, at each load and temperature, determine the effects.
     few = motions[:: max(len(motions) // 7, 1)]
     named = [replace(run, name=f"{i}") for i, (_, run) in enumerate(few)]
-    candidates = as_recorded(model, named, noise_n, policy)
+    candidates = as_recorded(model, named, noise_rms, policy)
     effects = _effects(candidates, model)
-    told = [_motion_information(candidates, model, effects, run, noise_n) for _, run in motions]
+    told = [_motion_information(candidates, model, effects, run, noise_rms) for _, run in motions]
     own = len(candidates.fitted(model.effects).problem.open)
     prices = np.array([price_of(candidates, max(len(e.problem.open) - own, 1)) for e in effects])
     chosen = _chosen(told, own, prices, count)
     runs = tuple(replace(motions[k][1], name=f"{i:02d}") for i, k in enumerate(chosen, 1))
     words = tuple(motions[k][0].words for k in chosen)
-    return Plan(runs, words, planned_power(model, runs, noise_n=noise_n, policy=policy))
+    return Plan(runs, words, planned_power(model, runs, noise_rms=noise_rms, policy=policy))
 
 
 def _effects(candidates: Candidates, model: Model) -> list[Strength]:
@@ -166,7 +166,7 @@ def _effects(candidates: Candidates, model: Model) -> list[Strength]:
 
 
 def _motion_information(
-    candidates: Candidates, model: Model, effects: Sequence[Strength], run: Run, noise_n: float
+    candidates: Candidates, model: Model, effects: Sequence[Strength], run: Run, noise_rms: float
 ) -> Array:
     """Information of a motion about the p parameters and the e effects, shape (p + e, p + e)."""
     fitted = candidates.fitted(model.effects)
@@ -177,7 +177,7 @@ def _motion_information(
     changes = [e.problem.chain.predict(e.values(1.0), [motion])[0] - friction for e in effects]
     rows = np.column_stack([slopes * scale, *changes])
     # In an autocorrelated residual a sample carries less information.
-    rows *= np.sqrt(effective_share(fitted.current_solution())) / noise_n
+    rows *= np.sqrt(effective_share(fitted.current_solution())) / noise_rms
     told: Array = rows.T @ rows
     return told
 

@@ -32,7 +32,7 @@ class PlannedPower(Result):
     ----------
     model
         Assumed model of the machine.
-    noise_n
+    noise_rms
         Standard deviation of the given noise on the friction, N.
     power
         Strength from which each other effect is detectable.
@@ -45,7 +45,7 @@ class PlannedPower(Result):
     """
 
     model: Model
-    noise_n: float
+    noise_rms: float
     power: tuple[Power, ...]
     not_tried: dict[str, str]
     runs: tuple[str, ...]
@@ -57,7 +57,7 @@ class PlannedPower(Result):
             **self.model.units_for_json(),
             "law": self.model.law,
             "effects": list(self.model.effects),
-            "noise_n": self.noise_n,
+            "noise_rms": self.noise_rms,
             "runs": list(self.runs),
             "level": self.level.to_dict(),
             "power": [p.to_dict() for p in self.power],
@@ -65,11 +65,11 @@ class PlannedPower(Result):
         }
 
 
-def as_recorded(model: Model, runs: Sequence[Run], noise_n: float, policy: Policy) -> Candidates:
-    """Candidates for a model in runs that it would record with white noise of `noise_n`, N."""
+def as_recorded(model: Model, runs: Sequence[Run], noise_rms: float, policy: Policy) -> Candidates:
+    """Candidates for a model in runs that it would record with white noise of `noise_rms`, N."""
     random = np.random.default_rng(0)
     recorded = [
-        replace(run, friction_n=friction + noise_n * random.standard_normal(len(run)))
+        replace(run, friction=friction + noise_rms * random.standard_normal(len(run)))
         for run, friction in zip(runs, model.predict_many(runs), strict=True)
     ]
     exact = Campaign.prepare(model.rig, recorded)
@@ -84,7 +84,7 @@ def _as_read(motion: ImposedMotion) -> ImposedMotion:
     For samples next to a reversal the side is unknown. If it were known exactly, these samples
     would show the smallest backlash or delay.
     """
-    way = np.sign(motion.velocity_m_s)
+    way = np.sign(motion.velocity)
     turns = np.flatnonzero(way[1:] != way[:-1])
     known = motion.sign_known.copy()
     known[turns] = known[turns + 1] = False
@@ -93,7 +93,7 @@ def _as_read(motion: ImposedMotion) -> ImposedMotion:
 
 @one_blas_thread
 def planned_power(
-    model: Model, runs: Iterable[Run], *, noise_n: float, policy: Policy = DEFAULT
+    model: Model, runs: Iterable[Run], *, noise_rms: float, policy: Policy = DEFAULT
 ) -> PlannedPower:
     """Strength from which each effect is detectable in planned runs.
 
@@ -105,7 +105,7 @@ def planned_power(
         Assumed model of the machine: from a fit, or a `Model` with values of a data sheet.
     runs
         Motions to play; friction in them is ignored.
-    noise_n
+    noise_rms
         Standard deviation of the noise on the friction, N (for a rotary drive N m).
     policy
         Numbers by which an effect will be named.
@@ -117,20 +117,20 @@ def planned_power(
         missing.
     """
     of_kind(model, Model, "model", "give a jbf.Model")
-    noise_n = number(noise_n, "noise_n")
-    if not (np.isfinite(noise_n) and noise_n > 0.0):
+    noise_rms = number(noise_rms, "noise_rms")
+    if not (np.isfinite(noise_rms) and noise_rms > 0.0):
         raise InputError(
-            key="noise_n",
-            problem=f"{noise_n:g} is not above zero",
+            key="noise_rms",
+            problem=f"{noise_rms:g} is not above zero",
             mend="give its standard deviation",
         )
-    if noise_n > MOST:
-        problem = f"{noise_n:g} is beyond what any machine does"
-        raise InputError(key="noise_n", problem=problem, mend="give its standard deviation")
+    if noise_rms > MOST:
+        problem = f"{noise_rms:g} is beyond what any machine does"
+        raise InputError(key="noise_rms", problem=problem, mend="give its standard deviation")
     planned = list_of_runs(runs)
     if not planned:
         raise InputError(problem="no run was given", mend="give at least one motion to play")
-    candidates = as_recorded(model, planned, noise_n, policy)
+    candidates = as_recorded(model, planned, noise_rms, policy)
     found = power(candidates, model.effects)
     names = tuple(run.name for run in planned)
-    return PlannedPower(model, noise_n, found, candidates.not_tried, names, candidates.level)
+    return PlannedPower(model, noise_rms, found, candidates.not_tried, names, candidates.level)

@@ -24,24 +24,24 @@ class Policy:
     """Numbers that determine a verdict; evidence is in units of twice the log likelihood."""
 
     # ---- evidence for an effect -------------------------------------------------------------
-    false_alarms: float = _number(
+    false_alarm_rate: float = _number(
         0.01,
         "share of campaigns with nothing hidden in which noise may make a name",
         "one in a hundred; the user's to choose",
     )
-    imperfection: float = _number(
+    artefact_margin: float = _number(
         22.0,
         "what an effect must gain more than noise does, in twice the log likelihood, for what "
         "recordings do to a record and no finding tells",
         "simulated recordings with nothing hidden (benches/recorded); none where the recording is "
         "known to be clean",
     )
-    indifference: float = _number(
+    min_effect_share: float = _number(
         0.03,
         "share of the residual's RMS by which an effect must change the friction to be named",
         "what nobody would act on; of long recordings any description is wrong by as much",
     )
-    indifference_n: float = _number(
+    min_effect: float = _number(
         0.0,
         "force, N RMS, by which an effect must change the friction to be named",
         "the user's to choose; none by default",
@@ -300,7 +300,7 @@ class Policy:
         for name, value in asdict(self).items():
             if math.isnan(value):
                 raise InputError(problem=f"the policy's {name} is nan", mend="give a number")
-        for name, most in (("false_alarms", 1.0), ("least_weight", 0.5)):
+        for name, most in (("false_alarm_rate", 1.0), ("least_weight", 0.5)):
             value = getattr(self, name)
             if not 0.0 < value < most:
                 raise InputError(

@@ -71,19 +71,19 @@ class Power:
     ----------
     effect, parameter, unit
         The effect, the parameter whose distance from its null is its strength, and its unit.
-    found_80, found_95
+    detectable_80, detectable_95
         Parameter value from which the effect is detected with 80 % and 95 % power; None where no
         value within its bounds is detected.
     always
         True for an effect that is detectable at any strength (a contact that holds at rest): the
         values are the weakest of the catalogue.
     share_80
-        RMS change of the friction at `found_80`, as a share of the friction's RMS.
-    alone_80
+        RMS change of the friction at `detectable_80`, as a share of the friction's RMS.
+    distinguishable_80
         Parameter value from which, with 80 % power, the effect is detected and no other effect fits
         as well; None where it is always confounded.
-    like
-        Effects with which it is confounded at `found_80`, the least distinguishable first.
+    confounded_with
+        Effects with which it is confounded at `detectable_80`, the least distinguishable first.
     hidden
         True where an effect of the catalogue's usual strength would be detected with less than 80 %
         power.
@@ -92,17 +92,17 @@ class Power:
     effect: str
     parameter: str
     unit: str
-    found_80: float | None
-    found_95: float | None
+    detectable_80: float | None
+    detectable_95: float | None
     always: bool
     share_80: float | None
-    alone_80: float | None
-    like: Names
+    distinguishable_80: float | None
+    confounded_with: Names
     hidden: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
-        return {**vars(self), "like": list(self.like)}
+        return {**vars(self), "confounded_with": list(self.confounded_with)}
 
 
 def power(
@@ -167,7 +167,7 @@ class _Detectable:
                 near = (found[0] if np.isfinite(found[0]) else 1.0) / float(np.sqrt(left))
                 found = _required_multiples(runs, model, [wanted / left for wanted in least], near)
         at = found[0] if np.isfinite(found[0]) else 1.0
-        share = runs.samples.rms(runs.change(model, at)) / max(runs.friction_n, 1e-300)
+        share = runs.samples.rms(runs.change(model, at)) / max(runs.friction, 1e-300)
         return cls(tuple(found), _change(runs, model, at), share)
 
 
@@ -276,7 +276,7 @@ def _power(
     def strength(times: float) -> float | None:
         return float(model.values(times)[model.which]) if np.isfinite(times) else None
 
-    most, like = np.inf, []
+    most, confounded = np.inf, []
     if np.isfinite(own.times[0]):
         parameters, tie = _parameters(runs.base, model), candidates.policy.tie
         price = price_of(candidates, parameters)
@@ -287,14 +287,17 @@ def _power(
                 least = max(tie + dearer, 0.25 * tie)
                 rivals[other] = (distinguishable_size(own.change, rival.change, runs), least)
         told = {other: distinction_probability(*rival) for other, rival in rivals.items()}
-        like = sorted((o for o, chance in told.items() if chance < LEVELS[0]), key=told.__getitem__)
+        confounded = sorted(
+            (o for o, chance in told.items() if chance < LEVELS[0]), key=told.__getitem__
+        )
         found = (price, parameters, non_centrality(price, parameters, LEVELS[0]))
         most = distinction_factor(*found, rivals, LEVELS[0])
         for _ in range(LOOKS_ALONE):
             if not 1.0 + AGREES < most < np.inf:
                 break
             before = most
-            rivals |= _further(runs, models, seen, name, most, {o: rivals[o][1] for o in like})
+            costs = {rival: rivals[rival][1] for rival in confounded}
+            rivals |= _further(runs, models, seen, name, most, costs)
             most = distinction_factor(*found, rivals, LEVELS[0])
             if abs(np.log(most / before)) < AGREES:
                 break
@@ -302,12 +305,12 @@ def _power(
         effect=name,
         parameter=model.page.name,
         unit=model.page.unit,
-        found_80=strength(own.times[0]),
-        found_95=strength(own.times[1]),
+        detectable_80=strength(own.times[0]),
+        detectable_95=strength(own.times[1]),
         always=_weakest(model, own.times[0]),
         share_80=own.share if np.isfinite(own.times[0]) else None,
-        alone_80=strength(own.times[0] * most) if np.isfinite(most) else None,
-        like=tuple(like),
+        distinguishable_80=strength(own.times[0] * most) if np.isfinite(most) else None,
+        confounded_with=tuple(confounded),
         hidden=not own.times[0] <= 1.0,
     )
 

@@ -172,9 +172,9 @@ def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
 
 def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:
     """Whether an elastic law without effects predicts better than another law with its effects."""
-    alone = {t.law: t.left_out_rms_n for t in laws}
+    alone = {t.law: t.held_out_rms for t in laws}
     first, last = best.steps[0], best.steps[-1]
-    improved = last.holdout_rms_n / max(first.holdout_rms_n, 1e-300)
+    improved = last.held_out_rms / max(first.held_out_rms, 1e-300)
     return alone[law] < alone[best.model.law] * improved / margin
 
 
@@ -189,7 +189,7 @@ def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[f
         samples = samples.within(own.samples.counted)
     lasts = [answer.steps[-1] for answer in answers]
     return [
-        samples.rms(own.residuals) * last.holdout_rms_n / max(last.rms_n, 1e-300)
+        samples.rms(own.residuals) * last.held_out_rms / max(last.rms, 1e-300)
         for own, last in zip(compared, lasts, strict=True)
     ]
 
@@ -261,7 +261,7 @@ def _with_law(
         weights=posterior,
         steps=tuple(steps),
         failures=before.failures,
-        unexplained=remains,
+        residual_structure=remains,
         next_experiment=proposal.words if isinstance(proposal, Experiment) else proposal,
         experiment=proposal if isinstance(proposal, Experiment) else None,
         fit=fit,
@@ -270,7 +270,7 @@ def _with_law(
         elapsed_s=time.monotonic() - begun,
         level=candidates.level,
         not_tried=candidates.not_tried,
-        unseen=hidden,
+        not_detectable=hidden,
         policy=policy,
         findings=candidates.campaign.findings,
         confounders=tuple(name for name in doubted if name in kept),

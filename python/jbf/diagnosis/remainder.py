@@ -49,8 +49,8 @@ def find_remainder(
     found += find_disagreement(problem, solution, policy)
     found += find_stroke_levels(problem, solution, policy)
     # Coarse quantisation biases mean readings along any axis and in each run.
-    steps_n = problem.campaign.steps_rms_n(solution.rms_n)
-    found = [r for r in found if np.sqrt(r.share) * solution.rms_n > steps_n]
+    steps_n = problem.campaign.steps_rms(solution.rms)
+    found = [r for r in found if np.sqrt(r.share) * solution.rms > steps_n]
     if samples.motion is not None:
         least = policy.least_share(problem.campaign.motion_share)
         found = [r for r in found if r.share >= least]
@@ -95,7 +95,7 @@ def _likeliest_forces(problem: Problem, solution: Solution) -> tuple[list[Array]
         return predicted, 0.0
     shares = [r / (1.0 + r) for r in map(motion.variance_ratio, range(len(predicted)))]
     forces = [
-        np.where(counted, f + share * (p.friction_n - f), f)
+        np.where(counted, f + share * (p.friction - f), f)
         for f, share, p, counted in zip(
             predicted, shares, problem.campaign.prepared, samples.counted, strict=True
         )

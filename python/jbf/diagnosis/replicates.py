@@ -36,7 +36,7 @@ def find_replicates(
     least = policy.replicate_share
     left = solution.samples.without_deviations(solution.residuals, solution.noise)
     for residual, counted, p in zip(left, solution.samples.counted, prepared, strict=True):
-        shift = period_samples(p.motion.velocity_m_s)
+        shift = period_samples(p.motion.velocity)
         if shift is None:
             continue
         both = counted[shift:] & counted[:-shift]

@@ -45,7 +45,7 @@ class Diagnosis(Result):
         The ledger, beginning with the bare law.
     failures
         Lack of fit of the bare law, strongest first.
-    unexplained
+    residual_structure
         Residual structure that no effect explains.
     next_experiment
         One sentence, where another run would settle the question.
@@ -55,7 +55,7 @@ class Diagnosis(Result):
         Comparison of the bare law and of the final model with the runs.
     not_tried
         Effects that are compatible with the law but not testable in these runs, with the reason.
-    unseen
+    not_detectable
         Effects that are not detectable in these runs at a usual strength.
     level
         Threshold for the gain of an effect, and how often noise exceeds it.
@@ -85,7 +85,7 @@ class Diagnosis(Result):
     alternatives: dict[str, tuple[str, ...]]
     steps: tuple[Step, ...]
     failures: tuple[Failure, ...]
-    unexplained: tuple[Remainder, ...]
+    residual_structure: tuple[Remainder, ...]
     next_experiment: str | None
     fit: Fit
     before: Comparison
@@ -93,7 +93,7 @@ class Diagnosis(Result):
     elapsed_s: float
     level: Level
     not_tried: dict[str, str] = field(default_factory=dict)
-    unseen: tuple[str, ...] = ()
+    not_detectable: tuple[str, ...] = ()
     experiment: Experiment | None = None
     policy: Policy = DEFAULT
     findings: tuple[Finding, ...] = ()
@@ -109,7 +109,7 @@ class Diagnosis(Result):
     def negligible(self) -> tuple[str, ...]:
         """Effects that are significant but below the minimum effect size.
 
-        They are tested in addition to the final model; the size is `indifference` of the policy.
+        They are tested in addition to the final model; the size is the policy's `min_effect_share`.
         """
         trials = next((s.trials for s in reversed(self.steps) if s.trials), ())
         return tuple(t.effect for t in trials if t.outcome == "negligible")
@@ -130,7 +130,7 @@ class Diagnosis(Result):
             "weights": {k: dict(v) for k, v in self.weights.items()},
             "steps": [s.to_dict() for s in self.steps],
             "failures": [f.to_dict() for f in self.failures],
-            "unexplained": [r.to_dict() for r in self.unexplained],
+            "residual_structure": [r.to_dict() for r in self.residual_structure],
             "findings": [f.to_dict() for f in self.findings],
             "confounders": list(self.confounders),
             "law": self.model.law,
@@ -139,7 +139,7 @@ class Diagnosis(Result):
             "next_experiment": self.next_experiment,
             "parameters": self.model.parameters_for_json(self.fit.parameters),
             "not_tried": dict(self.not_tried),
-            "unseen": list(self.unseen),
+            "not_detectable": list(self.not_detectable),
             "negligible": list(self.negligible),
             "limitations": list(self.limitations),
             "level": self.level.to_dict(),

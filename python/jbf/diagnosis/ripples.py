@@ -68,7 +68,7 @@ def find_ripples(
     if campaign.rig.bearing is not None or len(prepared) < LEAST_RUNS:
         return []
     ways = [_travel(p) for p in prepared]
-    turned = [np.sign(p.motion.velocity_m_s) for p in prepared]
+    turned = [np.sign(p.motion.velocity) for p in prepared]
     found: list[Remainder] = []
     for along in (False, True):
         signs = turned if along else [np.ones(len(w)) for w in ways]

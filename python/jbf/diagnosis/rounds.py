@@ -177,7 +177,7 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     policy = candidates.policy
     if len(present) + 2 > policy.most_effects:
         return present
-    ahead = [t.effect for t in sorted(found.trials, key=lambda t: t.rms_n)[: policy.paired]]
+    ahead = [t.effect for t in sorted(found.trials, key=lambda t: t.rms)[: policy.paired]]
     pairs = [(*present, *pair) for pair in itertools.combinations(ahead, 2)]
     pairs += [
         (*present, name, other)
@@ -217,19 +217,19 @@ def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -
     base, richer = candidates.converge(present), candidates.converge((*present, leader))
     unit = candidates.campaign.rig.quantities.force
     where = (
-        f"{leader} would bring {base.rms_n:.3g} {unit} down to {richer.rms_n:.3g} {unit} beside "
+        f"{leader} would bring {base.rms:.3g} {unit} down to {richer.rms:.3g} {unit} beside "
         f"{len(present)} effects, and no more are searched for"
     )
-    return Remainder("effects", where, max(1.0 - (richer.rms_n / base.rms_n) ** 2, 0.0))
+    return Remainder("effects", where, max(1.0 - (richer.rms / base.rms) ** 2, 0.0))
 
 
 def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> Step:
     """Create a step of the ledger: a model, its errors, and the candidates tried with it."""
     solution = candidates.converge(effects)
-    noise_n = noise_floor(candidates.campaign.prepared, solution.samples)
+    noise_rms = noise_floor(candidates.campaign.prepared, solution.samples)
     left_out_n = candidates.held_out_rms(effects)
     beyond = _extrapolations(candidates, effects)
-    return Step(effects, solution.rms_n, left_out_n, noise_n, trials, beyond)
+    return Step(effects, solution.rms, left_out_n, noise_rms, trials, beyond)
 
 
 def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolation, ...]:
@@ -266,19 +266,19 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
         richer = problem.current_solution()
         samples = common_samples(richer.samples, away)
         with_it, without = (replace(s, samples=samples) for s in (richer, base))
-        better = with_it.rms_n < policy.refused_rms * without.rms_n
+        better = with_it.rms < policy.refused_rms * without.rms
         gains = (
             evidence_on_common_samples(candidates, with_it, without, anywhere=True) > policy.weak
         )
         if better and gains:
-            found.append((richer.rms_n, name))
+            found.append((richer.rms, name))
     if not found:
         return ()
     rms, name = min(found)
-    share = max(1.0 - (rms / base.rms_n) ** 2, 0.0)
+    share = max(1.0 - (rms / base.rms) ** 2, 0.0)
     if share < policy.least_share(candidates.campaign.motion_share):
         return ()
     unit = candidates.campaign.rig.quantities.force
-    fits = f"{name} fits {base.rms_n:.3g} {unit} down to {rms:.3g} {unit}"
+    fits = f"{name} fits {base.rms:.3g} {unit} down to {rms:.3g} {unit}"
     where = f"{fits} but predicts runs left out no better"
     return (Remainder("run", where, share),)

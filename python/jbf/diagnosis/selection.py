@@ -98,11 +98,11 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     ranked = _rank(candidates, present, base, follow)
     leader, best, trials = None, 0.0, []
     unconfirmed: set[str] = set()
-    bare = base.rms_n
-    least = min((r.solution.rms_n for r in ranked if r.evidence > 0), default=bare)
+    bare = base.rms
+    least = min((r.solution.rms for r in ranked if r.evidence > 0), default=bare)
     for found in sorted(ranked, key=lambda r: _has_larger_rms(r, least, policy)):
         name, gain = found.effect, found.evidence
-        rms = min(found.solution.rms_n, bare)
+        rms = min(found.solution.rms, bare)
         outcome: Outcome
         outcome = "no gain"
         reason = SMOOTH if rms < LESS * bare else CHANCE
@@ -202,7 +202,7 @@ def _gain_is_from_local_minimum(
 
 def _has_larger_rms(found: Ranked, least_n: float, policy: Policy) -> bool:
     """Whether a candidate has a much larger RMS than another one that also has evidence."""
-    return found.solution.rms_n > policy.leader_rms * least_n
+    return found.solution.rms > policy.leader_rms * least_n
 
 
 def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow) -> list[Ranked]:

@@ -40,7 +40,7 @@ class Rival:
     def __init__(self, fitted: Fitted) -> None:
         self.problem, self.solution = fitted.problem, fitted.current_solution()
         r, j = self.solution.stacked()
-        self.noise_n = float(np.sqrt(r @ r / max(len(r) - j.shape[1], 1)))
+        self.noise_rms = float(np.sqrt(r @ r / max(len(r) - j.shape[1], 1)))
         self.known: Array = np.asarray(np.linalg.qr(j, mode="r"), dtype=np.float64)
 
     def at(self, motion: Driven) -> tuple[Array, Array]:
@@ -62,7 +62,7 @@ class Rival:
         slopes = noise.innovations(own[1], step_s)
         design = np.concatenate([slopes, self.known])
         target = np.concatenate([gap, np.zeros(len(self.known))])
-        return unexplained_square(design, target) / max(self.noise_n, NO_NOISE_N) ** 2
+        return unexplained_square(design, target) / max(self.noise_rms, NO_NOISE_N) ** 2
 
 
 def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits, float]:
@@ -86,7 +86,7 @@ def motions(
 
 def run_from_motion(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:
     """Convert a motion to a run to play, with the position of a slide or the angle of a shaft."""
-    velocity = excitation.velocity_m_s
+    velocity = excitation.velocity
     time = np.arange(len(velocity)) * step_s
     path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * step_s)))
     bearing = rig.bearing

@@ -46,7 +46,7 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
         gain = likelihood_gain(whole, rest) * share
         own = disagreement(problem, whole, name)
         beyond = own.gain - own.degrees if own.beyond_chance(policy) else None
-        explained = 1.0 - (whole.rms_n / rest.rms_n) ** 2
+        explained = 1.0 - (whole.rms / rest.rms) ** 2
         weak = gain - price_of(candidates, whole.free - rest.free) <= policy.weak
         if (weak and explained < largest) or not name_is_supported(gain, beyond, policy):
             found.append(name)

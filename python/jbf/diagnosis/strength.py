@@ -86,7 +86,7 @@ class RunsAtHand:
         size = np.linalg.norm(self.slopes, axis=0)
         moved = self.slopes[:, size > 0.0] / size[size > 0.0]
         self.tangent: Array = np.asarray(np.linalg.qr(moved)[0])
-        self.friction_n = self.samples.rms(self.now)
+        self.friction = self.samples.rms(self.now)
         # Cache of the last result of each effect: strength, change, and sample weights.
         self._last: dict[str, tuple[float, list[Array], list[Array] | None]] = {}
 

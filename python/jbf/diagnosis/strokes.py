@@ -79,9 +79,9 @@ def stroke_of(p: Prepared) -> Strokes:
     """
     motion = p.motion
     moving = np.flatnonzero(p.slides)
-    found = np.full(len(motion.velocity_m_s), -1, dtype=np.intp)
+    found = np.full(len(motion.velocity), -1, dtype=np.intp)
     if len(moving):
-        sign = np.sign(motion.velocity_m_s[moving])
+        sign = np.sign(motion.velocity[moving])
         found[moving] = np.cumsum(np.diff(sign, prepend=sign[0]) != 0.0)
     return found
 

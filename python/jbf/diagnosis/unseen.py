@@ -99,7 +99,7 @@ def propose_detection_run(
     )
     usual = float(np.exp(np.mean(np.log(list(clear.values())))))
     sigma = float(np.sqrt(usual / len(run)))
-    return Experiment(words, run, sigma * base.noise_n, sigma, usual)
+    return Experiment(words, run, sigma * base.noise_rms, sigma, usual)
 
 
 def mean_detection_probability(evidence: float, price: float) -> float:

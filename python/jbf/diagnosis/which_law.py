@@ -47,7 +47,7 @@ class LawTried:
     ----------
     law, parameters
         Its name and its number of parameters.
-    left_out_rms_n
+    held_out_rms
         Held-out RMS, N, at the samples that count for every law.
     tied
         True where its error is not significantly larger than that of the best law.
@@ -55,7 +55,7 @@ class LawTried:
 
     law: str
     parameters: int
-    left_out_rms_n: float
+    held_out_rms: float
     tied: bool
 
     def to_dict(self) -> dict[str, Any]:
@@ -63,7 +63,7 @@ class LawTried:
         return {
             "law": self.law,
             "parameters": self.parameters,
-            "left_out_rms_n": self.left_out_rms_n,
+            "held_out_rms": self.held_out_rms,
             "tied": self.tied,
         }
 
@@ -264,9 +264,9 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
         if name == candidates.law or count > most:
             continue
         # A law with a much larger fit error is not a better predictor.
-        far = policy.leader_rms * candidates.converge(effects).rms_n
+        far = policy.leader_rms * candidates.converge(effects).rms
         try:
-            errors = held_out_errors(other, kept) if other.converge(kept).rms_n < far else None
+            errors = held_out_errors(other, kept) if other.converge(kept).rms < far else None
         except Unfinished:
             continue
         if errors is not None:
@@ -277,5 +277,5 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     here = next(t for t in tried if t.law == "")
     others = [t for t in tried if t.law and t.tied]
     # Of equivalent laws prefer the one with the fewest parameters, whichever is ahead by chance.
-    better = [t for t in others if t.parameters < most or t.left_out_rms_n <= here.left_out_rms_n]
+    better = [t for t in others if t.parameters < most or t.held_out_rms <= here.held_out_rms]
     return min(better, key=lambda t: t.parameters, default=None)

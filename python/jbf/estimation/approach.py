@@ -115,7 +115,7 @@ class Approach:
         runs = few.campaign.prepared
         if len(group) <= MANY or len(runs) < 2:
             return group
-        fastest = [float(np.max(np.abs(p.motion.velocity_m_s))) for p in runs]
+        fastest = [float(np.max(np.abs(p.motion.velocity))) for p in runs]
         which = [int(np.argmax(fastest))]
         samples = few.campaign.samples.only(which)
         squares = [samples.square(few.residuals(start, which)) for start in group]

@@ -159,14 +159,14 @@ def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
 
 
 def simulated_recording(
-    prepared: Prepared, friction_n: Array, noise: Noise, sigma_n: float, random: np.random.Generator
+    prepared: Prepared, friction: Array, noise: Noise, sigma_n: float, random: np.random.Generator
 ) -> Run:
     """Simulate a new recording of the run by its instruments, if the prediction were correct."""
     error = noise.coloured(random.normal(0.0, sigma_n, len(prepared.run)), prepared.step_s)
-    return simulated_readings(prepared, friction_n + error, random)
+    return simulated_readings(prepared, friction + error, random)
 
 
-def simulated_readings(prepared: Prepared, friction_n: Array, random: np.random.Generator) -> Run:
+def simulated_readings(prepared: Prepared, friction: Array, random: np.random.Generator) -> Run:
     """Simulate a new recording of the motion by the run's instruments, with the given friction.
 
     A column that is disregarded carries no information and is kept unchanged, so that it is
@@ -175,23 +175,21 @@ def simulated_readings(prepared: Prepared, friction_n: Array, random: np.random.
     """
     run, motion = prepared.run, prepared.motion
     n = len(run)
-    read = prepared.friction_n
-    friction = np.where(np.isfinite(read) & motion.sign_known, friction_n, read)
+    read = prepared.friction
+    friction = np.where(np.isfinite(read) & motion.sign_known, friction, read)
     # Recorded errors of the speed with random sign: equal in size and position.
-    off = (run.velocity_m_s - motion.velocity_m_s) * random.choice([-1.0, 1.0], n)
+    off = (run.velocity - motion.velocity) * random.choice([-1.0, 1.0], n)
     moving = ~motion.resting
-    velocity = np.where(moving, motion.velocity_m_s + off, run.velocity_m_s)
+    velocity = np.where(moving, motion.velocity + off, run.velocity)
     if "velocity_m_s" in motion.aside:
-        velocity = run.velocity_m_s
+        velocity = run.velocity
     angle, position = run.angle_rad, run.position_m
     if angle is not None and "angle_rad" not in motion.aside:
         angle = _simulated_path(np.unwrap(angle), motion.angle_rad, moving, random)
     if position is not None and "position_m" not in motion.aside:
         arm = prepared.rig.bearing.radius_m if prepared.rig.bearing is not None else 1.0
         position = _simulated_path(position, motion.angle_rad * arm, moving, random)
-    return replace(
-        run, velocity_m_s=velocity, friction_n=friction, angle_rad=angle, position_m=position
-    )
+    return replace(run, velocity=velocity, friction=friction, angle_rad=angle, position_m=position)
 
 
 def _simulated_path(

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.estimation.converter import curve_rms_n, noise_before
+from jbf.estimation.converter import curve_rms, noise_before
 from jbf.estimation.noise_floor import noise_upper_bound
 from jbf.estimation.prepared import NoMotion, Prepared, coasting
 from jbf.estimation.samples import Samples
@@ -55,7 +55,7 @@ SMOOTHS_FORCE = frozenset((
 They are not tried where errors of the acceleration are a large part of the residual, because they
 would smooth these errors.
 """
-NEEDS_RECORDED_FORCE = SMOOTHS_FORCE | {"inertia_leak", "sensor_nonlinearity", "sensor_drift"}
+NEEDS_RECORDED_FORCE = SMOOTHS_FORCE | {"inertia", "sensor_nonlinearity", "sensor_drift"}
 """Effects that are not tried without a recorded force.
 
 Backlash and compliance act between the driven part and the sensor. In a coast-down they would
@@ -64,9 +64,9 @@ explain how its acceleration was smoothed.
 MOTION_SHARE = 0.1
 """Mean fraction of the variance above which the errors of the motion count as a large part."""
 NEEDS_TIME = frozenset((
-    "inertia_leak", "sensor_hysteresis", "sensor_lag", "time_delay", "sensor_drift", "backlash",
-    "drive_compliance", "thermal_thinning", "film_memory", "wear_in", "warm_up", "dwell_stiction",
-    "presliding",
+    "inertia", "sensor_hysteresis", "sensor_lag", "time_delay", "sensor_drift", "backlash",
+    "drive_compliance", "thermal_thinning", "film_memory", "running_in", "warm_up",
+    "dwell_stiction", "presliding",
 ))  # fmt: skip
 """Effects that are not tried on steady states."""
 NOISE_SPAN = 3.29
@@ -117,7 +117,7 @@ class Campaign:
             p.finding([repeated(p.run, runs[k]) for k in again if again[k] == i])
             for i, p in ready.items()
         )
-        if not any(np.any(p.friction_n) for p in prepared):
+        if not any(np.any(p.friction) for p in prepared):
             raise InputError(
                 file=prepared[0].run.path or prepared[0].run.name,
                 column="friction_n",
@@ -125,7 +125,7 @@ class Campaign:
                 mend="check that the force was connected, and its scale",
             )
         samples = Samples.of(prepared)
-        work = Work.of(sum(len(p.friction_n) for p in prepared))
+        work = Work.of(sum(len(p.friction) for p in prepared))
         noise = noise_upper_bound(prepared, samples)
         return cls(rig, prepared, samples, noise, tuple(without_motion), work)
 
@@ -239,7 +239,7 @@ class Campaign:
         """Largest quantisation step that is comparable with the noise, N; zero without one."""
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
 
-    def steps_rms_n(self, residual_rms_n: float) -> float:
+    def steps_rms(self, residual_rms: float) -> float:
         """RMS of the quantisation error of mean readings that no model removes, N.
 
         It is zero without a quantisation step. The noise smooths the quantisation error and is
@@ -248,13 +248,13 @@ class Campaign:
         """
         if self.step_n <= 0.0:
             return 0.0
-        taken = self.samples.rms([p.readings_n - p.friction_n for p in self.prepared])
+        taken = self.samples.rms([p.readings_n - p.friction for p in self.prepared])
         if taken > 0.0:
             return LEFT_OF_BIAS * taken
         pairs = zip(self.prepared, self.samples.counted, strict=True)
         moves = [np.diff(p.readings_n)[at[1:] & at[:-1]] for p, at in pairs]
-        noise_n = noise_before(self.step_n, np.concatenate(moves))
-        return curve_rms_n(self.step_n, min(noise_n, residual_rms_n))
+        noise_rms = noise_before(self.step_n, np.concatenate(moves))
+        return curve_rms(self.step_n, min(noise_rms, residual_rms))
 
     def without(self, masks: Sequence[Mask]) -> Campaign:
         """Return the campaign with additional samples excluded, one mask a run."""

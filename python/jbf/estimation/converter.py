@@ -29,7 +29,7 @@ def origin_n(step_n: float, readings_n: Array) -> float:
     return float(np.angle(np.nanmean(np.exp(1j * turn * readings_n))) / turn)
 
 
-def bias_n(step_n: float, noise_n: float, force_n: Array) -> Array:
+def bias_n(step_n: float, noise_rms: float, force_n: Array) -> Array:
     """Quantisation bias of the mean reading, shape (n,), N.
 
     A converter that rounds down equals one that rounds to the nearest with a zero offset of half a
@@ -39,12 +39,12 @@ def bias_n(step_n: float, noise_n: float, force_n: Array) -> Array:
     ----------
     step_n
         Quantisation step of the converter, N.
-    noise_n
+    noise_rms
         Standard deviation of the noise before the converter, N.
     force_n
         Difference between the force and a reading of the converter, shape (n,), N.
     """
-    turn, ratio = 2.0 * np.pi * force_n / step_n, np.pi * noise_n / step_n
+    turn, ratio = 2.0 * np.pi * force_n / step_n, np.pi * noise_rms / step_n
     waves = (
         (-1.0) ** k / k * np.exp(-2.0 * (k * ratio) ** 2) * np.sin(k * turn)
         for k in range(1, HARMONICS + 1)
@@ -52,17 +52,17 @@ def bias_n(step_n: float, noise_n: float, force_n: Array) -> Array:
     return np.asarray(step_n / np.pi * sum(waves), dtype=np.float64)
 
 
-def curve_rms_n(step_n: float, noise_n: float) -> float:
+def curve_rms(step_n: float, noise_rms: float) -> float:
     """RMS of the quantisation bias over the force, N.
 
     Parameters
     ----------
     step_n
         Quantisation step of the converter, N.
-    noise_n
+    noise_rms
         Standard deviation of the noise on the force before it is converted, N.
     """
-    ratio = math.pi * noise_n / step_n
+    ratio = math.pi * noise_rms / step_n
     return step_n / math.pi * math.exp(-2.0 * ratio**2) / math.sqrt(2.0)
 
 

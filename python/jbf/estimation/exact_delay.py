@@ -95,11 +95,11 @@ class _Scan:
 
     problem: Problem
     chain: LateChain
-    friction_n: list[Array]
+    friction: list[Array]
     values: Array
     way: Array
     """Derivative of the search variables with respect to the delay, 1/s."""
-    noise_n: float
+    noise_rms: float
     share: float
 
     @classmethod
@@ -113,15 +113,15 @@ class _Scan:
         left = samples.without_deviations(solution.residuals, solution.noise)
         # A run's own zero or gain must not be taken for a delay.
         friction = [
-            p.friction_n - (r - own)
+            p.friction - (r - own)
             for p, r, own in zip(problem.campaign.prepared, solution.residuals, left, strict=True)
         ]
         # A sample of coloured residuals carries less information.
         counted = [r * c for r, c in zip(left, samples.counted, strict=True)]
         share = independent_share(counted, samples.steps_s)
-        noise_n = max(samples.rms(left), 1e-300)
+        noise_rms = max(samples.rms(left), 1e-300)
         way = np.where(np.isfinite(way) & spread.moved, way, 0.0)
-        return cls(problem, chain, friction, values, way, noise_n, share)
+        return cls(problem, chain, friction, values, way, noise_rms, share)
 
     def along(self, delay_s: float) -> Array:
         """Values of all parameters for a given delay."""
@@ -134,10 +134,10 @@ class _Scan:
     def cost(self, delay_s: float) -> float:
         """Minus twice the log likelihood."""
         values, total = self.along(delay_s), 0.0
-        for p, friction_n in zip(self.problem.campaign.prepared, self.friction_n, strict=True):
+        for p, friction in zip(self.problem.campaign.prepared, self.friction, strict=True):
             reading = self.chain.read(values, p.run, *p.motion_as_read, 0.0)
             far = [
-                np.minimum(((friction_n - f) / self.noise_n) ** 2, CLIPPED**2)
+                np.minimum(((friction - f) / self.noise_rms) ** 2, CLIPPED**2)
                 for f in (reading.before_n, reading.after_n)
             ]
             over = reading.over
@@ -154,5 +154,5 @@ class _Scan:
         left = []
         for p in self.problem.campaign.prepared:
             reading = self.chain.read(values, p.run, *p.motion_as_read, sd_s)
-            left.append(p.friction_n - reading.mean_n)
+            left.append(p.friction - reading.mean_n)
         return left

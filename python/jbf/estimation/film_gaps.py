@@ -65,12 +65,12 @@ def _through(p: Prepared, *, late: bool) -> Driven:
     time, gaps = p.run.time_s, _gaps(p)
     length = time[gaps + 1] - time[gaps]
     new = time[gaps + 1] - EDGE * length if late else time[gaps] + EDGE * length
-    speed = p.motion.velocity_m_s[gaps if late else gaps + 1]
+    speed = p.motion.velocity[gaps if late else gaps + 1]
     whole = np.sort(np.concatenate([time, new]))
     motion = p.motion.at(time, whole)
-    velocity, acceleration = motion.velocity_m_s.copy(), motion.acceleration_m_s2.copy()
+    velocity, acceleration = motion.velocity.copy(), motion.acceleration.copy()
     at = np.searchsorted(whole, new)
     velocity[at], acceleration[at] = speed, 0.0
-    motion = replace(motion, velocity_m_s=velocity, acceleration_m_s2=acceleration)
-    run = p.run.at(whole, np.interp(whole, time, p.friction_n))
+    motion = replace(motion, velocity=velocity, acceleration=acceleration)
+    run = p.run.at(whole, np.interp(whole, time, p.friction))
     return Driven(core_motion(p.rig, run, motion).motion, np.searchsorted(whole, time))

@@ -48,7 +48,7 @@ def check_film(
     followed = min(rate, _core.FASTEST_FILM_1_S)
     seconds = math.fsum(p.run.duration_s for p in campaign.prepared)
     steps = followed * seconds
-    samples = sum(len(p.friction_n) for p in campaign.prepared)
+    samples = sum(len(p.friction) for p in campaign.prepared)
     if steps <= max(MOST_STEPS * samples, ANY_STEPS):
         return
     every = float(np.median([p.step_s for p in campaign.prepared]))

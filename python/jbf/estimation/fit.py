@@ -54,7 +54,7 @@ class Fit(Estimates):
         its note states the reason.
     correlations
         Shape (k, k), in the order of the `parameters` that are not held.
-    rms_n
+    rms
         Root mean square of the residual over the samples that count, N.
     residuals
         Record minus prediction, N, one array a run.
@@ -65,7 +65,7 @@ class Fit(Estimates):
         Names of the parameters that were not fitted.
     findings
         Recording artefacts of the runs, and how they were treated.
-    noise_floor_n
+    noise_floor
         Standard deviation of the noise on the record, estimated from the record only, N; None if it
         cannot be estimated.
     """
@@ -73,7 +73,7 @@ class Fit(Estimates):
     model: Model
     parameters: dict[str, ParameterValue]
     correlations: Array
-    rms_n: float
+    rms: float
     noise: Noise
     samples: int
     residuals: list[Array]
@@ -82,7 +82,7 @@ class Fit(Estimates):
     doubtful: tuple[str, ...] = ()
     fixed: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
-    noise_floor_n: float | None = None
+    noise_floor: float | None = None
 
     def __post_init__(self) -> None:
         told = sum(not p.held for p in self.parameters.values())
@@ -99,8 +99,8 @@ class Fit(Estimates):
         return {
             "law": self.model.law,
             "effects": list(self.model.effects),
-            "rms_n": self.rms_n,
-            "noise_floor_n": self.noise_floor_n,
+            "rms": self.rms,
+            "noise_floor": self.noise_floor,
             "samples": self.samples,
             "converged": self.converged,
             "message": self.message,
@@ -144,14 +144,14 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         {
             "runs": ", ".join(p.run.name for p in campaign.prepared),
             "samples": samples,
-            "rms_n": rms,
+            "rms": rms,
         },
     )
     return Fit(
         model=model,
         parameters=named,
         correlations=correlations(problem, named, known),
-        rms_n=rms,
+        rms=rms,
         noise=solution.noise,
         samples=samples,
         residuals=list(found.residuals),
@@ -159,7 +159,7 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         message=solution.message,
         fixed=tuple(name for name in problem.names if name in problem.fixed),
         findings=campaign.findings,
-        noise_floor_n=noise_floor(campaign.prepared, solution.samples) or None,
+        noise_floor=noise_floor(campaign.prepared, solution.samples) or None,
     )
 
 

@@ -64,7 +64,7 @@ def runs_beyond(campaign: Campaign) -> list[Beyond]:
 def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
     """Speed and load at the samples that count, one array a run."""
     runs, counted = campaign.prepared, campaign.samples.counted
-    speeds = [p.motion.velocity_m_s[c] for p, c in zip(runs, counted, strict=True)]
+    speeds = [p.motion.velocity[c] for p, c in zip(runs, counted, strict=True)]
     loads = [recorded_load(p.rig, p.run) for p in runs]
     known = [load[c] for load, c in zip(loads, counted, strict=True) if load is not None]
     return {"speed": speeds} | ({"load": known} if len(known) == len(runs) else {})

@@ -88,7 +88,7 @@ def has_unknown_start(effects: Iterable[str]) -> bool:
 
 
 def remembering(
-    chain: DrivenChain, values: Array, prepared: Sequence[Prepared], which: Memory, noise_n: float
+    chain: DrivenChain, values: Array, prepared: Sequence[Prepared], which: Memory, noise_rms: float
 ) -> list[Mask]:
     """Mask of the samples at which a run still remembers its initial state, one a run.
 
@@ -96,7 +96,7 @@ def remembering(
     ----------
     values
         Parameters of a model that fits roughly.
-    noise_n
+    noise_rms
         Noise on the friction, N.
     """
     # The motion used by the fit has starts between samples and would differ at each stop.
@@ -106,7 +106,7 @@ def remembering(
         begun.append(chain.predict(values, motions))
     spreads = [np.ptp(np.array(ways), axis=0) for ways in zip(*begun, strict=True)]
     found = [
-        _remembered(p, spread > REMEMBERED * noise_n, which)
+        _remembered(p, spread > REMEMBERED * noise_rms, which)
         for p, spread in zip(prepared, spreads, strict=True)
     ]
     gone, whole = sum(int(f.sum()) for f in found), sum(f.size for f in found)

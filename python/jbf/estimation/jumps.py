@@ -118,17 +118,17 @@ def _without_jumps(
 def _without_reversals(
     p: Prepared, counted: Mask, weight: Array, prediction: Array
 ) -> tuple[Mask, Array]:
-    noise_n = _noise_n(p, counted, prediction)
-    error_n = instant_errors_n(p, prediction, UNSURE * noise_n)
-    return counted & (error_n == 0.0), weight * _share(error_n, noise_n)
+    noise_rms = _noise_n(p, counted, prediction)
+    error_n = instant_errors_n(p, prediction, UNSURE * noise_rms)
+    return counted & (error_n == 0.0), weight * _share(error_n, noise_rms)
 
 
 def _noise_n(p: Prepared, kept: Mask, prediction: Array) -> float:
-    return float(np.sqrt(np.mean((prediction - p.friction_n)[kept] ** 2))) if kept.any() else 0.0
+    return float(np.sqrt(np.mean((prediction - p.friction)[kept] ** 2))) if kept.any() else 0.0
 
 
-def _share(error_n: Array, noise_n: float) -> Array:
+def _share(error_n: Array, noise_rms: float) -> Array:
     """Weight of a sample whose prediction has this error in addition to the noise."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        share: Array = np.where(error_n > 0.0, noise_n / np.hypot(noise_n, error_n), 1.0)
+        share: Array = np.where(error_n > 0.0, noise_rms / np.hypot(noise_rms, error_n), 1.0)
     return share

@@ -125,7 +125,7 @@ def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[
     for i, (p, force) in enumerate(zip(runs, forces, strict=True)):
         instants = instants_of(p)
         # An offset or a gain of the run is not a delay.
-        read = p.friction_n - (solution.residuals[i] - left_over[i])
+        read = p.friction - (solution.residuals[i] - left_over[i])
         kept = samples.counted[i]
         rows = []
         for late in grid:
@@ -168,7 +168,7 @@ def instants_of(p: Prepared) -> Array:
 def fine_motion(p: Prepared) -> Driven:
     """Motion of a run at the times of `instants_of`."""
     instants = instants_of(p)
-    run = p.run.at(instants, np.interp(instants, p.run.time_s, p.friction_n))
+    run = p.run.at(instants, np.interp(instants, p.run.time_s, p.friction))
     return core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
 
 

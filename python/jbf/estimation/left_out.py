@@ -295,7 +295,7 @@ def _groups(campaign: Campaign) -> list[list[int]]:
     The runs are distributed by direction, top speed and name, so the groups do not depend on the
     order of the runs.
     """
-    speeds = [p.motion.velocity_m_s for p in campaign.prepared]
+    speeds = [p.motion.velocity for p in campaign.prepared]
     order = sorted(
         range(len(speeds)),
         key=lambda i: (

@@ -64,16 +64,16 @@ def _dithered(p: Prepared) -> tuple[Array, float]:
     """
     step = p.converter_step_n
     if step == 0.0:
-        return p.friction_n, 0.0
-    even = np.random.default_rng(0).uniform(-0.5 * step, 0.5 * step, len(p.friction_n))
-    return p.friction_n + even, step**2 / 12.0
+        return p.friction, 0.0
+    even = np.random.default_rng(0).uniform(-0.5 * step, 0.5 * step, len(p.friction))
+    return p.friction + even, step**2 / 12.0
 
 
 def _total_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
     """Total noise, N, from repeated periods and rests; None if there are too few samples."""
     whole, weight = 0.0, 0
     for p, counted in zip(prepared, samples.counted, strict=True):
-        rests = _rest_squares(p.motion.resting, p.friction_n)
+        rests = _rest_squares(p.motion.resting, p.friction)
         for square, count in (*rests, _repeat_square(p, counted)):
             whole += square * count
             weight += count
@@ -103,7 +103,7 @@ def _detrended(values: Array) -> Array:
 
 def _repeat_square(prepared: Prepared, counted: Mask) -> tuple[float, int]:
     """Variance of the noise from the same motion a period later, and the number of samples used."""
-    shift = period_samples(prepared.motion.velocity_m_s)
+    shift = period_samples(prepared.motion.velocity)
     if shift is None:
         return 0.0, 0
     # The first period still contains the initial-state transient of the film.

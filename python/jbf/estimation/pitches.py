@@ -143,34 +143,32 @@ def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
     pairs = list(zip(campaign.prepared, moving_samples(campaign), strict=True))
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     place = np.concatenate([p.motion.angle_rad[m] for p, m in pairs]) * arm
-    speed = np.concatenate([p.motion.velocity_m_s[m] for p, m in pairs])
+    speed = np.concatenate([p.motion.velocity[m] for p, m in pairs])
     if len(speed) < PADDING * KNOTS:
-        return place, np.concatenate([p.friction_n[m] for p, m in pairs]), speed
+        return place, np.concatenate([p.friction[m] for p, m in pairs]), speed
     knots = _knots(speed)
     # Each run has its own load and temperature, so the means in each direction are removed for each
     # run (Frisch & Waugh 1933). A triangular factor replaces the rows of each run.
     factors, scales = [], []
     for p, m in pairs:
-        known = _regressors(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
+        known = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
         scales.append(np.sum(known**2, axis=0))
-        rows = _centred_by_direction(
-            np.column_stack([known, p.friction_n[m]]), p.motion.velocity_m_s[m]
-        )
+        rows = _centred_by_direction(np.column_stack([known, p.friction[m]]), p.motion.velocity[m])
         factors.append(np.linalg.qr(rows, mode="r"))
     scale = np.maximum(np.sqrt(np.sum(scales, axis=0) / len(speed)), 1e-300)
     factor = np.concatenate(factors)
     solution, *_ = np.linalg.lstsq(factor[:, :-1] / scale, factor[:, -1], rcond=1e-9)
     rest = []
     for p, m in pairs:
-        known = _regressors(p.motion.angle_rad[m], p.motion.velocity_m_s[m], p, m, knots)
-        left = p.friction_n[m] - (known / scale) @ solution
-        rest.append(_centred_by_direction(left[:, None], p.motion.velocity_m_s[m])[:, 0])
+        known = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
+        left = p.friction[m] - (known / scale) @ solution
+        rest.append(_centred_by_direction(left[:, None], p.motion.velocity[m])[:, 0])
     return place, np.concatenate(rest), speed
 
 
 def _regressors(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knots) -> Array:
     """Regressors of a run's force other than position, shape (n, k)."""
-    slope = p.motion.acceleration_m_s2[moving]
+    slope = p.motion.acceleration[moving]
     return np.stack([slope, np.cos(angle), np.sin(angle), *_hat_functions(speed, knots)], axis=1)
 
 

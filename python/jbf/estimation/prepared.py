@@ -73,7 +73,7 @@ class Prepared:
     rig: Rig
     run: Run
     motion: ImposedMotion
-    friction_n: Array
+    friction: Array
     step_s: float
     examined: Examined
     recorded: tuple[Array, ImposedMotion] | None = None
@@ -146,22 +146,22 @@ class Prepared:
             motion = motion.at(instants, run.time_s)
         read = moved is None and not run.steady
         if read:
-            assert run.friction_n is not None
-            examined = examine(run, motion.velocity_m_s, period_s)
+            assert run.friction is not None
+            examined = examine(run, motion.velocity, period_s)
         elif moved is None:
             examined = Examined((), np.ones(len(run), dtype=bool))
         else:
             recorded = recorded or (instants, motion)
             run = run.select(_independent(motion))
             motion = motion.at(recorded[0], run.time_s)
-            run = replace(run, friction_n=frozen(-moved * motion.acceleration_m_s2))
+            run = replace(run, friction=frozen(-moved * motion.acceleration))
             examined = Examined((_derived(run, moved),), np.ones(len(run), dtype=bool))
         if examined.native is not None:
             native = examined.native
             instants, motion = recorded = recorded or (run.time_s, motion)
             motion = motion.at(instants, native.time_s)
             run = run.at(native.time_s, native.values)
-            of_readings = examine_readings(run, motion.velocity_m_s)
+            of_readings = examine_readings(run, motion.velocity)
             steps = find_steps(run, of_readings.usable, drawn=True)
             found = (*examined.findings, *of_readings.findings, *steps)
             examined = Examined(found, of_readings.usable)
@@ -191,8 +191,8 @@ class Prepared:
         if run.load_n is not None:
             # Filter before any resampling: interpolated noise is no longer white.
             run = replace(run, load_n=frozen(steady_load(run.load_n)))
-        assert run.friction_n is not None
-        return cls(rig, run, motion, run.friction_n, step_s, examined, recorded)
+        assert run.friction is not None
+        return cls(rig, run, motion, run.friction, step_s, examined, recorded)
 
     @property
     def slides(self) -> Mask:
@@ -202,8 +202,8 @@ class Prepared:
     @property
     def readings_n(self) -> Array:
         """Force readings of the run, N."""
-        assert self.run.friction_n is not None
-        return self.run.friction_n
+        assert self.run.friction is not None
+        return self.run.friction
 
     def finding(self, more: Sequence[Finding]) -> Prepared:
         """Return the run with additional findings."""
@@ -228,12 +228,12 @@ class Prepared:
         kept = (read >= instants[0]) & (read <= instants[-1])
         run = self.run.select(kept).at(read[kept], self.readings_n[kept])
         usable = self.examined.usable[kept]
-        assert run.friction_n is not None
+        assert run.friction is not None
         return replace(
             self,
             run=run,
             motion=motion.at(instants, run.time_s),
-            friction_n=run.friction_n,
+            friction=run.friction,
             examined=replace(self.examined, usable=usable),
             recorded=(instants, motion),
         )
@@ -253,7 +253,7 @@ class Prepared:
             return driven_motion(self.rig, self.run, self.motion)
         inside = (instants > time[0]) & (instants < time[-1])
         whole = np.union1d(instants[inside], time)
-        run = self.run.at(whole, np.interp(whole, time, self.friction_n))
+        run = self.run.at(whole, np.interp(whole, time, self.friction))
         driven = driven_motion(self.rig, run, motion.at(instants, whole))
         kept = np.searchsorted(whole, time)
         return Driven(driven.motion, kept if driven.kept is None else driven.kept[kept])
@@ -272,7 +272,7 @@ def _independent(motion: ImposedMotion) -> Mask:
     The covariance of the errors at two times is the product of the smoother gains between them and
     the covariance at the later time.
     """
-    count, errors = len(motion.velocity_m_s), motion.errors
+    count, errors = len(motion.velocity), motion.errors
     if errors is None:
         return np.ones(count, dtype=bool)
     middle = count // 2

@@ -133,7 +133,7 @@ class Problem:
     def residuals(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
         """Record minus prediction, N, one array a run; `which` selects runs."""
         runs = self._runs(which)
-        return [p.friction_n - f for f, p in zip(self.predict(values, which), runs, strict=True)]
+        return [p.friction - f for f, p in zip(self.predict(values, which), runs, strict=True)]
 
     def linearise(
         self,
@@ -150,7 +150,7 @@ class Problem:
         motions = [p.core for p in runs]
         self.campaign.work.take(SLOPES_COST * self.chain.inner_steps(values, motions))
         rows = self.chain.jacobian(values, motions, by)
-        residuals = [p.friction_n - f for (f, _), p in zip(rows, runs, strict=True)]
+        residuals = [p.friction - f for (f, _), p in zip(rows, runs, strict=True)]
         return residuals, [bounded(j, scale) for _, j in rows]
 
     def gauss_newton_rows(
@@ -161,7 +161,7 @@ class Problem:
         They are computed from `lines`, the result of :meth:`linearise`, if it is given.
         """
         r, j, count = [], [], 0
-        lengths = [len(p.friction_n) for p in self.campaign.prepared]
+        lengths = [len(p.friction) for p in self.campaign.prepared]
         for group in groups_of(lengths, len(self.open)):
             part = samples if len(group) == len(lengths) else samples.only(group)
             own = self.linearise(values, group) if lines is None else lines
@@ -175,14 +175,14 @@ class Problem:
     @property
     def fits_in_memory(self) -> bool:
         """Whether the derivatives at all samples fit into the memory limit."""
-        samples = sum(len(p.friction_n) for p in self.campaign.prepared)
+        samples = sum(len(p.friction) for p in self.campaign.prepared)
         return samples * len(self.open) <= MOST_HELD
 
     @cached_property
     def searched(self) -> list[int]:
         """Indices of the runs that a search uses: a selection, if the campaign is large."""
         runs = self.campaign.prepared
-        return every_so_many([len(p.friction_n) for p in runs], [p.run.name for p in runs])
+        return every_so_many([len(p.friction) for p in runs], [p.run.name for p in runs])
 
     @cached_property
     def thinned(self) -> Problem:
@@ -218,17 +218,17 @@ class Problem:
         if lines is None:
             predicted = self.predict(values)
         else:
-            predicted = [p.friction_n - r for p, r in zip(prepared, lines[0], strict=True)]
+            predicted = [p.friction - r for p, r in zip(prepared, lines[0], strict=True)]
         if begins:
-            left = [p.friction_n - f for p, f in zip(prepared, predicted, strict=True)]
+            left = [p.friction - f for p, f in zip(prepared, predicted, strict=True)]
             samples = self._settled(samples, values, samples.rms(left))
         return samples_near_jumps(samples, prepared, predicted, effects)
 
-    def _settled(self, samples: Samples, values: Array, noise_n: float) -> Samples:
+    def _settled(self, samples: Samples, values: Array, noise_rms: float) -> Samples:
         """Samples without the initial-state transient of their run."""
         prepared = self.campaign.prepared
         for memory in memories(self.law, self.effects):
-            masks = remembering(self.chain, values, prepared, memory, noise_n)
+            masks = remembering(self.chain, values, prepared, memory, noise_rms)
             samples = samples.within([~mask for mask in masks])
         return samples
 

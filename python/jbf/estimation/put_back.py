@@ -25,7 +25,7 @@ SAME_IN_NOISE = 1e-4
 """Largest difference of equal predictions, as a fraction of the residual."""
 SAME_IN_FRICTION = 1e-9
 """Largest difference of equal predictions, as a fraction of the friction."""
-SLIDING = {"F_s_n": "F_c_n"}
+SLIDING = {"F_s": "F_c"}
 """Breakaway force of a law, and the sliding force that it equals without a peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
 """Fractions of the distance to the start that are tried.
@@ -137,7 +137,7 @@ def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | 
     residuals = problem.residuals(values)
     samples = solution.samples
     gaps = [a - b for a, b in zip(residuals, solution.residuals, strict=True)]
-    friction = [p.friction_n for p in problem.campaign.prepared]
+    friction = [p.friction for p in problem.campaign.prepared]
     allowed = SAME_IN_NOISE**2 * samples.square(solution.residuals)
     allowed += SAME_IN_FRICTION**2 * samples.square(friction)
     gap = samples.square(gaps)

@@ -90,7 +90,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     if motion is None:
         return best.problem, best.solution
     large = motion.mean_share(best.solution.samples.weight) > MOTION_SHARE
-    if not large and best.solution.rms_n > MOST_FORGIVEN * plain_fit.rms_n:
+    if not large and best.solution.rms > MOST_FORGIVEN * plain_fit.rms:
         return plain, plain_fit
     changes = [_with_smoothing(best)]
     for other in ends:
@@ -226,7 +226,7 @@ def _rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> 
         motion = p.motion.rougher(p.run.time_s, factor, same_corners=same_corners)
         mass = coasting(p.rig)
         if mass is not None:
-            p = replace(p, friction_n=-mass * motion.acceleration_m_s2)
+            p = replace(p, friction=-mass * motion.acceleration)
         recorded = p.recorded
         if recorded is not None:
             again = recorded[1].rougher(recorded[0], factor, same_corners=same_corners)
@@ -252,7 +252,7 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
     a normal prior, so that it stays at 1 where the motion's errors are negligible.
     """
     prepared = problem.campaign.prepared
-    predicted = [p.friction_n - r for p, r in zip(prepared, solution.residuals, strict=True)]
+    predicted = [p.friction - r for p, r in zip(prepared, solution.residuals, strict=True)]
     sensitivity = [np.zeros((len(f), 3)) for f in predicted]
     for axis in range(3):
         moved, steps = zip(*(_moved(p, axis) for p in prepared), strict=True)
@@ -373,9 +373,9 @@ def _moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
         if axis == 0:
             moved = replace(motion, angle_rad=motion.angle_rad + step / errors.arm_m)
         elif axis == 1:
-            moved = replace(motion, velocity_m_s=motion.velocity_m_s + step)
+            moved = replace(motion, velocity=motion.velocity + step)
         else:
-            moved = replace(motion, acceleration_m_s2=motion.acceleration_m_s2 + step)
+            moved = replace(motion, acceleration=motion.acceleration + step)
         return moved, step
 
     recorded = prepared.recorded

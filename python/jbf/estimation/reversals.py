@@ -32,7 +32,7 @@ def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:
     befores, afters = _reversals(p)
     for k, (before, after) in enumerate(zip(befores, afters, strict=True)):
         between_s = float(time_s[after] - time_s[before])
-        slope = float(abs(motion.velocity_m_s[after] - motion.velocity_m_s[before])) / between_s
+        slope = float(abs(motion.velocity[after] - motion.velocity[before])) / between_s
         error = float(np.max(motion.velocity_error_m_s[before : after + 1]))
         error_s = min(error / slope, MOST * between_s)
         last = befores[k + 1] if k + 1 < len(befores) else len(prediction)
@@ -51,8 +51,8 @@ def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
     Only reversals without a rest in between are included.
     """
     motion = p.motion
-    known = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity_m_s != 0.0))
-    turned = np.flatnonzero(np.diff(np.sign(motion.velocity_m_s[known])) != 0.0)
+    known = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity != 0.0))
+    turned = np.flatnonzero(np.diff(np.sign(motion.velocity[known])) != 0.0)
     befores, afters = known[turned], known[turned + 1]
     rests = np.concatenate(([0], np.cumsum(motion.resting)))
     moving = rests[afters] == rests[befores]

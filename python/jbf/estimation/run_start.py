@@ -35,20 +35,20 @@ NO_MORE = 1e-3
 """Fraction of the samples below which no new fit is needed."""
 
 
-def unsettled(problem: Problem, values: Array, noise_n: float) -> list[Mask]:
+def unsettled(problem: Problem, values: Array, noise_rms: float) -> list[Mask]:
     """Mask of the samples at which a run still remembers its initial state, one a run.
 
     Parameters
     ----------
     values
         Parameters of a model that fits roughly.
-    noise_n
+    noise_rms
         Noise on the friction, N.
     """
     prepared = problem.campaign.prepared
     found = [np.zeros(len(p.run), dtype=bool) for p in prepared]
     for memory in memories(problem.law, problem.effects):
-        more = remembering(problem.chain, values, prepared, memory, noise_n)
+        more = remembering(problem.chain, values, prepared, memory, noise_rms)
         found = [before | mask for before, mask in zip(found, more, strict=True)]
     return found
 
@@ -92,9 +92,9 @@ def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
 def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Campaign:
     """Return the campaign without the samples at which a model remembers unrecorded states."""
     campaign = problem.campaign
-    noise_n = noise_floor(campaign.prepared, campaign.samples)
-    masks = unsettled(problem, values, noise_n)
-    behind = samples_affected_by_gaps(problem, values, REMEMBERED * noise_n)
+    noise_rms = noise_floor(campaign.prepared, campaign.samples)
+    masks = unsettled(problem, values, noise_rms)
+    behind = samples_affected_by_gaps(problem, values, REMEMBERED * noise_rms)
     if not any(m.any() for m in (*masks, *behind)):
         return campaign
     kept = campaign.without(masks).without(behind)

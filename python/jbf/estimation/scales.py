@@ -68,9 +68,9 @@ def scales(campaign: Campaign) -> Scales:
             mend="record strokes of many samples each, or check the unit of time",
         )
     v = np.concatenate(
-        [p.motion.velocity_m_s[m] for p, m in zip(campaign.prepared, moving, strict=True)]
+        [p.motion.velocity[m] for p, m in zip(campaign.prepared, moving, strict=True)]
     )
-    f = np.concatenate([p.friction_n[m] for p, m in zip(campaign.prepared, moving, strict=True)])
+    f = np.concatenate([p.friction[m] for p, m in zip(campaign.prepared, moving, strict=True)])
     speed, along = np.abs(v), f * np.sign(v)
     whole = max(float(np.median(np.abs(f))), 1e-5)
     slow, usual = (float(q) for q in np.quantile(speed, [0.1, 0.5]))
@@ -99,7 +99,7 @@ def moving_samples(campaign: Campaign) -> list[Mask]:
 
 def _moving(p: Prepared, counted: Mask) -> Mask:
     """Mask of samples in motion; noise near zero speed has neither a direction nor a travel."""
-    speed = np.abs(p.motion.velocity_m_s)
+    speed = np.abs(p.motion.velocity)
     top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
     found: Mask = counted & (speed > HUM * top)
     return found
@@ -107,7 +107,7 @@ def _moving(p: Prepared, counted: Mask) -> Mask:
 
 def _strokes(p: Prepared, moving: Mask) -> Array:
     """Distances between reversals, m; the whole travel without a reversal."""
-    v = p.motion.velocity_m_s
+    v = p.motion.velocity
     steps = 0.5 * (v[1:] + v[:-1]) * np.diff(p.run.time_s)
     path = np.concatenate(([0.0], np.cumsum(steps)))
     sign = np.sign(v)

@@ -56,7 +56,7 @@ class Solution:
         return self.jacobian[0].shape[1] if self.jacobian else len(self.values)
 
     @cached_property
-    def rms_n(self) -> float:
+    def rms(self) -> float:
         """Root mean square of the residuals over the samples that count, N."""
         return self.samples.rms(self.residuals)
 

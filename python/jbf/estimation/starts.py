@@ -87,7 +87,7 @@ def _reference_temperature(campaign: Campaign) -> Starts:
 
 def _largest_n(campaign: Campaign) -> float:
     """The 99 % quantile of the absolute recorded force, N."""
-    every = np.concatenate([p.friction_n[np.isfinite(p.friction_n)] for p in campaign.prepared])
+    every = np.concatenate([p.friction[np.isfinite(p.friction)] for p in campaign.prepared])
     return max(float(np.quantile(np.abs(every), 0.99)), 1e-5)
 
 
@@ -127,7 +127,7 @@ def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
     A film that carries the load only at several times the highest recorded speed is not visible,
     and its equations become stiff.
     """
-    top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in campaign.prepared)
+    top = max(float(np.max(np.abs(p.motion.velocity))) for p in campaign.prepared)
     upper = min(page.upper, max(FASTEST_FILM * top, 2.0 * max(page.starts)))
     return replace(page, upper=upper)
 

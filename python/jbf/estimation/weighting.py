@@ -46,7 +46,7 @@ def best_weighting(problem: Problem, plain: Solution) -> Solution:
     for weights in (huber, student):
         robust = _robust(problem, plain, weights)
         apart = [a - b for a, b in zip(plain.residuals, robust.residuals, strict=True)]
-        if plain.samples.rms(apart) < ELSEWHERE * plain.rms_n:
+        if plain.samples.rms(apart) < ELSEWHERE * plain.rms:
             continue
         left = held_out_residuals(problem, best) if left is None else left
         other = held_out_residuals(problem, robust)

@@ -59,7 +59,7 @@ def _result(out: Array | None, shape: tuple[int, int], dtype: np.dtype[Any]) -> 
 
 def batch(
     rig: Rig,
-    velocity_m_s: npt.ArrayLike,
+    velocity: npt.ArrayLike,
     dt_s: float,
     *,
     f_m: npt.ArrayLike,
@@ -80,7 +80,7 @@ def batch(
 
     Parameters
     ----------
-    velocity_m_s : array, shape (n,) or (n, sets)
+    velocity : array, shape (n,) or (n, sets)
         Surface speed, m/s, at samples `dt_s` apart: one motion for all sets, or one per set.
     dt_s : float
         Step, s; there are no substeps.
@@ -127,7 +127,7 @@ def batch(
     load = rig.load.normal_n if load_n is None and rig.load is not None else load_n
     assert load is not None
     sets = _sets({"f_m": f_m, "U_tr_m_s": U_tr_m_s, "K0": K0, "gamma": gamma, "load_n": load})
-    speeds = numbers(velocity_m_s, "velocity_m_s", precision)
+    speeds = numbers(velocity, "velocity_m_s", precision)
     each = speeds.ndim == 2
     if speeds.ndim not in (1, 2) or (each and speeds.shape[1] != len(sets)):
         raise _refuse(

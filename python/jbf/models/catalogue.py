@@ -15,6 +15,7 @@ from jbf.errors import InputError, did_you_mean
 from jbf.models.vocabulary import CLOCKS, Clock, Vocabulary
 from jbf.records.arguments import names as checked_names
 from jbf.records.arguments import one_of
+from jbf.renamed import current_effect, current_parameter
 
 Stage = Literal["drive", "lubricant", "film", "contact", "other friction", "instrument"]
 """Position of an effect in the signal chain."""
@@ -251,6 +252,8 @@ def find_effect(name: str) -> Effect:
         The effect is unknown; the message suggests the nearest known one.
     """
     known = effects()
+    if isinstance(name, str):
+        name = current_effect(name, known)
     if not isinstance(name, str) or name not in known:
         raise InputError(
             problem=f'there is no effect "{name}"',
@@ -329,8 +332,10 @@ def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
 def find_parameter(name: str, known: Collection[str]) -> str:
     """Return the full dotted name of a parameter given with or without its unit.
 
-    `presliding.sigma` finds `presliding.sigma_1_m`; an InputError names an unknown one.
+    `warm_up.tau` finds `warm_up.tau_s`, and an earlier name the current one; an InputError names an
+    unknown one.
     """
+    name = current_parameter(name, known)
     if name in known:
         return name
     longer = [full for full in known if full.startswith(f"{name}_")]

@@ -21,7 +21,7 @@ from jbf.models.catalogue import (
 )
 from jbf.models.driven import Driven, DrivenChain
 from jbf.models.own_chain import BENDING, OwnChain
-from jbf.models.own_effects import OwnEffect
+from jbf.models.own_effects import MOTION_COLUMNS, OwnEffect
 from jbf.models.own_laws import OwnLaw
 from jbf.records.arguments import one_run, the_rig
 from jbf.records.channels import of_motion
@@ -190,9 +190,10 @@ def core_motion(
         load = steady_load(recorded)
     else:
         load = np.full(len(run), core_load_n(rig) or 1.0)
+    velocity = _from_rest(run, motion.velocity)
     columns = run.columns() | {
-        "velocity_m_s": _from_rest(run, motion.velocity_m_s),
-        "acceleration_m_s2": motion.acceleration_m_s2,
+        "velocity": velocity,
+        "acceleration": motion.acceleration,
         "angle_rad": motion.angle_rad,
         "load_n": load,
     }
@@ -206,29 +207,31 @@ def core_motion(
     with core_refusals("correct the run"):
         made = _core.Motion(
             np.ascontiguousarray(columns["time_s"]),
-            np.ascontiguousarray(columns["velocity_m_s"]),
-            np.ascontiguousarray(columns["acceleration_m_s2"]),
+            np.ascontiguousarray(columns["velocity"]),
+            np.ascontiguousarray(columns["acceleration"]),
             np.ascontiguousarray(columns["angle_rad"]),
             np.ascontiguousarray(columns["load_n"]),
             None if celsius is None else np.ascontiguousarray(columns["temperature_c"]),
         )
-    # User-defined effects see the record with the motion that drives the models.
+    # User-defined effects see the record with the motion that drives the models, also under the
+    # names of its columns in a file.
+    columns |= {column: columns[name] for column, name in MOTION_COLUMNS.items()}
     made.columns = columns
     return Driven(made, kept)
 
 
-def _from_rest(run: Run, velocity_m_s: Array) -> Array:
+def _from_rest(run: Run, velocity: Array) -> Array:
     """Speed, m/s, with the first sample at rest if the run begins with noise at standstill."""
-    if not begins_with_oscillation(run.time_s, velocity_m_s):
-        return velocity_m_s
-    return np.concatenate(([0.0], velocity_m_s[1:]))
+    if not begins_with_oscillation(run.time_s, velocity):
+        return velocity
+    return np.concatenate(([0.0], velocity[1:]))
 
 
 def _with_motion_before(
     columns: dict[str, Array], rig: Rig, share: float, duration_s: float
 ) -> tuple[int, dict[str, Array]]:
     """Number of samples of a hypothetical motion, and the columns with it prepended."""
-    speed, time = columns["velocity_m_s"], columns["time_s"]
+    speed, time = columns["velocity"], columns["time_s"]
     step_s = float(np.median(np.diff(time)))
     count = int(duration_s / step_s)
     moving = np.flatnonzero(speed)
@@ -238,8 +241,8 @@ def _with_motion_before(
     back = -step_s * np.arange(count, 0, -1)
     before = {name: np.full(count, values[0]) for name, values in columns.items()}
     before["time_s"] = time[0] + back
-    before["velocity_m_s"] = np.full(count, velocity)
-    before["acceleration_m_s2"] = np.zeros(count)
+    before["velocity"] = np.full(count, velocity)
+    before["acceleration"] = np.zeros(count)
     before["angle_rad"] = columns["angle_rad"][0] + velocity / arm * back
     return count, {name: np.concatenate((before[name], columns[name])) for name in columns}
 

@@ -63,7 +63,7 @@ def with_instants(rig: Rig, run: Run, motion: ImposedMotion, more_s: Array) -> t
     more_s
         Instants in addition to those of the run, s; the speed is interpolated linearly there.
     """
-    time, v = run.time_s, motion.velocity_m_s
+    time, v = run.time_s, motion.velocity
     turns = reversals(time, motion)
     new = turns.at_s[turns.between]
     speed = np.zeros(len(new))
@@ -83,14 +83,14 @@ def with_instants(rig: Rig, run: Run, motion: ImposedMotion, more_s: Array) -> t
     before = np.searchsorted(time, whole, side="right") - 1
     there = replace(
         motion,
-        velocity_m_s=velocity,
-        acceleration_m_s2=np.interp(whole, time, motion.acceleration_m_s2),
+        velocity=velocity,
+        acceleration=np.interp(whole, time, motion.acceleration),
         angle_rad=np.interp(whole, time, motion.angle_rad),
         velocity_error_m_s=motion.velocity_error_m_s[before],
         resting=motion.resting[before],
         sign_known=motion.sign_known[before],
     )
-    friction = np.zeros(len(whole)) if run.friction_n is None else run.friction_n[before]
+    friction = np.zeros(len(whole)) if run.friction is None else run.friction[before]
     driven = core_motion(rig, run.at(whole, friction), there)
     return whole, Driven(driven.motion, np.searchsorted(whole, time))
 
@@ -100,7 +100,7 @@ def reversals(time_s: Array, motion: ImposedMotion) -> Reversals:
 
     The error of an instant is the error of the speed divided by the acceleration.
     """
-    v, a = motion.velocity_m_s, motion.acceleration_m_s2
+    v, a = motion.velocity, motion.acceleration
     k = np.flatnonzero(np.sign(v[:-1]) != np.sign(v[1:]))
     t0, t1, v0, v1 = time_s[k], time_s[k + 1], v[k], v[k + 1]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -26,7 +26,7 @@ Array = npt.NDArray[np.float64]
 
 DELAY = "time_delay"
 TAU = "time_delay.tau_s"
-DRIFT = "sensor_drift.d_n_s"
+DRIFT = "sensor_drift.d"
 BESIDE = 1e-3
 """Distance from a jump, as a share of a step, at which the force on either side is read."""
 

@@ -33,9 +33,9 @@ from jbf.models.chain import (
 )
 from jbf.models.driven_motion import driven_motion
 from jbf.models.late_reading import TAU, LateChain
-from jbf.models.model_file import model_file_text, read_model_file, write_model_file
+from jbf.models.model_file import model_file_text, read_model_file
 from jbf.models.own_laws import OwnLaw
-from jbf.models.parameter_units import shown
+from jbf.models.parameter_units import units_of
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
 from jbf.models.vocabulary import Clock, ModelFile
@@ -44,6 +44,7 @@ from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 from jbf.results import Shown
+from jbf.text_files import write_text
 
 Array = npt.NDArray[np.float64]
 NONE: Mapping[str, Any] = MappingProxyType({})
@@ -62,7 +63,7 @@ class Model(Shown):
     effects
         Names of effects, in any order; they act in the order of the signal chain.
     parameters
-        Dotted name (`f_m`, `presliding.sigma_1_m`; the unit may be omitted) to a value, or to a
+        Dotted name (`f_m`, `presliding.sigma`; the unit may be omitted) to a value, or to a
         value with its error. Missing parameters of the law take the starting value of the
         catalogue. Those of effects take their null value, or the starting value if they have no
         null.
@@ -178,7 +179,7 @@ class Model(Shown):
         """Raise an InputError if a run lacks a column that an effect of this model needs."""
         require_record(self.rig, run, self.effects)
 
-    def steady_friction(self, velocity_m_s: npt.ArrayLike) -> Array:
+    def steady_friction(self, velocity: npt.ArrayLike) -> Array:
         """Steady friction force of the bare law (the Stribeck curve), N.
 
         The speeds (m/s) have shape (n,), none of them zero. The load is that of the rig if the law
@@ -186,7 +187,7 @@ class Model(Shown):
         """
         page = find_law(self.law)
         count = len(page.parameters)
-        speeds = numbers(velocity_m_s, "velocity_m_s", flat=True)
+        speeds = numbers(velocity, "velocity_m_s", flat=True)
         if isinstance(page, OwnLaw):
             return page.steady_n(speeds, self.values[:count].tolist(), core_load_n(self.rig))
         with core_refusals():
@@ -199,22 +200,15 @@ class Model(Shown):
             )
 
     def units_for_json(self) -> dict[str, dict[str, str]]:
-        """Units for JSON if the rig has a drive, because the keys always name newtons and metres.
-
-        The dict is empty for any other rig.
-        """
-        said = self.rig.quantities
-        return {} if self.rig.drive is None else {"units": said.to_dict()}
+        """Units of the quantities of the rig, for JSON."""
+        return {"units": self.rig.quantities.to_dict()}
 
     def parameters_for_json(
         self, parameters: Mapping[str, ParameterValue]
     ) -> dict[str, dict[str, float | str | bool | None]]:
-        """Parameters for JSON, with their `unit` if the rig has a drive."""
-        units = shown(self.law, self.effects, self.rig.quantities)
-        return {
-            name: p.to_dict() | ({} if self.rig.drive is None else {"unit": units[name][1]})
-            for name, p in parameters.items()
-        }
+        """Parameters for JSON, with their `unit`; empty if dimensionless."""
+        units = units_of(self.law, self.effects, self.rig.quantities)
+        return {name: p.to_dict() | {"unit": units[name]} for name, p in parameters.items()}
 
     def _file(self) -> ModelFile:
         return ModelFile(
@@ -228,11 +222,12 @@ class Model(Shown):
 
     def to_toml(self) -> str:
         """Return the text that `save` writes."""
-        return model_file_text(self._file())
+        units = units_of(self.law, self.effects, self.rig.quantities)
+        return model_file_text(self._file(), units)
 
     def save(self, path: PathLike) -> None:
         """Write the model as TOML; `Model.load` reads it back exactly."""
-        write_model_file(path, self._file())
+        write_text(path, self.to_toml())
 
     @classmethod
     def load(cls, path: PathLike) -> Model:

@@ -12,34 +12,18 @@ from tomlkit.items import Table
 from jbf.errors import InputError
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.vocabulary import ModelFile, Vocabulary
-from jbf.records.quantities import Quantities
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike
 from jbf.records.toml_file import read_toml, refuse_unknown, table
-from jbf.text_files import write_text
+from jbf.renamed import current_effect, current_parameter
 
 FORMAT = 1
 _KEYS = ("format", "law", "clock", "effects", "parameters", "rig", "fit")
 _FIELDS = {"value", "stderr", "note", "held"}
 _HEADER = """\
-jbf model file. Parameters are in SI units, stderr is one standard error; a bare number will do:
-f_m = 0.26. What is held was not determined: its value predicts, and is no answer. Each effect in
-the list has its parameters in [parameters.EFFECT]."""
-
-_TURNING = """\
-The rig is a rotary drive: where a parameter's name ends in n, m or kg, read N m, rad or kg m^2
-(F_v_n_s_m is in N m s/rad)."""
-
-_BY_VOLTAGE = """\
-The rig is a motor read by its voltage: where a parameter's name ends in n or kg, read V or V s^2
-over the unit of the motion (F_v_n_s_m is in {viscous}, m_e_kg in {inertia})."""
-
-
-def _units_note(quantities: Quantities) -> str:
-    """Note on the units in the names of parameters; empty if they are true."""
-    if quantities.force == "V":
-        return _BY_VOLTAGE.format(viscous=quantities.unit("N s/m"), inertia=quantities.unit("kg"))
-    return _TURNING if quantities.motion == "rotary" else ""
+jbf model file. Parameters are in the SI units given behind them; stderr is one standard error. A
+plain number is sufficient: f_m = 0.26. A parameter that is held was not determined by the data.
+The parameters of each effect in the list are in [parameters.EFFECT]."""
 
 
 def _text(content: Mapping[str, Any], key: str, default: str | None = None) -> str:
@@ -66,11 +50,13 @@ def _parameters(content: Mapping[str, Any], effects: Collection[str]) -> dict[st
     for name, entry in content.items():
         # A table of tables belongs to an effect, even if the list of effects omits it.
         inner = isinstance(entry, Mapping) and entry and not _FIELDS & set(entry)
-        if name in effects or inner:
+        effect = current_effect(name) if inner else name
+        if effect in effects or inner:
             for short, value in table(entry, f"parameters.{name}").items():
-                found[f"{name}.{short}"] = _parameter(value, f"parameters.{name}.{short}")
+                full = current_parameter(f"{effect}.{short}")
+                found[full] = _parameter(value, f"parameters.{name}.{short}")
         else:
-            found[name] = _parameter(entry, f"parameters.{name}")
+            found[current_parameter(name)] = _parameter(entry, f"parameters.{name}")
     return found
 
 
@@ -83,6 +69,7 @@ def _from_mapping(content: Mapping[str, Any]) -> ModelFile:
     if not isinstance(effects, list) or not all(isinstance(name, str) for name in effects):
         mend = 'write effects = ["coulomb_drag"]'
         raise InputError(key="effects", problem="is not a list of names", mend=mend)
+    effects = [current_effect(name) for name in effects]
     return ModelFile(
         law=_text(content, "law"),
         clock=_text(content, "clock", "journal"),
@@ -110,53 +97,45 @@ def read_model_file(path: PathLike, vocabulary: Vocabulary | None = None) -> Mod
     return model
 
 
-def _inline(parameter: ParameterValue) -> tomlkit.items.InlineTable:
+def _inline(parameter: ParameterValue, unit: str) -> tomlkit.items.InlineTable:
     entry = tomlkit.inline_table()
     # tomlkit writes the repr of a float, which reads back to the same bits.
     entry.update({k: v for k, v in asdict(parameter).items() if v is not None and v is not False})
+    if unit:
+        entry.comment(unit)
     return entry
 
 
-def _parameters_table(model: ModelFile) -> Table:
+def _parameters_table(model: ModelFile, units: Mapping[str, str]) -> Table:
     parameters = tomlkit.table()
     for name, value in model.parameters.items():
         if "." not in name:
-            parameters[name] = _inline(value)
+            parameters[name] = _inline(value, units.get(name, ""))
     for effect in model.effects:
         own = {n: v for n, v in model.parameters.items() if n.startswith(f"{effect}.")}
         if own:
             parameters[effect] = tomlkit.table()
         for name, value in own.items():
-            parameters[effect][name.partition(".")[2]] = _inline(value)
+            parameters[effect][name.partition(".")[2]] = _inline(value, units.get(name, ""))
     return parameters
 
 
-def model_file_text(model: ModelFile) -> str:
-    """Return a model as the text of its file; reading the text gives an equal model."""
+def model_file_text(model: ModelFile, units: Mapping[str, str]) -> str:
+    """Return a model as the text of its file; reading the text gives an equal model.
+
+    The unit of each parameter is written as a comment.
+    """
     document = tomlkit.document()
     for line in _HEADER.splitlines():
-        document.add(tomlkit.comment(line))
-    for line in _units_note(model.rig.quantities).splitlines():
         document.add(tomlkit.comment(line))
     document["format"] = FORMAT
     document["law"] = model.law
     document["clock"] = model.clock
     document["effects"] = list(model.effects)
     if model.parameters:
-        document["parameters"] = _parameters_table(model)
+        document["parameters"] = _parameters_table(model, units)
     if model.rig != Rig():
         document["rig"] = model.rig.to_mapping()
     if model.fit:
         document["fit"] = dict(model.fit)
     return tomlkit.dumps(document)
-
-
-def write_model_file(path: PathLike, model: ModelFile) -> None:
-    """Write a model file atomically.
-
-    Raises
-    ------
-    InputError
-        The file cannot be written.
-    """
-    write_text(path, model_file_text(model))

@@ -31,7 +31,9 @@ from jbf.records.run import PathLike
 
 Array = npt.NDArray[np.float64]
 
-ALWAYS = ("time_s", "velocity_m_s", "acceleration_m_s2", "load_n")
+MOTION_COLUMNS = {"velocity_m_s": "velocity", "acceleration_m_s2": "acceleration"}
+"""Arguments of a function under the names of columns in a file."""
+ALWAYS = ("time_s", "velocity", "acceleration", "load_n", *MOTION_COLUMNS)
 """Columns that every run has: recorded, estimated, or from the rig."""
 STAGES: dict[str, Stage] = {"other": "other friction", "instrument": "instrument"}
 AGREEMENT = 1e-5
@@ -177,8 +179,8 @@ def register_effect(
     ----------
     function
         Returns the force of one bearing, N, at every sample: shape (n,), or a number. Its arguments
-        are identified by name. Columns are arrays of shape (n,): `time_s` (s), `velocity_m_s`
-        (signed), `acceleration_m_s2`, `angle_rad`, `load_n`, `position_m`, `temperature_c`, or any
+        are identified by name. Columns are arrays of shape (n,): `time_s` (s), `velocity`
+        (signed), `acceleration`, `angle_rad`, `load_n`, `position_m`, `temperature_c`, or any
         other column of the records. Parameters are numbers. Speed, acceleration and angle are the
         smooth estimates that drive the models. The function is called for each run separately.
     parameters

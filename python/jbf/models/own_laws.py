@@ -2,14 +2,14 @@
 
 >>> import numpy as np
 >>> import jbf
->>> def tanh_law(velocity_m_s, F_c_n, v_0_m_s, F_v_n_s_m):
-...     return F_c_n * np.tanh(velocity_m_s / v_0_m_s) + F_v_n_s_m * velocity_m_s
+>>> def tanh_law(velocity, F_c, v_0, F_v):
+...     return F_c * np.tanh(velocity / v_0) + F_v * velocity
 >>> jbf.register_law(
 ...     tanh_law,
 ...     parameters=[
-...         jbf.Parameter("F_c_n", "N", lower=0.0, upper=1e3, starts=(5.0,)),
-...         jbf.Parameter("v_0_m_s", "m/s", lower=1e-5, upper=1.0, starts=(1e-3,), log=True),
-...         jbf.Parameter("F_v_n_s_m", "N s/m", lower=0.0, upper=1e4, starts=(10.0,)),
+...         jbf.Parameter("F_c", "N", lower=0.0, upper=1e3, starts=(5.0,)),
+...         jbf.Parameter("v_0", "m/s", lower=1e-5, upper=1.0, starts=(1e-3,), log=True),
+...         jbf.Parameter("F_v", "N s/m", lower=0.0, upper=1e4, starts=(10.0,)),
 ...     ],
 ... ).name
 'tanh_law'
@@ -29,7 +29,7 @@ import numpy.typing as npt
 from jbf.errors import InputError, quoted
 from jbf.models import catalogue
 from jbf.models.catalogue import Law, Parameter
-from jbf.models.own_effects import OwnEffect, check_pages, columns_of
+from jbf.models.own_effects import MOTION_COLUMNS, OwnEffect, check_pages, columns_of
 from jbf.models.vocabulary import AUTO
 
 Array = npt.NDArray[np.float64]
@@ -41,13 +41,14 @@ class OwnLaw(Law):
 
     force: OwnEffect | None = None
 
-    def steady_n(self, velocity_m_s: Array, values: Sequence[float], load_n: float | None) -> Array:
+    def steady_n(self, velocity: Array, values: Sequence[float], load_n: float | None) -> Array:
         """Force at steady speeds, N, for a law that depends on speed, load and time only."""
         assert self.force is not None
-        zero = np.zeros_like(velocity_m_s)
-        columns = {"time_s": zero, "velocity_m_s": velocity_m_s, "acceleration_m_s2": zero}
+        zero = np.zeros_like(velocity)
+        columns = {"time_s": zero, "velocity": velocity, "acceleration": zero}
+        columns |= {column: columns[name] for column, name in MOTION_COLUMNS.items()}
         if load_n is not None:
-            columns["load_n"] = np.full_like(velocity_m_s, load_n)
+            columns["load_n"] = np.full_like(velocity, load_n)
         return self.force.force(columns, values)
 
 

@@ -69,7 +69,7 @@ def trajectory(
     rig: Rig,
     parameters: Mapping[str, float],
     time_s: npt.ArrayLike,
-    velocity_m_s: npt.ArrayLike | None = None,
+    velocity: npt.ArrayLike | None = None,
     *,
     sine: tuple[float, float, float] | tuple[float, float] | None = None,
     model: str = "journal",
@@ -89,7 +89,7 @@ def trajectory(
         ``f_m``, ``U_tr_m_s``, ``K0`` and ``gamma``.
     time_s : array, shape (n,)
         Sample times, increasing, s.
-    velocity_m_s : array, shape (n,)
+    velocity : array, shape (n,)
         Surface speed at those times, m/s, interpolated linearly between them. The run starts at the
         first one.
     sine : (amplitude in m/s, omega in rad/s[, bias in m/s])
@@ -112,7 +112,7 @@ def trajectory(
     InputError
         The rig lacks bearing, lubricant or load, a name is unknown, or a value is out of bounds.
     """
-    if (velocity_m_s is None) == (sine is None):
+    if (velocity is None) == (sine is None):
         raise InputError(
             problem="a motion is either velocity_m_s or sine", mend="give one of the two"
         )
@@ -120,8 +120,8 @@ def trajectory(
     if sine is not None:
         motion = _sine(sine)
     else:
-        assert velocity_m_s is not None
-        motion = numbers(velocity_m_s, "velocity_m_s", flat=True)
+        assert velocity is not None
+        motion = numbers(velocity, "velocity_m_s", flat=True)
     return trajectories(
         rig,
         parameters,

@@ -41,7 +41,7 @@ class ModelFile:
     effects : tuple of str
         Names of the effects, in the order in which they were added.
     parameters : dict of str to ParameterValue
-        Parameters of the law by name, those of an effect as ``"coulomb_drag.F_d_n"``.
+        Parameters of the law by name, those of an effect as ``"coulomb_drag.F_d"``.
     rig : Rig
         The rig that the model was fitted for.
     fit : dict of str to float, int or str

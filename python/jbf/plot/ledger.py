@@ -39,7 +39,7 @@ def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
     ax = one_axes(ax, (9.0, 1.3 + 0.42 * len(steps)))
     y = np.arange(len(steps))
     unit = diagnosis.model.rig.quantities.force
-    noise = steps[-1].noise_n
+    noise = steps[-1].noise_rms
     ax.set_xscale("log")
     if noise > 0.0:
         ax.axvline(noise, color=NOISE, linestyle="--", linewidth=1.5, label="noise floor")
@@ -66,7 +66,7 @@ def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
 
 
 def _errors(steps: Sequence[Step]) -> tuple[list[float], list[float]]:
-    return [s.rms_n for s in steps], [s.holdout_rms_n for s in steps]
+    return [s.rms for s in steps], [s.held_out_rms for s in steps]
 
 
 def _falls(held: Sequence[float], unit: str) -> list[str]:

@@ -43,16 +43,16 @@ def loops(
     ax = one_axes(ax)
     index = index_of(comparison, run)
     p = comparison.campaign.prepared[index]
-    rest = np.zeros(len(p.friction_n))
+    rest = np.zeros(len(p.friction))
     if alone:
         from jbf.comparison.parts import added_by, non_friction_effects
 
         rest = added_by(comparison, non_friction_effects(comparison))[index]
-    speed = p.motion.velocity_m_s
+    speed = p.motion.velocity
     stride = max(len(speed) // MOST_DOTS, 1)
     ax.plot(
         speed[::stride],
-        (p.friction_n - rest)[::stride],
+        (p.friction - rest)[::stride],
         ".",
         color=MEASURED,
         markersize=3,
@@ -76,7 +76,7 @@ def draw_model(
     label: str = "model",
 ) -> None:
     """Plot the model's loop of a run, less `rest`, on axes that show the measured values."""
-    speed = comparison.campaign.prepared[index].motion.velocity_m_s
+    speed = comparison.campaign.prepared[index].motion.velocity
     # The instant of a reversal lies between samples. A line through it would show a slope that the
     # model does not have.
     turns = np.append(np.sign(speed[1:]) * np.sign(speed[:-1]) < 0, False)

@@ -42,8 +42,8 @@ def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None 
     ax = one_axes(ax)
     samples, prepared = comparison.samples, comparison.campaign.prepared
     rest = added_by(comparison, non_friction_effects(comparison) if alone else ())
-    speed = samples.flat([p.motion.velocity_m_s for p in prepared])
-    measured = samples.flat([p.friction_n - f for p, f in zip(prepared, rest, strict=True)])
+    speed = samples.flat([p.motion.velocity for p in prepared])
+    measured = samples.flat([p.friction - f for p, f in zip(prepared, rest, strict=True)])
     modelled = samples.flat([m - f for m, f in zip(comparison.predictions, rest, strict=True)])
     edges = [_edges(speed), _edges(measured, ROWS * 2)]
     counts, across, up = np.histogram2d(speed, measured, bins=edges)
@@ -95,7 +95,7 @@ def residual_map(
              for v, n, name in ((x, CELLS, across), (y, ROWS, up))]  # fmt: skip
     sums, *_ = np.histogram2d(x, y, bins=edges, weights=left)
     counts, *_ = np.histogram2d(x, y, bins=edges)
-    noise = comparison.noise_n or comparison.rms_n or 1.0
+    noise = comparison.noise_rms or comparison.rms or 1.0
     with np.errstate(invalid="ignore"):
         means = sums / np.where(counts > 0, counts, np.nan) / noise
     top = max(float(np.nanquantile(np.abs(means), 0.99)), 1.0)
@@ -127,7 +127,7 @@ def _values(comparison: Comparison, name: Over) -> list[Array]:
     if name == "time":
         return [p.run.time_s - p.run.time_s[0] for p in prepared]
     if name == "speed":
-        return [p.motion.velocity_m_s for p in prepared]
+        return [p.motion.velocity for p in prepared]
     if name == "place":
         return [_place(comparison, i) for i in range(len(prepared))]
     return [np.full(len(p.run), float(i)) for i, p in enumerate(prepared)]

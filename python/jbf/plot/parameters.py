@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from jbf.models.parameter_units import shown
+from jbf.models.parameter_units import units_of
 from jbf.models.written import value_and_error
 from jbf.plot.style import INK, MEASURED, MODEL, dress, one_axes, plain
 
@@ -28,7 +28,7 @@ LINEAR_PERCENT = 1.0
 Errors of a few permille and of half the value then fit on one axis.
 """
 WIDEST_PERCENT = 300.0
-NONE: Mapping[str, tuple[str, str]] = MappingProxyType({})
+NO_UNITS: Mapping[str, str] = MappingProxyType({})
 
 
 def height(parameters: Mapping[str, object]) -> float:
@@ -47,31 +47,21 @@ def parameters(
         Estimates of repeated fits by parameter name, drawn behind the intervals.
     """
     ax = one_axes(ax, (7.0, height(fit.parameters)))
-    return intervals(fit.parameters, answers, called(fit), ax=ax)
-
-
-def called(fit: Fit) -> Mapping[str, tuple[str, str]]:
-    """Return displayed names and units of a drive's parameters.
-
-    Empty for other rigs, whose parameter names contain the units.
-    """
-    model = fit.model
-    if model.rig.drive is None:
-        return NONE
-    return shown(model.law, model.effects, model.rig.quantities)
+    units = units_of(fit.model.law, fit.model.effects, fit.model.rig.quantities)
+    return intervals(fit.parameters, answers, units, ax=ax)
 
 
 def intervals(
     parameters: Mapping[str, ParameterValue],
     answers: Mapping[str, Array] | None = None,
-    called: Mapping[str, tuple[str, str]] = NONE,
+    units: Mapping[str, str] = NO_UNITS,
     *,
     ax: Axes | None = None,
 ) -> Axes:
     """Plot each parameter's standard error (percent of its value), and repeated estimates.
 
-    A parameter with value zero or without a standard error is an open marker. `called` contains
-    displayed names and units.
+    A parameter with value zero or without a standard error is an open marker. `units` contains
+    the unit of each parameter that has one.
     """
     from matplotlib.ticker import FuncFormatter
 
@@ -91,8 +81,8 @@ def intervals(
         largest = max(largest, 1.5 * percent)
     labels = []
     for name in names:
-        shown_name, unit = called.get(name, (name, ""))
-        labels.append(f"{shown_name}\n{_value_words(parameters[name])} {unit}".rstrip())
+        value = f"{_value_words(parameters[name])} {units.get(name, '')}".rstrip()
+        labels.append(f"{name}\n{value}")
     ax.set_yticks(range(len(names)), labels=list(map(plain, labels)), fontsize="small")
     ax.set_ylim(len(names) - 0.4, -0.6)
     ax.axvline(0.0, color=INK, linewidth=0.6)

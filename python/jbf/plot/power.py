@@ -77,7 +77,7 @@ def power(
 
 
 def _has_curve(p: Power) -> bool:
-    return not p.always and None not in (p.found_80, p.found_95, p.share_80)
+    return not p.always and None not in (p.detectable_80, p.detectable_95, p.share_80)
 
 
 def deviate(p: Power, share: np.ndarray) -> np.ndarray:
@@ -87,13 +87,13 @@ def deviate(p: Power, share: np.ndarray) -> np.ndarray:
     """
     from scipy.special import ndtri
 
-    assert p.found_80 is not None
-    assert p.found_95 is not None
+    assert p.detectable_80 is not None
+    assert p.detectable_95 is not None
     assert p.share_80 is not None
     at_80, at_95 = float(ndtri(0.80)), float(ndtri(0.95))
     # For a parameter whose effect saturates, use the change of the friction, which is nearly
     # proportional to the strength.
-    ratio = max(abs(p.found_95 / p.found_80), 1.0 + 1e-6)
+    ratio = max(abs(p.detectable_95 / p.detectable_80), 1.0 + 1e-6)
     ratio = ratio if ratio < 3.0 else 1.3
     slope = (at_95 - at_80) / (ratio - 1.0)
     return np.asarray(at_80 + slope * (share / p.share_80 - 1.0))

@@ -80,7 +80,7 @@ def residual_along(
     """
     ax = one_axes(ax)
     said = quantities_of(comparison)
-    noise_band(ax, comparison.noise_n, unit=said.force)
+    noise_band(ax, comparison.noise_rms, unit=said.force)
     draw_means(ax, means_along(comparison, axis), colour, said, label)
     legend_on_top(ax)
     return ax
@@ -146,7 +146,7 @@ def residual_in_time(
     p = comparison.campaign.prepared[index]
     shown = np.where(comparison.samples.counted[index], comparison.residuals[index], np.nan)
     unit = quantities_of(comparison).force
-    noise_band(ax, comparison.noise_n, unit=unit)
+    noise_band(ax, comparison.noise_rms, unit=unit)
     ax.plot(
         p.run.time_s,
         shown,
@@ -158,7 +158,7 @@ def residual_in_time(
     )
     # A few distant samples would compress all others.
     size = np.abs(shown[np.isfinite(shown)])
-    reach = max(1.4 * float(np.quantile(size, NEARLY_ALL)), 3.0 * comparison.noise_n)
+    reach = max(1.4 * float(np.quantile(size, NEARLY_ALL)), 3.0 * comparison.noise_rms)
     if reach > 0.0:
         ax.set_ylim(-reach, reach)
     far = int(np.sum(size > reach))
@@ -172,7 +172,7 @@ def residuals_in_a_row(fit: Fit, *, ax: Axes | None = None) -> Axes:
     """Plot the residual of a fit, one run after another."""
     ax = one_axes(ax)
     # Samples next to a reversal have no weight and may be far off.
-    reach = 5.0 * fit.rms_n
+    reach = 5.0 * fit.rms
     start = 0
     for i, residual in enumerate(fit.residuals):
         stride = max(len(residual) * len(fit.residuals) // MOST_DOTS, 1)
@@ -181,7 +181,7 @@ def residuals_in_a_row(fit: Fit, *, ax: Axes | None = None) -> Axes:
         ax.plot(at, residual[::stride], ".", color=colour, markersize=2, rasterized=True)
         start += len(residual)
     unit = fit.model.rig.quantities.force
-    noise_band(ax, fit.rms_n, "RMS", unit)
+    noise_band(ax, fit.rms, "RMS", unit)
     if reach > 0.0:
         ax.set_ylim(-reach, reach)
     dress(ax, "What the fit leaves, run after run", "Sample", f"Record minus model ({unit})")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def largest_error_run(comparison: Comparison, other: Comparison | None = None) -> int:
     """Return the run with the largest error, or the run in which two models differ most."""
     if other is None:
-        return int(np.argmax([r.rms_n for r in comparison.runs]))
+        return int(np.argmax([r.rms for r in comparison.runs]))
     gaps = [
         float(np.mean((a - b)[counted] ** 2))
         for a, b, counted in zip(

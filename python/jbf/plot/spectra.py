@@ -50,7 +50,7 @@ def spectrum(
     unit = quantities_of(comparison).force
     ax.loglog(frequency[1:], np.sqrt(density[1:]), color=colour, linewidth=1.0, label=label)
     if not any(str(line.get_label()).startswith("white noise") for line in ax.lines):
-        floor = comparison.noise_n * np.sqrt(2.0 * step)
+        floor = comparison.noise_rms * np.sqrt(2.0 * step)
         ax.axhline(floor, color=NOISE, linestyle="--", linewidth=1.2, label="white noise as large")
     title = f"Spectrum of the residual, run {p.run.name}"
     dress(ax, title, "Frequency (Hz)", f"Density ({unit}/√Hz)")

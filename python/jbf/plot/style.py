@@ -74,10 +74,10 @@ def one_axes(ax: Axes | None, size: tuple[float, float] = (6.0, 4.0)) -> Axes:
     return axes_or_new(None if ax is None else [ax], 1, 1, size)[0]
 
 
-def noise_band(ax: Axes, noise_n: float, name: str = "noise", unit: str = "N") -> None:
+def noise_band(ax: Axes, noise_rms: float, name: str = "noise", unit: str = "N") -> None:
     """Shade one standard deviation of the noise on both sides of zero."""
-    label = f"{name}, ±{number(noise_n, 2)} {unit}"
-    ax.axhspan(-noise_n, noise_n, color=NOISE, alpha=0.15, label=label)
+    label = f"{name}, ±{number(noise_rms, 2)} {unit}"
+    ax.axhspan(-noise_rms, noise_rms, color=NOISE, alpha=0.15, label=label)
     ax.axhline(0.0, color=INK, linewidth=0.6)
 
 

@@ -24,7 +24,7 @@ def record_and_model(
     p = comparison.campaign.prepared[index]
     time_s = p.run.time_s
     measured: dict[str, Any] = {"markersize": 2, "label": "measured", "rasterized": True}
-    ax.plot(time_s, p.friction_n, ".", color=MEASURED, **measured)
+    ax.plot(time_s, p.friction, ".", color=MEASURED, **measured)
     modelled = comparison.predictions[index]
     ax.plot(time_s, modelled, color=MODEL, linewidth=1.0, label="model", rasterized=True)
     dress(ax, f"Run {p.run.name}", "Time (s)", axes_words(comparison)[1])

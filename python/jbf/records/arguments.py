@@ -66,7 +66,7 @@ def check_run(run: Run) -> None:
 
     Such a run comes from the constructor, which does not check its arguments, or from a selection.
     """
-    for column, values in ({"velocity_m_s": run.velocity_m_s} | run.columns()).items():
+    for column, values in ({"velocity_m_s": run.velocity} | run.columns()).items():
         good = isinstance(values, np.ndarray) and values.dtype == np.float64 and values.ndim == 1
         if not good or np.ma.is_masked(values):
             raise InputError(

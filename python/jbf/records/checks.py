@@ -25,6 +25,8 @@ COLUMNS = (
     "temperature_c",
 )
 """Columns with a defined meaning, in the order in which `Run.write_csv` writes them."""
+ATTRIBUTES = {"velocity_m_s": "velocity", "friction_n": "friction"}
+"""Attributes of `Run` without a unit, by column: their unit is that of the rig."""
 POINT = "point"
 """Column that replaces `time_s`: the number of a steady state, as in a Stribeck curve."""
 POINT_S = 60.0
@@ -41,6 +43,11 @@ SHORTEST_S = 1e-12
 """Shortest plausible time step between samples, s."""
 MOTION = ("velocity_m_s", "position_m", "angle_rad")
 """Columns each of which is sufficient to determine the motion."""
+
+
+def attribute(column: str) -> str:
+    """Return the attribute of `Run` that holds a column of `COLUMNS`."""
+    return ATTRIBUTES.get(column, column)
 
 
 def listed(names: Iterable[str]) -> str:

@@ -64,7 +64,7 @@ class Drive:
     pitch_m : float, optional
         Travel of a linear drive per turn of its screw (lead), or of its pinion or pulley, m.
     inertia_kg_m2, mass_kg : float, optional
-        Known moved inertia or mass. It is reported next to the estimate of `inertia_leak`. It is
+        Known moved inertia or mass. It is reported next to the estimate of `inertia`. It is
         required for `friction = "none"`, where it converts the deceleration into a force.
     """
 

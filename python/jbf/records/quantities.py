@@ -88,8 +88,8 @@ class Quantities:
         )
 
     def to_dict(self) -> dict[str, str]:
-        """Units for JSON, of the quantities whose keys end in `_n`, `_m_s` and `_m`."""
-        return {"force": self.force, "velocity": self.speed, "length": self.length}
+        """Units of friction, motion and speed, for JSON."""
+        return {"force": self.force, "motion": self.length, "velocity": self.speed}
 
 
 OF_BEARING = Quantities(

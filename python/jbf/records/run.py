@@ -15,7 +15,18 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.records.channels import Channels, filled, recorded_samples, side_by_side
-from jbf.records.checks import COLUMNS, MOTION, POINT, SLOW, as_array, check_columns, frozen, listed
+from jbf.records.checks import (
+    ATTRIBUTES,
+    COLUMNS,
+    MOTION,
+    POINT,
+    SLOW,
+    as_array,
+    attribute,
+    check_columns,
+    frozen,
+    listed,
+)
 from jbf.records.findings.finding import Finding
 from jbf.records.frames import columns_of
 from jbf.records.quantities import OF_BEARING, Quantities
@@ -42,9 +53,9 @@ class Run(Shown):
         Name of the run in reports.
     time_s : ndarray
         Time, strictly increasing, s.
-    velocity_m_s : ndarray
+    velocity : ndarray
         Signed surface speed, m/s; nan if only an angle was recorded.
-    friction_n : ndarray or None
+    friction : ndarray or None
         Tangential friction force of one bearing, N.
     angle_rad, position_m : ndarray or None
         Angle of the journal, rad, or position of the slider, m.
@@ -70,8 +81,8 @@ class Run(Shown):
 
     name: str
     time_s: Array
-    velocity_m_s: Array
-    friction_n: Array | None = None
+    velocity: Array
+    friction: Array | None = None
     angle_rad: Array | None = None
     position_m: Array | None = None
     load_n: Array | None = None
@@ -102,7 +113,7 @@ class Run(Shown):
 
     def columns(self) -> dict[str, Array]:
         """Return the arrays that are present, by column name: known ones first, then `extra`."""
-        known = {name: getattr(self, name) for name in COLUMNS}
+        known = {column: getattr(self, attribute(column)) for column in COLUMNS}
         if not self.speed_recorded:
             del known["velocity_m_s"]
         return {name: a for name, a in known.items() if a is not None} | self.extra
@@ -117,7 +128,7 @@ class Run(Shown):
 
     def _arrays(self) -> dict[str, Array]:
         """Return `columns` with the speed in any case."""
-        return {"velocity_m_s": self.velocity_m_s} | self.columns()
+        return {"velocity_m_s": self.velocity} | self.columns()
 
     def select(self, which: slice | npt.ArrayLike) -> Run:
         """Return the samples that a slice or a boolean mask of shape (N,) keeps, as a run.
@@ -149,14 +160,15 @@ class Run(Shown):
         extra = {name: kept.pop(name) for name in self.extra}
         read = {name: there[index] for name, there in self.read.items()}
         read = {name: there for name, there in read.items() if not there.all()}
-        return replace(self, **kept, extra=extra, read=read)  # type: ignore[arg-type]
+        known = {attribute(column): values for column, values in kept.items()}
+        return replace(self, **known, extra=extra, read=read)  # type: ignore[arg-type]
 
     @classmethod
     def from_arrays(
         cls,
         time_s: npt.ArrayLike,
-        velocity_m_s: npt.ArrayLike | None = None,
-        friction_n: npt.ArrayLike | None = None,
+        velocity: npt.ArrayLike | None = None,
+        friction: npt.ArrayLike | None = None,
         *,
         angle_rad: npt.ArrayLike | None = None,
         position_m: npt.ArrayLike | None = None,
@@ -165,10 +177,14 @@ class Run(Shown):
         extra: Mapping[str, npt.ArrayLike] | None = None,
         name: str = "run",
         path: PathLike | None = None,
+        **columns: npt.ArrayLike,
     ) -> Run:
         """Build a run from lists, arrays or pandas series of one length N, copied and checked.
 
-        Without a speed, a position or an angle is required to define the motion.
+        Without a speed, a position or an angle is required to define the motion. Speed and friction
+        are in the units of the rig; the column names ``velocity_m_s`` and ``friction_n`` are
+        accepted in place of `velocity` and `friction`, so that the result of `columns` can be
+        passed.
 
         Raises
         ------
@@ -180,11 +196,15 @@ class Run(Shown):
             "time_s": time_s,
             "angle_rad": angle_rad,
             "position_m": position_m,
-            "velocity_m_s": velocity_m_s,
-            "friction_n": friction_n,
+            "velocity_m_s": velocity,
+            "friction_n": friction,
             "load_n": load_n,
             "temperature_c": temperature_c,
         }
+        for column, values in columns.items():
+            if column not in ATTRIBUTES:
+                raise TypeError(f"from_arrays() got an unexpected argument {column!r}")
+            given[column] = values
         for column in extra or {}:
             if column in given:
                 raise InputError(
@@ -197,20 +217,20 @@ class Run(Shown):
             raise InputError(
                 file=name, column="time_s", problem="is None", mend="give the instants, s"
             )
-        columns = {
+        arrays = {
             column: as_array(values, column, name)
             for column, values in (given | dict(extra or {})).items()
             if values is not None
         }
-        if not any(column in columns for column in MOTION):
+        if not any(column in arrays for column in MOTION):
             raise InputError(
                 file=name,
                 column="velocity_m_s",
                 problem="is missing, and no position tells the motion",
                 mend=f"give one of {', '.join(MOTION)}",
             )
-        check_columns(name, columns, None, None)
-        return cls.of_columns(name, columns, None if path is None else Path(path))
+        check_columns(name, arrays, None, None)
+        return cls.of_columns(name, arrays, None if path is None else Path(path))
 
     @classmethod
     def from_channels(
@@ -259,7 +279,7 @@ class Run(Shown):
         own = {column: recorded_samples(time_s, values) for column, values in columns.items()}
         if any(len(clock) < len(time_s) for clock, _ in own.values()):
             return cls.from_channels(own, name=name, path=path)
-        known: dict[str, Any] = {c: columns.pop(c) for c in COLUMNS if c in columns}
+        known: dict[str, Any] = {attribute(c): columns.pop(c) for c in COLUMNS if c in columns}
         return cls.from_arrays(time_s, **known, extra=columns, name=name, path=path)
 
     @classmethod
@@ -272,7 +292,7 @@ class Run(Shown):
         if SLOW in columns:
             whole, reading = _fill_gaps(name, columns["time_s"], columns[SLOW])
             columns = dict(columns) | {SLOW: whole}
-        known: dict[str, Any] = {c: values for c, values in columns.items() if c in COLUMNS}
+        known: dict[str, Any] = {attribute(c): v for c, v in columns.items() if c in COLUMNS}
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
         return cls(
             name=name,
@@ -283,13 +303,13 @@ class Run(Shown):
             reading=reading,
         )
 
-    def at(self, time_s: Array, friction_n: Array) -> Run:
+    def at(self, time_s: Array, friction: Array) -> Run:
         """Return the run at other instants within it, with the friction there, N.
 
         All other columns are interpolated linearly.
         """
         others = {
-            name: frozen(np.interp(time_s, self.time_s, values))
+            attribute(name): frozen(np.interp(time_s, self.time_s, values))
             for name, values in self._arrays().items()
             if name not in ("time_s", "friction_n")
         }
@@ -297,7 +317,7 @@ class Run(Shown):
         return replace(
             self,
             time_s=frozen(time_s),
-            friction_n=frozen(friction_n),
+            friction=frozen(friction),
             **others,  # type: ignore[arg-type]
             extra=extra,
             read={},

@@ -24,7 +24,7 @@ def comparison_page(comparison: Comparison, command: str = "") -> str:
         sentence=comparison_sentence(comparison),
         axes=listed(f.axis for f in comparison.failures),
         law=f"law {law_and_effects(model)}",
-        measurement=measurement(comparison, comparison.noise_n),
+        measurement=measurement(comparison, comparison.noise_rms),
         failures=pattern_rows(comparison.failures),
         picture=svg(
             plot_comparison(comparison),

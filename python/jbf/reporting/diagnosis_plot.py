@@ -54,7 +54,7 @@ def before_and_after(
     The final model is drawn only if it differs from the bare law.
     """
     said = diagnosis.model.rig.quantities
-    noise_band(ax, diagnosis.before.noise_n, unit=said.force)
+    noise_band(ax, diagnosis.before.noise_rms, unit=said.force)
     changed = bool(diagnosis.model.effects) and diagnosis.after is not diagnosis.before
     draw_means(ax, pattern, BEFORE, said, "bare law" if changed else "")
     if changed:

@@ -46,9 +46,9 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
     if diagnosis.negligible:
         lines += ["", "Possible, negligible"]
         lines += hanging("    ", ", ".join(diagnosis.negligible), 0)
-    if diagnosis.unseen:
+    if diagnosis.not_detectable:
         lines += ["", "Could be there at a usual strength and hide in these runs"]
-        lines += hanging("    ", ", ".join(diagnosis.unseen), 0)
+        lines += hanging("    ", ", ".join(diagnosis.not_detectable), 0)
     if diagnosis.limitations:
         lines += ["", "What these runs cannot show"]
         for sentence in diagnosis.limitations:
@@ -91,12 +91,12 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         f"    {recorded([p.run for p in campaign.prepared])}, "
         f"{count_of(samples, 'sample')} "
         f"where the sign of the motion is known",
-        f"    noise floor {noise_words(bare.noise_n, unit)}"
-        + (", estimated from the records alone" if bare.noise_n > 0.0 else ""),
+        f"    noise floor {noise_words(bare.noise_rms, unit)}"
+        + (", estimated from the records alone" if bare.noise_rms > 0.0 else ""),
         "",
         f"The {step_name(diagnosis, 0)} ({law_words(model, ', ')})",
-        f"    misses by {number(bare.rms_n)} {unit} RMS, "
-        f"{against_noise(bare.rms_n, bare.noise_n)}"
+        f"    misses by {number(bare.rms)} {unit} RMS, "
+        f"{against_noise(bare.rms, bare.noise_rms)}"
         + ("; where it fails (share of the mean square):" if diagnosis.failures else ""),
     ]
     lines += where_lines(diagnosis.failures) or ["    and shows no pattern along any axis"]
@@ -109,7 +109,9 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         lines += hanging("    ", sentence)
     lines += finding_lines(diagnosis.findings)
     lines += ["", "What remains"]
-    lines += where_lines(diagnosis.unexplained) or ["    nothing that stands above the noise"]
+    lines += where_lines(diagnosis.residual_structure) or [
+        "    nothing that stands above the noise"
+    ]
     lines += ["", "Parameters of the final model"]
     lines += lines_of_parameters(diagnosis.fit)
     return "\n".join([*lines, *effect_lines(model)])

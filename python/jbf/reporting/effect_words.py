@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from jbf.models.catalogue import Effect, find_effect
 from jbf.models.model import Model
-from jbf.models.parameter_units import shown
+from jbf.models.parameter_units import units_of
 from jbf.records.quantities import Quantities
 from jbf.reporting.paragraphs import hanging
 from jbf.reporting.words import number, value_and_error
@@ -23,7 +23,7 @@ def summary_of(effect: Effect, said: Quantities) -> str:
         "sensor_hysteresis": f"{said.sensor} reads less while the {said.noun} rises than while it "
         "falls: play or friction on the way to it",
         "sensor_nonlinearity": f"{said.sensor} reads a large {said.noun} too large or too small",
-        "inertia_leak": f"the {inertia} that the drive accelerates, in what {said.sensor} reads",
+        "inertia": f"the {inertia} that the drive accelerates, in what {said.sensor} reads",
         "drive_compliance": "a belt, coupling or shaft twists between the position sensor and what "
         "is driven",
         "cogging": f"a motor's {said.noun} that rises and falls with every pitch of the way, at "
@@ -66,16 +66,16 @@ def effect_lines(model: Model) -> list[str]:
 def known_mass(model: Model, effect: str) -> str:
     """Compare the estimated mass or inertia with the value in the rig file.
 
-    Empty if the effect is not `inertia_leak`, or the rig file contains no such value.
+    Empty if the effect is not `inertia`, or the rig file contains no such value.
     """
     drive = model.rig.drive
-    if effect != "inertia_leak" or drive is None or drive.friction == "voltage":
+    if effect != "inertia" or drive is None or drive.friction == "voltage":
         return ""  # an inertia in V s^2/rad has no counterpart in kg m^2
     known = drive.inertia_kg_m2 if drive.motion == "rotary" else drive.mass_kg
     if known is None:
         return ""
-    name = "inertia_leak.m_e_kg"
-    unit = shown(model.law, model.effects, model.rig.quantities)[name][1]
+    name = "inertia.m_e"
+    unit = units_of(model.law, model.effects, model.rig.quantities)[name]
     value, error = value_and_error(model.parameters[name])
     found = f"{value} +/- {error}" if error else value
     return f"; {found} {unit} where the rig's file says {number(known, 4)}"

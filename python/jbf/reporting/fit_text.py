@@ -8,7 +8,7 @@ from jbf.estimation.noise import Noise
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.reporting.effect_words import effect_lines
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.tables import LEAST_CORRELATION, correlation_pairs, shown_names
+from jbf.reporting.tables import LEAST_CORRELATION, correlation_pairs
 from jbf.reporting.text_parts import finding_lines, parameter_lines
 from jbf.reporting.words import law_words, number
 
@@ -32,11 +32,11 @@ def lines_of_parameters(fit: Fit) -> list[str]:
 
 def noise_floor_words(fit: Fit) -> str:
     """Format the noise of the records, and the ratio of the residual to it."""
-    if fit.noise_floor_n is None:
+    if fit.noise_floor is None:
         return "not known"
-    ratio = fit.rms_n / fit.noise_floor_n
+    ratio = fit.rms / fit.noise_floor
     return (
-        f"{number(fit.noise_floor_n)} {fit.model.rig.quantities.force} "
+        f"{number(fit.noise_floor)} {fit.model.rig.quantities.force} "
         f"(the residual is {number(ratio)} times that)"
     )
 
@@ -49,7 +49,7 @@ def fit_report(fit: Fit) -> str:
         ("effects", ", ".join(model.effects) or "none"),
         ("runs", str(len(fit.residuals))),
         ("samples", str(fit.samples)),
-        ("RMS of the residual", f"{number(fit.rms_n)} {model.rig.quantities.force}"),
+        ("RMS of the residual", f"{number(fit.rms)} {model.rig.quantities.force}"),
         ("noise of the records", noise_floor_words(fit)),
         ("noise in the residual", noise_words(fit.noise)),
         ("search", "converged" if fit.converged else f"not converged: {fit.message}"),
@@ -57,15 +57,14 @@ def fit_report(fit: Fit) -> str:
     lines = ["[[Fit]]", *columns([(k, f"= {v}") for k, v in facts], "<<", 4)]
     lines += ["[[Parameters]]", *lines_of_parameters(fit)]
     if fit.doubtful:
-        called = shown_names(fit)
-        names = ", ".join(called[name] for name in fit.doubtful)
+        names = ", ".join(fit.doubtful)
         lines += hanging(
             "note: ",
             f"of {names} the likelihood is no parabola within these errors, so they may be far "
             "too small. `jbf fit --bootstrap 40` (jbf.bootstrap) finds theirs.",
             4,
         )
-    if fit.noise_floor_n is not None and fit.rms_n > ABOVE * fit.noise_floor_n:
+    if fit.noise_floor is not None and fit.rms > ABOVE * fit.noise_floor:
         lines += hanging(
             "note: ",
             "the residual is larger than the noise of the records: the model lacks an effect "

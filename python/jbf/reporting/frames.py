@@ -59,8 +59,8 @@ def comparison_columns(comparison: Comparison) -> Columns:
     prepared = comparison.campaign.prepared
     joined: dict[str, Sequence[Any]] = {
         "time_s": [p.run.time_s for p in prepared],
-        "velocity_m_s": [p.motion.velocity_m_s for p in prepared],
-        "friction_n": [p.friction_n for p in prepared],
+        "velocity_m_s": [p.motion.velocity for p in prepared],
+        "friction_n": [p.friction for p in prepared],
         "model_n": comparison.predictions,
         "residual_n": comparison.residuals,
         "counts": comparison.samples.counted,
@@ -74,7 +74,7 @@ def diagnosis_columns(diagnosis: Diagnosis) -> Columns:
     steps = diagnosis.steps
     return {
         "effects": [" + ".join(s.effects) for s in steps],
-        "rms_n": [s.rms_n for s in steps],
-        "holdout_rms_n": [s.holdout_rms_n for s in steps],
-        "noise_n": [s.noise_n for s in steps],
+        "rms": [s.rms for s in steps],
+        "held_out_rms": [s.held_out_rms for s in steps],
+        "noise_rms": [s.noise_rms for s in steps],
     }

@@ -79,7 +79,7 @@ def failure_cards(diagnosis: Diagnosis) -> list[Card]:
 
 def remainder_cards(diagnosis: Diagnosis) -> list[Card]:
     """Return one card per item of unexplained residual structure."""
-    return [_remaining(diagnosis.after, remainder) for remainder in diagnosis.unexplained]
+    return [_remaining(diagnosis.after, remainder) for remainder in diagnosis.residual_structure]
 
 
 def _failed(diagnosis: Diagnosis, failure: Failure, made: Mapping[str, Sequence[Array]]) -> Card:
@@ -126,7 +126,7 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
         residual_in_time(after, 0, ax=ax)
     elif remainder.axis in SEEN_ALONG or any(remainder.axis == f.axis for f in after.failures):
         said = after.model.rig.quantities
-        noise_band(ax, after.noise_n, unit=said.force)
+        noise_band(ax, after.noise_rms, unit=said.force)
         draw_means(ax, means_along(after, remainder.axis), MODEL, said)
         ax.set_title("", loc="left")
         legend_above(ax, 2)

@@ -64,7 +64,7 @@ def import_rows(comparison: Comparison) -> list[tuple[str, str, str]]:
     return provenance_rows(ledgers_of_runs(p.run.path for p in comparison.campaign.prepared))
 
 
-def measurement(comparison: Comparison, noise_n: float) -> str:
+def measurement(comparison: Comparison, noise_rms: float) -> str:
     """Describe the recorded runs in a phrase: count, duration, samples, noise floor."""
     runs = comparison.campaign.prepared
     unit = comparison.model.rig.quantities.force
@@ -72,5 +72,5 @@ def measurement(comparison: Comparison, noise_n: float) -> str:
         f"{recorded([p.run for p in runs])}, "
         f"{count_of(comparison.samples.count, 'sample')} "
         f"where the sign of the motion is known, "
-        f"noise floor {noise_words(noise_n, unit)}"
+        f"noise floor {noise_words(noise_rms, unit)}"
     )

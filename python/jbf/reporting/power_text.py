@@ -33,17 +33,17 @@ def power_lines(power: Iterable[Power], model: Model) -> list[str]:
 def level_words(level: Level) -> str:
     """Describe the false-alarm rate and the log-likelihood gain that a detection requires."""
     said = (
-        f"noise makes a name in at most {100.0 * level.false_alarms:.3g} % of such campaigns: of "
+        f"false-alarm rate: at most {100.0 * level.false_alarm_rate:.3g} %; of "
         f"{count_of(level.candidates, 'candidate')} one must gain {number(level.critical)} in "
         "twice the log likelihood"
     )
     if level.blocks:
         said += f", by the residual itself, {level.blocks} blocks of it turned at random"
-    allowed = level.white + level.imperfection
-    if level.imperfection:
+    allowed = level.white_noise_threshold + level.artefact_margin
+    if level.artefact_margin:
         said += f"; with what recordings do to a record at least {number(allowed)}"
-    if level.worth > max(level.critical, allowed):
-        said += f"; to be worth a name it must gain {number(level.worth)}"
+    if level.min_gain > max(level.critical, allowed):
+        said += f"; to be worth a name it must gain {number(level.min_gain)}"
     if level.decoys:
         below = 100.0 * rate_below(level.decoys_named, level.decoys)
         told = f"{below:.2g}" if below < 99.5 else "100"
@@ -61,7 +61,7 @@ def planned_report(planned: PlannedPower) -> str:
     beside = " + ".join([law_words(model, ", "), *model.effects])
     lines = [
         f"{count_of(len(planned.runs), 'run')} beside {beside}, noise of "
-        f"{number(planned.noise_n)} {unit}",
+        f"{number(planned.noise_rms)} {unit}",
         "",
         "What such runs show, in 80 of 100 campaigns",
         *power_lines(planned.power, model),
@@ -89,7 +89,7 @@ def short_plan(plan: Plan) -> str:
 
 def short_power(planned: PlannedPower) -> str:
     """Summarize the power of planned runs in one line."""
-    found = sum(p.found_80 is not None for p in planned.power)
+    found = sum(p.detectable_80 is not None for p in planned.power)
     return (
         f"PlannedPower: {count_of(len(planned.runs), 'run')} show {found} of "
         f"{count_of(len(planned.power), 'effect')}, each from a strength of its own"

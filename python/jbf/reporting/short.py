@@ -12,7 +12,6 @@ from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.counts import count_of
-from jbf.reporting.tables import shown_names
 from jbf.reporting.words import against_noise, number, value_and_error
 
 LONGEST = 120
@@ -41,8 +40,7 @@ def _values(parameters: Mapping[str, ParameterValue]) -> str:
 
 
 def _fitted(fit: Fit) -> str:
-    called = shown_names(fit)
-    return _values({called[name]: p for name, p in fit.parameters.items()})
+    return _values(fit.parameters)
 
 
 def _law(model: Model) -> str:
@@ -56,7 +54,7 @@ def short_fit(fit: Fit) -> str:
     return (
         f"Fit({_law(fit.model)}; {count_of(len(fit.residuals), 'run')}, "
         f"{count_of(fit.samples, 'sample')}, "
-        f"RMS {number(fit.rms_n)} {unit}{search};\n    {_fitted(fit)})"
+        f"RMS {number(fit.rms)} {unit}{search};\n    {_fitted(fit)})"
     )
 
 
@@ -77,7 +75,7 @@ def short_trajectory_fit(fit: TrajectoryFit) -> str:
 def short_comparison(comparison: Comparison) -> str:
     """Summarize the error and the axes along which the model fails."""
     where = first_of(f.axis for f in comparison.failures)
-    rms, noise = comparison.rms_n, comparison.noise_n
+    rms, noise = comparison.rms, comparison.noise_rms
     unit = comparison.model.rig.quantities.force
     return (
         f"Comparison({_law(comparison.model)}; {count_of(len(comparison.runs), 'run')}, "
@@ -93,6 +91,6 @@ def short_diagnosis(diagnosis: Diagnosis) -> str:
     effects = first_of(diagnosis.effects)
     added = f": {effects}" if effects else ""
     return (
-        f"Diagnosis({diagnosis.verdict}{added};\n    held out {number(last.holdout_rms_n)} {unit}, "
-        f"{against_noise(last.holdout_rms_n, last.noise_n, unit)})"
+        f"Diagnosis({diagnosis.verdict}{added};\n    held out {number(last.held_out_rms)} {unit}, "
+        f"{against_noise(last.held_out_rms, last.noise_rms, unit)})"
     )

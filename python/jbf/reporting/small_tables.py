@@ -50,7 +50,7 @@ def fit_table(fit: Fit) -> str:
     """Tabulate the parameters with standard errors."""
     said = fit.model.rig.quantities
     search = "" if fit.converged else ", not converged"
-    title = f"Fit: {law_and_effects(fit.model)}; RMS {number(fit.rms_n)} {said.force}{search}"
+    title = f"Fit: {law_and_effects(fit.model)}; RMS {number(fit.rms)} {said.force}{search}"
     rows = parameter_rows(fit.model.law, fit.model.effects, fit.parameters, said)
     return table(title, PARAMETER_HEAD, rows)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jbf.models.parameter_units import shown
+from jbf.models.parameter_units import units_of
 from jbf.records.counts import count_of
 from jbf.records.quantities import OF_BEARING, Quantities
 from jbf.reporting.words import UNKNOWN, number, percent, step_name, value_and_error
@@ -34,29 +34,20 @@ def parameter_rows(
     quantities: Quantities = OF_BEARING,
 ) -> list[tuple[str, str, str, str, str, str]]:
     """Return name, value, standard error, percentage, unit and note of each parameter, as text."""
-    names = shown(law, effects, quantities)
+    units = units_of(law, effects, quantities)
     rows = []
     for name, p in parameters.items():
         value, error = value_and_error(p)
         note = p.note or ("" if error else "no error known")
-        called, unit = names.get(name, (name, ""))
-        rows.append((called, value, error, percent(p), unit, note))
+        rows.append((name, value, error, percent(p), units.get(name, ""), note))
     return rows
-
-
-def shown_names(fit: Fit) -> dict[str, str]:
-    """Map the full names of a fit's parameters to the displayed names."""
-    model = fit.model
-    names = shown(model.law, model.effects, model.rig.quantities)
-    return {name: names[name][0] if name in names else name for name in fit.parameters}
 
 
 def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
     """Return pairs of parameters correlated above 0.3 in absolute value, strongest first."""
     names = [name for name, p in fit.parameters.items() if not p.held]
-    called = shown_names(fit)
     found = [
-        (called[names[i]], called[names[j]], float(fit.correlations[i, j]))
+        (names[i], names[j], float(fit.correlations[i, j]))
         for i in range(len(names))
         for j in range(i + 1, len(names))
         if np.isfinite(fit.correlations[i, j]) and abs(fit.correlations[i, j]) > LEAST_CORRELATION
@@ -64,9 +55,9 @@ def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
     return sorted(found, key=lambda pair: -abs(pair[2]))
 
 
-def ratio(error_n: float, noise_n: float) -> str:
+def ratio(error_n: float, noise_rms: float) -> str:
     """Format the ratio of error to noise with two decimals; empty if the noise is zero."""
-    return f"{error_n / noise_n:.2f}" if noise_n > 0.0 else ""
+    return f"{error_n / noise_rms:.2f}" if noise_rms > 0.0 else ""
 
 
 def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
@@ -74,10 +65,10 @@ def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
     return [
         (
             step_name(diagnosis, i),
-            number(s.rms_n),
-            number(s.holdout_rms_n),
-            number(s.noise_n) if s.noise_n > 0.0 else UNKNOWN,
-            ratio(s.holdout_rms_n, s.noise_n),
+            number(s.rms),
+            number(s.held_out_rms),
+            number(s.noise_rms) if s.noise_rms > 0.0 else UNKNOWN,
+            ratio(s.held_out_rms, s.noise_rms),
         )
         for i, s in enumerate(diagnosis.steps)
     ]
@@ -86,14 +77,14 @@ def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
 def trial_rows(step: Step) -> list[tuple[str, str, str, str, str]]:
     """Return effect, RMS (N), evidence, outcome and reason of each candidate."""
     return [
-        (t.effect, number(t.rms_n), f"{t.evidence:+.0f}", t.outcome, t.reason) for t in step.trials
+        (t.effect, number(t.rms), f"{t.evidence:+.0f}", t.outcome, t.reason) for t in step.trials
     ]
 
 
 def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
     """Return name, number of counted samples, RMS (N), and RMS over noise of each run."""
     return [
-        (r.name, str(r.samples), number(r.rms_n), ratio(r.rms_n, comparison.noise_n))
+        (r.name, str(r.samples), number(r.rms), ratio(r.rms, comparison.noise_rms))
         for r in comparison.runs
     ]
 
@@ -127,16 +118,24 @@ def power_rows(
     """
     rows = []
     for p in power:
-        full = f"{p.effect}.{p.parameter}"
-        name, unit = shown(law, (p.effect,), said)[full]
-        name = name.removeprefix(f"{p.effect}.")
+        unit = units_of(law, (p.effect,), said)[f"{p.effect}.{p.parameter}"]
         share = "" if p.share_80 is None or p.always else f"{100.0 * p.share_80:.2g} %"
-        found = "never" if p.found_80 is None else f"{name} {number(p.found_80)} {unit}".strip()
+        found = (
+            "never"
+            if p.detectable_80 is None
+            else f"{p.parameter} {number(p.detectable_80)} {unit}".strip()
+        )
         found = "any" if p.always else found
-        alone = "" if p.found_80 is None else "never" if p.alone_80 is None else number(p.alone_80)
-        if p.found_80 is not None and alone == number(p.found_80):
+        alone = (
+            ""
+            if p.detectable_80 is None
+            else "never"
+            if p.distinguishable_80 is None
+            else number(p.distinguishable_80)
+        )
+        if p.detectable_80 is not None and alone == number(p.detectable_80):
             alone = "same"
-        rows.append((p.effect, found, share, alone, ", ".join(p.like[:MOST_RUNS_NAMED])))
+        rows.append((p.effect, found, share, alone, ", ".join(p.confounded_with[:MOST_RUNS_NAMED])))
     return rows
 
 
@@ -146,7 +145,7 @@ def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
         (
             tried.law,
             str(tried.parameters),
-            number(tried.left_out_rms_n),
+            number(tried.held_out_rms),
             "taken" if i == 0 else "predicts as well" if tried.tied else "predicts worse",
         )
         for i, tried in enumerate(diagnosis.laws)

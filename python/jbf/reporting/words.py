@@ -43,30 +43,30 @@ def law_and_effects(model: Model) -> str:
 UNKNOWN = "not known"
 
 
-def noise_words(noise_n: float, unit: str) -> str:
+def noise_words(noise_rms: float, unit: str) -> str:
     """Format a noise floor with its unit; `not known` if it is zero."""
-    return f"{number(noise_n)} {unit}" if noise_n > 0.0 else UNKNOWN
+    return f"{number(noise_rms)} {unit}" if noise_rms > 0.0 else UNKNOWN
 
 
-def times(error_n: float, noise_n: float) -> str:
+def times(error_n: float, noise_rms: float) -> str:
     """Format an error as a multiple of the noise: `1.29 times`."""
-    return f"{error_n / noise_n:.2f} times" if noise_n > 0.0 else "above"
+    return f"{error_n / noise_rms:.2f} times" if noise_rms > 0.0 else "above"
 
 
-def against_noise(error_n: float, noise_n: float, unit: str = "") -> str:
+def against_noise(error_n: float, noise_rms: float, unit: str = "") -> str:
     """Format an error as a multiple of the noise: `1.29 times the noise of 0.5 N`.
 
     Without a unit, the size of the noise is omitted.
     """
-    if not noise_n > 0.0:
+    if not noise_rms > 0.0:
         return f"where the noise is {UNKNOWN}"
-    size = f" of {number(noise_n)} {unit}" if unit else ""
-    return f"{times(error_n, noise_n)} the noise{size}"
+    size = f" of {number(noise_rms)} {unit}" if unit else ""
+    return f"{times(error_n, noise_rms)} the noise{size}"
 
 
 def comparison_sentence(comparison: Comparison) -> str:
     """State the RMS error of a model, and its ratio to the noise."""
-    rms, noise = comparison.rms_n, comparison.noise_n
+    rms, noise = comparison.rms, comparison.noise_rms
     unit = comparison.model.rig.quantities.force
     if not noise > 0.0:
         return f"RMS {number(rms)} {unit}, {against_noise(rms, noise)}"
@@ -147,11 +147,11 @@ def _law_sentence(diagnosis: Diagnosis) -> str:
     other = diagnosis.simpler_law
     if other is None:
         return ""
-    here, unit = diagnosis.steps[-1].holdout_rms_n, diagnosis.model.rig.quantities.force
+    here, unit = diagnosis.steps[-1].held_out_rms, diagnosis.model.rig.quantities.force
     return (
         f" Another law may be the right one: {other.law}, which needs no other friction beside it, "
         f"predicts runs left out to within "
-        f"{number(other.left_out_rms_n)} {unit}, {diagnosis.model.law} with all of this to "
+        f"{number(other.held_out_rms)} {unit}, {diagnosis.model.law} with all of this to "
         f"{number(here)} {unit}; --law auto compares them all."
     )
 
@@ -165,10 +165,10 @@ def _weighed(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
 def _conclusion(diagnosis: Diagnosis, place: str) -> str:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     unit = diagnosis.model.rig.quantities.force
-    held_out_n = last.holdout_rms_n
-    reached = f"{number(held_out_n)} {unit}, {against_noise(held_out_n, last.noise_n, unit)}"
+    held_out_n = last.held_out_rms
+    reached = f"{number(held_out_n)} {unit}, {against_noise(held_out_n, last.noise_rms, unit)}"
     added = listed(diagnosis.effects)
-    fall = f"the held-out error falls from {number(first.holdout_rms_n)} {unit} to {reached}"
+    fall = f"the held-out error falls from {number(first.held_out_rms)} {unit} to {reached}"
     if diagnosis.verdict == "adequate":
         law = f"the bare {diagnosis.model.law} law"
         if diagnosis.machine:
@@ -189,9 +189,8 @@ def _conclusion(diagnosis: Diagnosis, place: str) -> str:
             f"Something is missing, and these runs cannot tell which: {ties}. "
             f"With {added}, {fall}; the alternatives do as well."
         )
-    remains = (
-        f"remains that no effect in the catalogue explains{_worst(diagnosis.unexplained, place)}"
-    )
+    worst = _worst(diagnosis.residual_structure, place)
+    remains = f"remains that no effect in the catalogue explains{worst}"
     if diagnosis.effects:
         return (
             f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}. "
@@ -250,7 +249,7 @@ def extrapolation_sentences(diagnosis: Diagnosis) -> list[str]:
     unit = diagnosis.model.rig.quantities.force
     return [
         f"{e.run} exceeds the range of the other runs ({e.where}). A fit to the others predicts it "
-        f"with an RMS error of {number(e.rms_n)} {unit} (extrapolation). The held-out error uses "
+        f"with an RMS error of {number(e.rms)} {unit} (extrapolation). The held-out error uses "
         "alternate parts of this run"
         for e in diagnosis.steps[-1].extrapolations
     ]

@@ -1,4 +1,4 @@
-"""Convert quantities with a unit in TOML to the unit at the end of their key."""
+"""Quantities with a unit, in TOML and as values of options."""
 
 from __future__ import annotations
 
@@ -52,3 +52,45 @@ def _converted(key: str, value: object, prefix: str) -> object:
             mend=f"write a number of {wanted.text}, or one with its unit",
         )
     return float(unit.converted(np.array([float(match["number"])]), wanted)[0])
+
+
+def number_in(unit: str, text: str, option: str) -> float:
+    """Convert the value of an option, with or without a unit, to a number in a unit.
+
+    Parameters
+    ----------
+    unit
+        The unit of the rig: of a plain number, and of the result.
+    text
+        Value of the option, such as ``"0.2"`` or ``"12 deg/s"``.
+    option
+        Name of the option in an error.
+
+    Raises
+    ------
+    InputError
+        The text is not a number, or its unit is unknown or of other dimensions.
+    """
+    try:
+        return float(text)
+    except ValueError:
+        match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    try:
+        if match is None:
+            raise ValueError
+        return _in_unit(float(match["number"]), match["unit"], unit)
+    except ValueError:
+        raise InputError(
+            file=option,
+            problem=f"{text!r} is not a quantity in {unit}",
+            mend=f"write a number in {unit}, or a number with its unit",
+        ) from None
+
+
+def _in_unit(number: float, unit: str, wanted: str) -> float:
+    if unit == wanted:
+        return number
+    given, to = parse_unit(unit), parse_unit(wanted)
+    if given is None or to is None or given.dimensions != to.dimensions:
+        raise ValueError
+    return float(given.converted(np.array([number]), to)[0])

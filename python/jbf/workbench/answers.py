@@ -19,7 +19,7 @@ from jbf.diagnosis.power import Power
 from jbf.errors import JbfError
 from jbf.estimation.fit import Fit
 from jbf.models.model import Model
-from jbf.models.parameter_units import shown
+from jbf.models.parameter_units import units_of
 from jbf.models.parameter_value import ParameterValue
 from jbf.reporting.tables import power_rows
 from jbf.reporting.words import verdict_sentence
@@ -34,10 +34,10 @@ def of_model(comparison: Comparison) -> Answer:
         "law": model.law,
         "effects": list(model.effects),
         "model": model.to_toml(),
-        "rms_n": comparison.rms_n,
-        "holdout_rms_n": None,
-        "noise_n": comparison.noise_n,
-        "runs": [{"name": r.name, "rms_n": r.rms_n} for r in comparison.runs],
+        "rms": comparison.rms,
+        "held_out_rms": None,
+        "noise_rms": comparison.noise_rms,
+        "runs": [{"name": r.name, "rms": r.rms} for r in comparison.runs],
         "failures": failure_marks(comparison),
         "findings": [f.to_dict() for f in comparison.findings],
         "parameters": _parameters(model, model.parameters),
@@ -65,7 +65,7 @@ def _steady_curve(comparison: Comparison) -> Answer | None:
     None if the law has no steady curve.
     """
     model = comparison.model
-    motions = [p.motion.velocity_m_s for p in comparison.campaign.prepared]
+    motions = [p.motion.velocity for p in comparison.campaign.prepared]
     most = max(float(np.nanmax(np.abs(v))) for v in motions)
     speeds = most * np.geomspace(1e-4, 1.0, 120)
     try:
@@ -76,12 +76,9 @@ def _steady_curve(comparison: Comparison) -> Answer | None:
 
 
 def _parameters(model: Model, values: Mapping[str, ParameterValue]) -> Answer:
-    """Return each parameter with its displayed name and unit."""
-    seen = shown(model.law, model.effects, model.rig.quantities)
-    return {
-        name: {**p.to_dict(), "shown": seen[name][0], "unit": seen[name][1]}
-        for name, p in values.items()
-    }
+    """Return each parameter with its unit."""
+    units = units_of(model.law, model.effects, model.rig.quantities)
+    return {name: {**p.to_dict(), "unit": units[name]} for name, p in values.items()}
 
 
 def of_fit(fit: Fit) -> Answer:
@@ -96,7 +93,7 @@ def of_fit(fit: Fit) -> Answer:
 
 def of_step(step: Step) -> Answer:
     return {
-        "holdout_rms_n": step.holdout_rms_n if math.isfinite(step.holdout_rms_n) else None,
+        "held_out_rms": step.held_out_rms if math.isfinite(step.held_out_rms) else None,
         "trials": [t.to_dict() for t in step.trials],
     }
 
@@ -121,8 +118,8 @@ def of_diagnosis(diagnosis: Diagnosis) -> Answer:
         "next_run": None if next_run is None else next_run.run.to_csv(),
         **{
             key: told[key]
-            for key in ("verdict", "effects", "alternatives", "weights", "steps", "unexplained",
-                        "next_experiment", "not_tried", "elapsed_s")
+            for key in ("verdict", "effects", "alternatives", "weights", "steps",
+                        "residual_structure", "next_experiment", "not_tried", "elapsed_s")
         },
     }  # fmt: skip
 
@@ -139,6 +136,6 @@ def kept_records(comparison: Comparison, folder: Path) -> Answer:
     for number, (p, predicted, counted) in enumerate(rows):
         np.save(
             folder / f"{number}.npy",
-            np.vstack([p.run.time_s, p.motion.velocity_m_s, p.friction_n, predicted, counted]),
+            np.vstack([p.run.time_s, p.motion.velocity, p.friction, predicted, counted]),
         )
     return {"record_names": [p.run.name for p in comparison.campaign.prepared]}

@@ -51,12 +51,12 @@ class Density:
 @lru_cache(maxsize=8)
 def density(runs: tuple[Seen, ...], size: Size) -> Density:
     """Compute the density of runs with at most the given number of columns and rows."""
-    measured = {run: run.friction_n for run in runs if run.friction_n is not None}
+    measured = {run: run.friction for run in runs if run.friction is not None}
     models = [run.model_n for run in measured if run.model_n is not None]
-    speeds = [run.velocity_m_s for run in measured]
+    speeds = [run.velocity for run in measured]
     fine = pixels_for(sum(map(len, speeds)), size)
     frame = Frame.around(speeds, [*measured.values(), *models], *fine)
-    places = {run: frame.places(run.velocity_m_s, force) for run, force in measured.items()}
+    places = {run: frame.places(run.velocity, force) for run, force in measured.items()}
     model = None
     if models and len(models) == len(measured):
         parts = zip(speeds, models, strict=True)

@@ -69,7 +69,7 @@ class Models:
             node = self.nodes[at]
             line.append(node)
             at = node["parent"]
-        keys = ("id", "words", "effects", "rms_n", "holdout_rms_n", "noise_n")
+        keys = ("id", "words", "effects", "rms", "held_out_rms", "noise_rms")
         return [{key: node.get(key) for key in keys} for node in reversed(line)]
 
     def told(self) -> dict[str, Any]:

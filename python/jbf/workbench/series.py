@@ -25,23 +25,23 @@ class Seen:
     """Data of one run, compared by identity; `model_n` and `counted` exist only with a model."""
 
     time_s: Array
-    velocity_m_s: Array
-    friction_n: Array | None
+    velocity: Array
+    friction: Array | None
     model_n: Array | None = None
     counted: Array | None = None
 
     @cached_property
     def residual_n(self) -> Array | None:
         """Record minus prediction, N; NaN where the sample does not count."""
-        if self.model_n is None or self.friction_n is None or self.counted is None:
+        if self.model_n is None or self.friction is None or self.counted is None:
             return None
-        return np.where(self.counted > 0, self.friction_n - self.model_n, np.nan)
+        return np.where(self.counted > 0, self.friction - self.model_n, np.nan)
 
     def columns(self) -> dict[str, Array]:
         """Return the available columns by name."""
         found: Mapping[str, Array | None] = {
-            "velocity_m_s": self.velocity_m_s,
-            "friction_n": self.friction_n,
+            "velocity_m_s": self.velocity,
+            "friction_n": self.friction,
             "model_n": self.model_n,
             "residual_n": self.residual_n,
         }
@@ -51,11 +51,11 @@ class Seen:
 @lru_cache(maxsize=512)
 def as_read(run: Run) -> Seen:
     """Return the data of a run as in its file."""
-    speed = run.velocity_m_s
+    speed = run.velocity
     if not np.any(np.isfinite(speed)):
         path = run.position_m if run.position_m is not None else run.angle_rad
         speed = np.zeros(len(run)) if path is None else np.gradient(path, run.time_s)
-    return Seen(run.time_s, speed, run.friction_n)
+    return Seen(run.time_s, speed, run.friction)
 
 
 @lru_cache(maxsize=512)

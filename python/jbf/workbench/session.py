@@ -195,8 +195,8 @@ class Session:
         if ending == "done":
             with self.lock:
                 node.update(answer)
-            noise = f"the noise is {written(node['noise_n'])} {unit}"
-            self.say("done", f"{node['words']}: RMS {written(node['rms_n'])} {unit}; {noise}")
+            noise = f"the noise is {written(node['noise_rms'])} {unit}"
+            self.say("done", f"{node['words']}: RMS {written(node['rms'])} {unit}; {noise}")
         elif ending == "stopped":
             with self.lock:
                 node["trials"] = []

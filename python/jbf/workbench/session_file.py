@@ -84,6 +84,6 @@ def load(session: Session) -> bool:
 
 def _node(node: dict[str, Any]) -> dict[str, Any]:
     """Check that a model's entry has all keys that the page requires, and return it unchanged."""
-    for key in ("id", "words", "law", "effects", "model", "rms_n"):
+    for key in ("id", "words", "law", "effects", "model", "rms"):
         node[key]
     return node

@@ -87,9 +87,9 @@ def masks_of(
         ends = zip(selection["box"], (-np.inf, np.inf, -np.inf, np.inf), strict=True)
         left, right, low, high = (open_ if end is None else float(end) for end, open_ in ends)
         for name, run in runs.items():
-            if run.friction_n is not None and only in (None, name):
+            if run.friction is not None and only in (None, name):
                 box = (left, right, low, high)
-                found[name] = within(run.velocity_m_s, run.friction_n, box)
+                found[name] = within(run.velocity, run.friction, box)
     elif only in found:
         time = runs[only].time_s
         first, last = sorted((float(selection["from_s"]), float(selection["to_s"])))
@@ -136,7 +136,7 @@ def brushed(
         chosen = np.flatnonzero(masks[name])
         if not len(chosen):
             continue
-        speed = run.velocity_m_s[chosen]
+        speed = run.velocity[chosen]
         ends += [float(np.nanmin(speed)), float(np.nanmax(speed))]
         cells += [(row, int(column)) for column in np.unique(_column(speed, edges))]
         residual = run.residual_n
@@ -146,12 +146,12 @@ def brushed(
         stretches = [
             (float(run.time_s[a]), float(run.time_s[b - 1])) for a, b in ranges_of(masks[name])
         ]
-        by_run[name] = {"samples": len(chosen), "rms_n": _rms(there), "stretches_s": stretches}
+        by_run[name] = {"samples": len(chosen), "rms": _rms(there), "stretches_s": stretches}
     there = np.concatenate(residuals) if residuals else np.empty(0)
     return {
         "samples": sum(one["samples"] for one in by_run.values()),
         "by_run": by_run,
-        "rms_n": _rms(there),
+        "rms": _rms(there),
         "mean_n": float(np.mean(there)) if len(there) else None,
         "speeds_m_s": [min(ends), max(ends)] if ends else None,
         "cells": cells,
@@ -171,7 +171,7 @@ def speed_edges(runs: tuple[Seen, ...]) -> Array:
 
     They are closer near standstill, where friction changes most.
     """
-    most = max((float(np.nanmax(np.abs(s.velocity_m_s))) for s in runs), default=0.0) or 1.0
+    most = max((float(np.nanmax(np.abs(s.velocity))) for s in runs), default=0.0) or 1.0
     half = most * np.linspace(0.0, 1.0, MAP_SPEEDS // 2 + 1) ** 2
     return np.concatenate([-half[:0:-1], half])
 
@@ -194,7 +194,7 @@ def map_of_runs(session: Session, number: int) -> dict[str, Any]:
             rows.append([None] * (len(edges) - 1))
             continue
         ok = np.isfinite(residual)
-        place = _column(run.velocity_m_s[ok], edges)
+        place = _column(run.velocity[ok], edges)
         counts = np.bincount(place, minlength=len(edges) - 1)
         sums = np.bincount(place, weights=residual[ok], minlength=len(edges) - 1)
         rows.append(listed(np.where(counts > 0, sums / np.maximum(counts, 1), np.nan)))

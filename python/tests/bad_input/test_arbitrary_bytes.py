@@ -94,7 +94,7 @@ def check_map(folder: Path, data: bytes) -> None:
     if value_or_one_line(lambda: read_map(folder / "x.toml")) is not None:
         imported = value_or_one_line(lambda: import_files(folder / "a.csv", folder / "x.toml"))
         if isinstance(imported, Import):
-            assert all(np.isfinite(run.friction_n).all() for run in imported.runs)
+            assert all(np.isfinite(run.friction).all() for run in imported.runs)
 
 
 def check_recording(folder: Path, data: bytes) -> None:

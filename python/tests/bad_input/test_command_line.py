@@ -34,15 +34,18 @@ REFUSED = {
     "fix nan": (f"{FIT} --fix f_m=nan", "--fix f_m=nan: is out of range"),
     "start without a value": (f"{FIT} --start f_m", "--start f_m: has no value; write NAME=VALUE"),
     "fix twice": (f"{FIT} --fix f_m=0.2 --fix f_m=0.3", "f_m is given twice; give it once"),
-    "fix of another effect": (f"{FIT} --fix coulomb_drag.F_d_n=1", "there is no parameter"),
-    "share 0": (f"{DIAG} --false-alarms 0", "--false-alarms: 0 is no share; choose from"),
-    "size -1": (f"{DIAG} --indifference-n -1", "--indifference-n: -1 is no size"),
-    "loads nan": (f"{DIAG} --loads-n 5 nan", "the limit load_n = nan; must be above zero"),
-    "load limits reversed": (f"{DIAG} --loads-n 9 5", "give the smaller load first"),
-    "speed 1e300": (f"{DIAG} --max-velocity-m-s 1e300", "velocity_m_s = 1e+300 is beyond"),
+    "fix of another effect": (f"{FIT} --fix coulomb_drag.F_d=1", "there is no parameter"),
+    "share 0": (
+        f"{DIAG} --false-alarm-rate 0",
+        "--false-alarm-rate: 0 is not a probability; choose",
+    ),
+    "size -1": (f"{DIAG} --min-effect -1", "--min-effect: -1 is negative"),
+    "loads nan": (f"{DIAG} --loads 5 nan", "the limit load_n = nan; must be above zero"),
+    "load limits reversed": (f"{DIAG} --loads 9 5", "give the smaller load first"),
+    "speed 1e300": (f"{DIAG} --max-velocity 1e300", "velocity = 1e+300 is beyond"),
     "above a day": (f"{DIAG} --next-duration-s 1e9", "duration_s = 1e+09 is more than a day; ask"),
-    "plan without noise": ("plan rig.toml --max-velocity-m-s 0.2", "--noise-n is missing; say how"),
-    "power with zero noise": ("power rig.toml a.csv --noise-n 0", "noise_n"),
+    "plan without noise": ("plan rig.toml --max-velocity 0.2", "--noise is missing; state"),
+    "power with zero noise": ("power rig.toml a.csv --noise 0", "noise_rms"),
     "zero jobs": ("diagnose --many many --jobs 0", "--jobs: 0 campaigns at a time; 1 or more"),
     "folder without campaigns": ("diagnose --many nowhere", "nowhere: holds no campaign"),
     "output onto the run": (f"{COMPARE} --json a.csv", "--json a.csv: is also an input"),
@@ -68,12 +71,12 @@ REFUSED = {
     "option of fit misspelt": ("fit --efects a", "--efects; did you mean --effects?"),
     "misspelt option with a value": ("control run --shceme=a", "did you mean --scheme?"),
     "misspelt completion": ("--complet bash", "did you mean --completion?"),
-    "power without noise": ("power rig.toml a.csv", "--noise-n is missing"),
+    "power without noise": ("power rig.toml a.csv", "--noise is missing"),
     "hold out no run": (f"{FIT} --hold-out x*", "--hold-out x*: fits no run; there are a"),
     "hold out every run": (f"{FIT} --hold-out a*", "fits every run"),
 }
 REFUSED_SLOWLY = {
-    "option similar to another": (f"{DIAG} --false-alarm 0.1", "did you mean --false-alarms?"),
+    "option similar to another": (f"{DIAG} --false-alarm 0.1", "did you mean --false-alarm-rate?"),
     "fix unknown": (f"{FIT} --fix fm=0.2", "--fix fm=0.2: there is no parameter"),
     "fix below the bounds": (f"{FIT} --fix f_m=-1", "--fix f_m=-1: is out of range; choose from"),
     "law of a model": ("power model.toml a.csv --law coulomb", "--law"),
@@ -137,7 +140,7 @@ def test_existing_output_is_replaced_without_temporary_files(folder: Path, capfd
     words = ["compare", "model.toml", "a.csv", "--json", "out.json"]
     accepted(words, capfd)
     accepted([*words, "--report", "out.html"], capfd)
-    assert json.loads((folder / "out.json").read_text())["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
+    assert json.loads((folder / "out.json").read_text())["rms"] == pytest.approx(RMS_N, rel=5e-3)
     assert "</html>" in (folder / "out.html").read_text()
     assert [p.name for p in folder.iterdir() if p.name.startswith(".")] == []
 

@@ -99,7 +99,7 @@ def test_invalid_csv_is_refused_with_file_and_cause(
     assert refused(["compare", "model.toml", "bad.csv"], fragment, capfd).startswith("jbf: bad.csv")
 
 
-@pytest.mark.parametrize(("content", "rms_n"), ACCEPTED.values(), ids=ACCEPTED)
-def test_csv_in_unusual_notation_gives_its_rms(content: Text, rms_n: float, capfd: Capture) -> None:
+@pytest.mark.parametrize(("content", "rms"), ACCEPTED.values(), ids=ACCEPTED)
+def test_csv_in_unusual_notation_gives_its_rms(content: Text, rms: float, capfd: Capture) -> None:
     write(content, "bad.csv")
-    assert compared("bad.csv", capfd)["rms_n"] == pytest.approx(rms_n, rel=5e-3)
+    assert compared("bad.csv", capfd)["rms"] == pytest.approx(rms, rel=5e-3)

@@ -137,7 +137,7 @@ def test_run_is_read_from_a_named_pipe_with_a_writer(capfd: Capture) -> None:
     os.mkfifo("pipe.csv")
     writer = threading.Thread(target=lambda: Path("pipe.csv").write_text(csv_text()))
     writer.start()
-    assert compared("pipe.csv", capfd)["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
+    assert compared("pipe.csv", capfd)["rms"] == pytest.approx(RMS_N, rel=5e-3)
     writer.join()
 
 
@@ -155,7 +155,7 @@ UNUSUAL_NAMES = {
 @pytest.mark.parametrize("file", UNUSUAL_NAMES.values(), ids=UNUSUAL_NAMES)
 def test_unusual_file_name_is_printed_without_escapes(file: str, capfd: Capture) -> None:
     Path(file).write_text(csv_text())
-    assert compared(file, capfd)["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
+    assert compared(file, capfd)["rms"] == pytest.approx(RMS_N, rel=5e-3)
     text = accepted(["compare", "model.toml", file], capfd)
     assert "\x1b" not in text
     Path(file).write_text("time_s\n1\n")

@@ -7,7 +7,7 @@ import pytest
 from input_checks import MODEL, RMS_N, Capture, Text, compared, refused, write
 from jbf.models.catalogue import parameters_of
 
-F_C = "F_c_n = {value = 5.0, stderr = 0.1}"
+F_C = "F_c = {value = 5.0, stderr = 0.1}"
 WITH_OFFSET = MODEL.replace("effects = []", 'effects = ["sensor_offset"]')
 
 
@@ -17,7 +17,7 @@ def model(old: str, new: str) -> str:
 
 
 def value(text: str) -> str:
-    return model(F_C, f"F_c_n = {text}")
+    return model(F_C, f"F_c = {text}")
 
 
 REFUSED: dict[str, tuple[Text, str]] = {
@@ -26,10 +26,10 @@ REFUSED: dict[str, tuple[Text, str]] = {
     "effect of a bearing": (model("[]", '["film_memory"]'), "film_memory"),
     "section unknown": (MODEL + "[colour]\na = 1\n", "key colour: is not known"),
     "parameter of another law": (MODEL + "gamma = 3.0\n", "key parameters.gamma: is not known"),
-    "true": (value("true"), "key parameters.F_c_n.value: a bool is not a number"),
-    "inf": (value("inf"), "key parameters.F_c_n"),
-    "1e300": (value("1e300"), "key parameters.F_c_n"),
-    "a long integer": (value("9" * 400), "key parameters.F_c_n.value: is too large"),
+    "true": (value("true"), "key parameters.F_c.value: a bool is not a number"),
+    "inf": (value("inf"), "key parameters.F_c"),
+    "1e300": (value("1e300"), "key parameters.F_c"),
+    "a long integer": (value("9" * 400), "key parameters.F_c.value: is too large"),
     "held error": (value("{value = 5.0, stderr = 1, held = true}"), "what is held has no error"),
     "rig a text": (model("[par", 'rig = "rig.toml"\n[par'), "key rig: is not a table"),
     "a bearing's law": (model('"coulomb"', '"journal"'), "parameters."),
@@ -60,14 +60,14 @@ def test_invalid_model_is_refused_with_file_and_cause(
 @pytest.mark.parametrize("name", ACCEPTED)
 def test_model_file_in_unusual_notation_gives_the_same_rms(name: str, capfd: Capture) -> None:
     write(ACCEPTED[name])
-    assert compared("a.csv", capfd, "bad.toml")["rms_n"] == pytest.approx(RMS_N, rel=5e-3)
+    assert compared("a.csv", capfd, "bad.toml")["rms"] == pytest.approx(RMS_N, rel=5e-3)
 
 
 def test_parameter_missing_in_a_model_file_has_its_starting_value(capfd: Capture) -> None:
     write(model(F_C + "\n", ""))
-    start_n = parameters_of("coulomb", ())["F_c_n"].starts[0]
-    expected_rms_n = math.hypot(start_n - 5.0, RMS_N)
-    assert compared("a.csv", capfd, "bad.toml")["rms_n"] == pytest.approx(expected_rms_n, rel=5e-3)
+    start_n = parameters_of("coulomb", ())["F_c"].starts[0]
+    expected_rms = math.hypot(start_n - 5.0, RMS_N)
+    assert compared("a.csv", capfd, "bad.toml")["rms"] == pytest.approx(expected_rms, rel=5e-3)
 
 
 def test_time_column_with_a_unit_of_speed_is_refused(capfd: Capture) -> None:

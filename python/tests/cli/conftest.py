@@ -15,7 +15,7 @@ def slide(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with rig.toml and four runs with Coulomb and viscous friction and a small mass."""
     folder = tmp_path_factory.mktemp("campaign") / "slide"
     folder.mkdir()
-    for run in four_runs(lambda t, v, a: coulomb(t, v, a) + MASS_KG * a, noise_n=NOISE_N):
+    for run in four_runs(lambda t, v, a: coulomb(t, v, a) + MASS_KG * a, noise_rms=NOISE_N):
         run.write_csv(folder / f"{run.name}.csv")
     (folder / "rig.toml").write_text('[drive]\nmotion = "linear"\nfriction = "force"\n')
     return folder

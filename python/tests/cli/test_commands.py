@@ -42,7 +42,7 @@ def test_effects_command_prints_catalogue_or_parameters_of_one_effect(capsys: Ca
     assert main(["effects"]) == 0
     assert "coulomb_drag" in capsys.readouterr().out
     assert main(["effects", "coulomb_drag"]) == 0
-    assert "F_d_n" in capsys.readouterr().out
+    assert "F_d" in capsys.readouterr().out
 
 
 def test_effects_command_lists_effects_that_a_law_excludes_separately(capsys: Capture) -> None:
@@ -71,7 +71,7 @@ def test_fit_command_writes_model_with_the_hidden_effect(campaign: Path, capsys:
     printed = capsys.readouterr()
     assert "[[Parameters]]" in printed.out
     assert printed.err == ""
-    drag = jbf.Model.load(out).parameters["coulomb_drag.F_d_n"]
+    drag = jbf.Model.load(out).parameters["coulomb_drag.F_d"]
     assert drag.stderr is not None
     assert abs(drag.value - DRAG_N) < 4.0 * drag.stderr
 
@@ -83,7 +83,7 @@ def test_parameters_given_with_the_fix_option_keep_their_values(campaign: Path) 
     assert main([*command, "--out", str(out)]) == 0
     parameters = jbf.Model.load(out).parameters
     assert parameters["f_m"].value == 0.25
-    assert parameters["coulomb_drag.F_d_n"].value == 1.0
+    assert parameters["coulomb_drag.F_d"].value == 1.0
 
 
 def test_compare_command_writes_json_and_page(model: Path, campaign: Path, capsys: Capture) -> None:
@@ -94,7 +94,7 @@ def test_compare_command_writes_json_and_page(model: Path, campaign: Path, capsy
     assert printed.out.startswith("RMS 0.30")
     assert printed.err == ""
     data = json.loads(result.read_text())
-    assert data["rms_n"] == pytest.approx(NOISE_N, abs=0.02)
+    assert data["rms"] == pytest.approx(NOISE_N, abs=0.02)
     assert data["failures"] == []
     assert [run["run"] for run in data["runs"]] == ["sine_w0.5", "sine_w2.0", "stopgo"]
     assert page.read_text().startswith("<!doctype html>")
@@ -102,7 +102,7 @@ def test_compare_command_writes_json_and_page(model: Path, campaign: Path, capsy
 
 def test_json_on_stdout_replaces_the_report(model: Path, campaign: Path, capsys: Capture) -> None:
     assert main(["compare", str(model), str(campaign / "runs"), "--json", "-"]) == 0
-    assert "rms_n" in json.loads(capsys.readouterr().out)
+    assert "rms" in json.loads(capsys.readouterr().out)
 
 
 def test_predict_command_accepts_motion_without_friction(
@@ -110,7 +110,7 @@ def test_predict_command_accepts_motion_without_friction(
 ) -> None:
     source = runs[0]
     motion, out = campaign / "motion.csv", campaign / "p.csv"
-    replace(source, friction_n=None).write_csv(motion)
+    replace(source, friction=None).write_csv(motion)
     assert main(["predict", str(model), str(motion), "--out", str(out)]) == 0
     assert out.read_text().startswith("time_s,friction_n\n")
     table = np.loadtxt(out, delimiter=",", skiprows=1)

@@ -31,13 +31,13 @@ def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys
     assert printed.out.startswith("Verdict: adequate")
     assert printed.err == ""
     assert result["verdict"] == "adequate"
-    assert (result["machine"], result["effects"]) == (["inertia_leak"], [])
+    assert (result["machine"], result["effects"]) == (["inertia"], [])
     assert set(result) >= {"alternatives", "failures", "unexplained", "next_experiment"}
-    assert set(result["steps"][0]) >= {"effects", "rms_n", "holdout_rms_n", "noise_n"}
-    assert jbf.Model.load(model).effects == ("inertia_leak",)
+    assert set(result["steps"][0]) >= {"effects", "rms", "held_out_rms", "noise_rms"}
+    assert jbf.Model.load(model).effects == ("inertia",)
     assert "Diagnosis: adequate" in page.read_text()
     level = result["level"]
-    assert level["false_alarms"] == 0.01
+    assert level["false_alarm_rate"] == 0.01
     assert level["blocks"] > 0
     assert level["chance"] <= 0.01 / level["candidates"]
 
@@ -58,52 +58,52 @@ def test_diagnosis_beyond_the_work_limit_writes_the_partial_result_and_exits_wit
     of_kind = {"$defs": schema["$defs"], "$ref": "#/$defs/unfinished"}
     jsonschema.validate(result, of_kind)
     assert "no answer from these runs" in result["unfinished"]
-    assert result["fit"]["parameters"]["F_c_n"]["value"] == pytest.approx(5.0, rel=0.05)
+    assert result["fit"]["parameters"]["F_c"]["value"] == pytest.approx(5.0, rel=0.05)
     assert jbf.Model.load(model).law == "coulomb"
     assert "F_c" in page.read_text()
 
 
 @pytest.mark.extended
 def test_smaller_false_alarm_rate_raises_the_threshold(slide: Path, tmp_path: Path) -> None:
-    strict = diagnosed(slide, tmp_path / "d.json", "--false-alarms", "1e-15")
+    strict = diagnosed(slide, tmp_path / "d.json", "--false-alarm-rate", "1e-15")
     assert strict["effects"] == []
     assert strict["level"]["critical"] > 60.0
 
 
 @pytest.mark.extended
 def test_clean_recording_option_removes_the_artefact_margin(slide: Path, tmp_path: Path) -> None:
-    clean = diagnosed(slide, tmp_path / "d.json", "--clean-recording")
-    assert clean["effects"] == ["inertia_leak"]
-    assert clean["level"]["imperfection"] == 0.0
+    clean = diagnosed(slide, tmp_path / "d.json", "--no-artefact-margin")
+    assert clean["effects"] == ["inertia"]
+    assert clean["level"]["artefact_margin"] == 0.0
 
 
 @pytest.mark.extended
 def test_effect_below_the_minimum_effect_size_is_not_reported(slide: Path, tmp_path: Path) -> None:
-    result = diagnosed(slide, tmp_path / "d.json", "--indifference-n", "0.2")
+    result = diagnosed(slide, tmp_path / "d.json", "--min-effect", "0.2")
     assert result["effects"] == []
     assert result["level"]["worth"] > result["level"]["critical"]
 
 
-def detectable_kg(slide: Path, out: Path, noise_n: float, *options: str) -> float:
+def detectable_kg(slide: Path, out: Path, noise_rms: float, *options: str) -> float:
     """Mass that runs of the slide reveal with a power of 80 %."""
     command = ["power", str(slide / "rig.toml"), *map(str, slide.glob("*.csv")), *LAW]
-    assert main([*command, "--noise-n", str(noise_n), "--json", str(out), *options]) == 0
+    assert main([*command, "--noise", str(noise_rms), "--json", str(out), *options]) == 0
     rows = {row["effect"]: row for row in json.loads(out.read_text())["power"]}
-    assert 0.0 < rows["inertia_leak"]["found_80"] < rows["inertia_leak"]["found_95"]
-    return float(rows["inertia_leak"]["found_80"])
+    assert 0.0 < rows["inertia"]["detectable_80"] < rows["inertia"]["detectable_95"]
+    return float(rows["inertia"]["detectable_80"])
 
 
 def test_detectable_size_grows_with_noise_and_threshold(slide: Path, tmp_path: Path) -> None:
     out = tmp_path / "power.json"
     usual = detectable_kg(slide, out, 0.1)
     assert detectable_kg(slide, out, 0.05) == pytest.approx(0.5 * usual, rel=0.15)
-    assert detectable_kg(slide, out, 0.1, "--false-alarms", "1e-9") > 1.3 * usual
+    assert detectable_kg(slide, out, 0.1, "--false-alarm-rate", "1e-9") > 1.3 * usual
 
 
 @pytest.mark.extended
 def test_power_uses_the_noise_of_a_fitted_model_by_default(slide: Path, tmp_path: Path) -> None:
     model, out = tmp_path / "model.toml", tmp_path / "power.json"
-    fit = ["fit", str(slide), *LAW, "--effects", "inertia_leak", "--out", str(model)]
+    fit = ["fit", str(slide), *LAW, "--effects", "inertia", "--out", str(model)]
     assert main(fit) == 0
 
     def result(*options: str) -> Any:
@@ -111,9 +111,9 @@ def test_power_uses_the_noise_of_a_fitted_model_by_default(slide: Path, tmp_path
         return json.loads(out.read_text())
 
     fitted = result()
-    assert fitted["noise_n"] == pytest.approx(NOISE_N, rel=0.05)
-    assert "inertia_leak" not in [row["effect"] for row in fitted["power"]]
-    assert result("--noise-n", "0.5")["noise_n"] == 0.5
+    assert fitted["noise_rms"] == pytest.approx(NOISE_N, rel=0.05)
+    assert "inertia" not in [row["effect"] for row in fitted["power"]]
+    assert result("--noise", "0.5")["noise_rms"] == 0.5
 
 
 @pytest.fixture(scope="module")
@@ -135,8 +135,8 @@ def test_fit_prints_rms_of_held_out_runs(odd_run: Path, tmp_path: Path, capsys: 
     out, rig = tmp_path / "m.toml", str(odd_run / "rig.toml")
     assert main(["fit", rig, str(odd_run), *LAW, "--hold-out", "r3", "--out", str(out)]) == 0
     model = jbf.Model.load(out)
-    assert model.parameters["F_c_n"].value == pytest.approx(2.0, abs=0.02)
-    expected = jbf.compare(model, [jbf.read_run(odd_run / "r3.csv")]).rms_n
+    assert model.parameters["F_c"].value == pytest.approx(2.0, abs=0.02)
+    expected = jbf.compare(model, [jbf.read_run(odd_run / "r3.csv")]).rms
     assert expected > 20.0 * NOISE_N
     assert f"RMS {expected:.4g} N" in capsys.readouterr().out
 
@@ -146,7 +146,7 @@ def test_diagnosis_reports_the_rms_of_held_out_runs(odd_run: Path, tmp_path: Pat
     patterns = ["--hold-out", "r1", "--hold-out", "*3.csv"]
     result = diagnosed(odd_run, tmp_path / "d.json", *patterns)
     assert (result["verdict"], result["effects"]) == ("adequate", [])
-    rms_n = {run["run"]: run["rms_n"] for run in result["hold_out"]["runs"]}
-    assert set(rms_n) == {"r1", "r3"}
-    assert rms_n["r1"] == pytest.approx(NOISE_N, rel=0.1)
-    assert rms_n["r3"] > 20.0 * NOISE_N
+    rms = {run["run"]: run["rms"] for run in result["hold_out"]["runs"]}
+    assert set(rms) == {"r1", "r3"}
+    assert rms["r1"] == pytest.approx(NOISE_N, rel=0.1)
+    assert rms["r3"] > 20.0 * NOISE_N

@@ -16,7 +16,7 @@ from jbf.cli import main
 from jbf.diagnosis.one_round import one_round
 from jbf.errors import Stopped
 
-RUNS = four_runs(lambda t, v, a: coulomb(t, v, a) + 2.0 * a, noise_n=0.1)
+RUNS = four_runs(lambda t, v, a: coulomb(t, v, a) + 2.0 * a, noise_rms=0.1)
 FILE = """\
 import jbf
 import numpy as np
@@ -30,7 +30,7 @@ def stopping(time_s, b_n):
         raise KeyboardInterrupt
     return b_n * np.ones(len(time_s))
 
-zero = jbf.Parameter("b_n", "N", lower=-9.0, upper=9.0, null=0.0, starts=(1.0,))
+zero = jbf.Parameter("b", "N", lower=-9.0, upper=9.0, null=0.0, starts=(1.0,))
 jbf.register_effect(stopping, parameters=[zero])
 """
 
@@ -47,7 +47,7 @@ def register(at: int) -> dict[str, Any]:
 
 
 def fit() -> jbf.Fit:
-    return jbf.fit(Rig(), RUNS, ["inertia_leak", "stopping"], law="coulomb")
+    return jbf.fit(Rig(), RUNS, ["inertia", "stopping"], law="coulomb")
 
 
 def test_fit_interrupted_at_first_evaluation_raises_plain_keyboard_interrupt() -> None:
@@ -60,15 +60,15 @@ def test_fit_interrupted_at_first_evaluation_raises_plain_keyboard_interrupt() -
 def test_interrupted_fit_returns_the_best_parameters_so_far() -> None:
     module = register(0)
     complete = fit()
-    total, rms_n = module["calls"], []
+    total, rms = module["calls"], []
     for at in (total // 8, total // 2):
         register(at)
         with pytest.raises(Stopped) as stopped:
             fit()
         best = stopped.value.fit
         assert (best.converged, best.message) == (False, "interrupted")
-        rms_n.append(best.rms_n)
-    assert rms_n[0] >= rms_n[1] >= 0.999 * complete.rms_n
+        rms.append(best.rms)
+    assert rms[0] >= rms[1] >= 0.999 * complete.rms
 
 
 def stop_at_candidates(message: str, done: int, total: int) -> None:
@@ -83,14 +83,14 @@ def test_diagnosis_interrupted_while_trying_effects_returns_the_fitted_base_law(
     best = stopped.value.fit
     assert best.model.effects == ()
     expected = jbf.fit(Rig(), RUNS, law="coulomb")
-    assert best.rms_n == pytest.approx(expected.rms_n, rel=0.05)
+    assert best.rms == pytest.approx(expected.rms, rel=0.05)
 
 
 @pytest.mark.extended
 def test_interrupted_round_of_candidates_returns_the_model_with_its_effects() -> None:
     with pytest.raises(Stopped) as stopped:
-        one_round(Rig(), RUNS, ["inertia_leak"], law="coulomb", progress=stop_at_candidates)
-    assert stopped.value.fit.model.effects == ("inertia_leak",)
+        one_round(Rig(), RUNS, ["inertia"], law="coulomb", progress=stop_at_candidates)
+    assert stopped.value.fit.model.effects == ("inertia",)
 
 
 @pytest.fixture

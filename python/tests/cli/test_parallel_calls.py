@@ -22,7 +22,7 @@ def as_text(diagnosis: jbf.Diagnosis) -> str:
 
 @pytest.fixture(scope="module")
 def campaigns() -> Campaigns:
-    return [four_runs(coulomb, noise_n=0.1, seed=seed) for seed in range(THREADS)]
+    return [four_runs(coulomb, noise_rms=0.1, seed=seed) for seed in range(THREADS)]
 
 
 @pytest.mark.extended

@@ -47,7 +47,7 @@ def axis_of(campaign: Campaign, name: str, u_tr: float | None = U_TR_M_S) -> Bin
 
 def velocities(campaign: Campaign) -> Array:
     """Velocities of all runs in one array, m/s."""
-    return np.concatenate([p.motion.velocity_m_s for p in campaign.prepared])
+    return np.concatenate([p.motion.velocity for p in campaign.prepared])
 
 
 def places(axis: Binned) -> Array:
@@ -90,7 +90,7 @@ def test_run_axis_has_one_bin_for_each_run(axes: Axes) -> None:
 def assert_changes_at(axis: Binned, campaign: Campaign, slow: float, fast: float) -> None:
     """Check that bin 0 contains the rests, and bins 1 to 3 the speeds below, between and above."""
     for p, at in zip(campaign.prepared, axis.places, strict=True):
-        speed = np.abs(p.motion.velocity_m_s)
+        speed = np.abs(p.motion.velocity)
         ranges = 1 + (speed >= slow).astype(int) + (speed >= fast)
         assert np.array_equal(at, np.where(p.motion.resting, 0, ranges))
 
@@ -140,7 +140,7 @@ def test_acceleration_axis_separates_speeding_up_from_slowing(
     """Accelerations below 2 % of the maximum of the run count as steady motion."""
     axis = axes["acceleration"]
     for p, at in zip(campaign.prepared, axis.places, strict=True):
-        v, a = p.motion.velocity_m_s, p.motion.acceleration_m_s2
+        v, a = p.motion.velocity, p.motion.acceleration
         ignored = (np.abs(a) < 0.02 * np.max(np.abs(a))) | (v == 0.0)
         assert np.array_equal(at < 0, ignored)
         for i in np.flatnonzero(~ignored):
@@ -167,7 +167,7 @@ def test_time_axis_has_12_spans_from_the_start_of_each_run(campaign: Campaign, a
         assert axis.bins[i].span == axis.bins[i + 12].span == pytest.approx(span)
     for p, at in zip(campaign.prepared, axis.places, strict=True):
         span = np.minimum(((p.run.time_s - p.run.time_s[0]) / 59.98 * 12).astype(int), 11)
-        expected = np.where(p.motion.velocity_m_s > 0, span + 12, span)
+        expected = np.where(p.motion.velocity > 0, span + 12, span)
         # Rounding may move a sample on an edge into the neighbouring bin.
         assert np.mean(at == expected) > 0.999
 
@@ -184,7 +184,7 @@ def since_last(event: npt.NDArray[np.bool_], measure: Array) -> Array:
 def test_time_since_rest_and_path_since_reversal_match_bins(campaign: Campaign, axes: Axes) -> None:
     seen: dict[str, list[Array]] = {"time since a rest": [], "distance since a reversal": []}
     for number, p in enumerate(campaign.prepared):
-        v, time = p.motion.velocity_m_s, p.run.time_s
+        v, time = p.motion.velocity, p.run.time_s
         step = 0.5 * (np.abs(v[1:]) + np.abs(v[:-1])) * np.diff(time)
         path = np.concatenate(([0.0], np.cumsum(step)))
         sign = np.sign(v)
@@ -218,7 +218,7 @@ def test_samples_before_the_first_reversal_have_no_distance_since_a_reversal() -
     run = Run.from_arrays(time, np.where(forward, 0.1, -0.1), np.where(forward, 2.0, -2.0))
     campaign = Campaign.prepare(Rig(), [run])
     (at,) = axis_of(campaign, "distance since a reversal").places
-    reversal = int(np.flatnonzero(campaign.prepared[0].motion.velocity_m_s < 0.0)[0])
+    reversal = int(np.flatnonzero(campaign.prepared[0].motion.velocity < 0.0)[0])
     assert np.all(at[: reversal + 1] == -1)
     assert np.all(at[reversal + 1 :] >= 0)
 

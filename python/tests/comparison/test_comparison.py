@@ -24,10 +24,10 @@ def test_residual_is_record_minus_model(off_by_1_n: Comparison) -> None:
     found = off_by_1_n
     runs = found.campaign.prepared
     for residual, prediction, p in zip(found.residuals, found.predictions, runs, strict=True):
-        v = p.motion.velocity_m_s
+        v = p.motion.velocity
         assert prediction == pytest.approx(5.0 * np.sign(v) + 20.0 * v, rel=1e-4)
         assert residual == pytest.approx(np.sign(v), abs=1e-4)
-    assert found.rms_n == pytest.approx(1.0, abs=1e-4)
+    assert found.rms == pytest.approx(1.0, abs=1e-4)
 
 
 def test_rms_of_all_runs_weighs_each_run_by_its_samples() -> None:
@@ -35,25 +35,25 @@ def test_rms_of_all_runs_weighs_each_run_by_its_samples() -> None:
     runs = [one_way("long", along(1.0)), one_way("short", along(3.0), duration_s=2.0)]
     found = compare(MODEL, runs)
     assert [(r.name, r.samples) for r in found.runs] == [("long", 501), ("short", 101)]
-    assert [r.rms_n for r in found.runs] == pytest.approx([1.0, 3.0], abs=1e-5)
-    assert found.rms_n == pytest.approx(np.sqrt((501 + 909) / 602), abs=1e-5)
+    assert [r.rms for r in found.runs] == pytest.approx([1.0, 3.0], abs=1e-5)
+    assert found.rms == pytest.approx(np.sqrt((501 + 909) / 602), abs=1e-5)
 
 
 def test_comparison_json_has_errors_noise_runs_and_failures(off_by_1_n: Comparison) -> None:
     found = off_by_1_n
     content = found.to_dict()
-    assert (content["rms_n"], content["noise_n"]) == (found.rms_n, None)
+    assert (content["rms"], content["noise_rms"]) == (found.rms, None)
     # The noise floor of a force without noise is unknown.
-    assert found.noise_n == 0.0
-    runs = [{"run": r.name, "rms_n": r.rms_n, "samples": r.samples} for r in found.runs]
+    assert found.noise_rms == 0.0
+    runs = [{"run": r.name, "rms": r.rms, "samples": r.samples} for r in found.runs]
     assert content["runs"] == runs
     assert [f["axis"] for f in content["failures"]] == [f.axis for f in found.failures]
 
 
 def test_noise_floor_of_white_noise_is_its_standard_deviation() -> None:
-    found = compare(MODEL, there_and_back(coulomb, noise_n=0.2))
-    assert found.noise_n == pytest.approx(0.2, rel=0.1)
-    assert found.rms_n == pytest.approx(0.2, rel=0.1)
+    found = compare(MODEL, there_and_back(coulomb, noise_rms=0.2))
+    assert found.noise_rms == pytest.approx(0.2, rel=0.1)
+    assert found.rms == pytest.approx(0.2, rel=0.1)
     assert found.failures == ()
 
 
@@ -67,12 +67,12 @@ def test_run_without_counted_samples_has_an_rms_of_zero() -> None:
     campaign = Campaign.prepare(Rig(), there_and_back(along(1.0)))
     first, second = (np.ones(len(p.run), dtype=bool) for p in campaign.prepared)
     found = compare_prepared(MODEL, campaign.without([first, ~second]))
-    assert [(r.rms_n, r.samples) for r in found.runs] == [(0.0, 0), (pytest.approx(1.0), 501)]
-    assert found.rms_n == pytest.approx(1.0)
+    assert [(r.rms, r.samples) for r in found.runs] == [(0.0, 0), (pytest.approx(1.0), 501)]
+    assert found.rms == pytest.approx(1.0)
     half = np.arange(len(second)) < 250
     found = compare_prepared(MODEL, campaign.without([first, half]))
     assert [r.samples for r in found.runs] == [0, 251]
-    assert found.rms_n == pytest.approx(1.0)
+    assert found.rms == pytest.approx(1.0)
 
 
 def test_model_with_a_delay_excludes_samples_next_to_jumps_of_the_force() -> None:
@@ -107,7 +107,7 @@ def test_means_over_speed_lie_on_lines_of_record_and_model(off_by_1_n: Compariso
         assert one.measured_n == pytest.approx(6.0 * one.way + 20.0 * one.speed_m_s, rel=1e-4)
         assert one.modelled_n == pytest.approx(5.0 * one.way + 20.0 * one.speed_m_s, rel=1e-4)
     # 501 samples in 24 bins: 21 in each of the first and 20 in each of the last.
-    v = np.sort(off_by_1_n.campaign.prepared[0].motion.velocity_m_s)
+    v = np.sort(off_by_1_n.campaign.prepared[0].motion.velocity)
     assert found[0].speed_m_s[0] == pytest.approx(v[:21].mean())
     assert found[0].scatter_n[0] == pytest.approx(20.0 * v[:21].std(), rel=1e-4)
     assert found[0].speed_m_s[-1] == pytest.approx(v[-20:].mean())
@@ -126,7 +126,7 @@ def test_speed_bin_with_fewer_than_5_samples_is_omitted(
 
 def test_sensor_offset_is_removed_from_friction_over_speed() -> None:
     runs = there_and_back(lambda t, v, a: coulomb(t, v, a) + 2.0)
-    model = Model(Rig(), "coulomb", ["sensor_offset"], {**LAW, "sensor_offset.b_n": 2.0})
+    model = Model(Rig(), "coulomb", ["sensor_offset"], {**LAW, "sensor_offset.b": 2.0})
     for one in friction_over_speed(compare(model, runs)):
         line = 5.0 * one.way + 20.0 * one.speed_m_s
         assert one.measured_n == pytest.approx(line, rel=1e-4)

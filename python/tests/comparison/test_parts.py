@@ -16,9 +16,9 @@ from jbf.comparison.parts import (
 )
 
 Array = npt.NDArray[np.float64]
-OFFSET = {"sensor_offset.b_n": 2.0}
-DRIFT = {"sensor_drift.d_n_s": 0.5}
-HELD_STATIC = {"F_s_n": ParameterValue(5.0, None, held=True)}
+OFFSET = {"sensor_offset.b": 2.0}
+DRIFT = {"sensor_drift.d": 0.5}
+HELD_STATIC = {"F_s": ParameterValue(5.0, None, held=True)}
 
 
 def model_of(effects: list[str], **values: ParameterValue | float) -> Model:
@@ -39,13 +39,13 @@ def full(runs: list[Run]) -> Comparison:
 
 
 def test_removal_of_an_effect_preserves_law_parameters_and_held_flags() -> None:
-    held = {"F_c_n": ParameterValue(4.0, 0.25), "F_v_n_s_m": ParameterValue(9.0, None, held=True)}
-    values = {"sensor_offset.b_n": 0.5, "sensor_drift.d_n_s": 0.01}
+    held = {"F_c": ParameterValue(4.0, 0.25), "F_v": ParameterValue(9.0, None, held=True)}
+    values = {"sensor_offset.b": 0.5, "sensor_drift.d": 0.01}
     model = Model(Rig(), "coulomb", ["sensor_offset", "sensor_drift"], {**held, **values})
     reduced = without(model, ["sensor_offset"])
     assert tuple(reduced.effects) == ("sensor_drift",)
     assert reduced.law == "coulomb"
-    others = {n: p for n, p in model.parameters.items() if n != "sensor_offset.b_n"}
+    others = {n: p for n, p in model.parameters.items() if n != "sensor_offset.b"}
     assert dict(reduced.parameters) == others
     assert tuple(without(model, model.effects).effects) == ()
 
@@ -66,25 +66,25 @@ def test_effect_that_the_model_lacks_adds_no_force(full: Comparison) -> None:
 
 
 def test_inertia_adds_mass_times_acceleration(runs: list[Run]) -> None:
-    heavy = compare(model_of(["inertia_leak"], **{"inertia_leak.m_e_kg": 3.0}), runs)
-    for added, p in zip(added_by(heavy, ["inertia_leak"]), heavy.campaign.prepared, strict=True):
-        mass_force = 3.0 * p.motion.acceleration_m_s2
+    heavy = compare(model_of(["inertia"], **{"inertia.m_e": 3.0}), runs)
+    for added, p in zip(added_by(heavy, ["inertia"]), heavy.campaign.prepared, strict=True):
+        mass_force = 3.0 * p.motion.acceleration
         assert added[5:-5] == pytest.approx(mass_force[5:-5], abs=1e-3)
 
 
 def test_isolated_friction_is_the_record_minus_sensor_offset_and_drift(full: Comparison) -> None:
     assert non_friction_effects(full) == ("sensor_offset", "sensor_drift")
     for found, p in zip(friction_readings(full), full.campaign.prepared, strict=True):
-        v = p.motion.velocity_m_s
+        v = p.motion.velocity
         drift = added_by(full, ["sensor_drift"])[0]
-        assert np.ptp(found - p.friction_n + drift) == pytest.approx(0.0, abs=1e-9)
+        assert np.ptp(found - p.friction + drift) == pytest.approx(0.0, abs=1e-9)
         assert found == pytest.approx(5.0 * np.sign(v) + 20.0 * v, abs=2e-3)
 
 
 def test_isolated_friction_excludes_offset_inertia_and_drift_but_not_lag() -> None:
-    effects = ["sensor_offset", "inertia_leak", "sensor_lag", "sensor_drift"]
+    effects = ["sensor_offset", "inertia", "sensor_lag", "sensor_drift"]
     found = compare(Model(Rig(), "coulomb", effects), there_and_back(coulomb))
-    assert set(non_friction_effects(found)) == {"sensor_offset", "inertia_leak", "sensor_drift"}
+    assert set(non_friction_effects(found)) == {"sensor_offset", "inertia", "sensor_drift"}
 
 
 def residual_of_least_squares(
@@ -97,7 +97,7 @@ def residual_of_least_squares(
     return [a - w @ coefficients for a, w in zip(added, columns, strict=True)]
 
 
-@pytest.mark.parametrize("free", [("F_c_n", "F_v_n_s_m"), ("F_c_n",), ("F_v_n_s_m",)])
+@pytest.mark.parametrize("free", [("F_c", "F_v"), ("F_c",), ("F_v",)])
 def test_effect_force_excludes_the_fit_of_free_parameters(
     full: Comparison, runs: list[Run], free: tuple[str, ...]
 ) -> None:
@@ -106,8 +106,8 @@ def test_effect_force_excludes_the_fit_of_free_parameters(
     before = compare(model_of([], **held), runs)
     masks = [np.arange(501) < 400, np.arange(501) >= 250]
     before = replace(before, samples=before.samples.within(masks))
-    velocities = [p.motion.velocity_m_s for p in before.campaign.prepared]
-    derivatives = {"F_c_n": [np.sign(v) for v in velocities], "F_v_n_s_m": velocities}
+    velocities = [p.motion.velocity for p in before.campaign.prepared]
+    derivatives = {"F_c": [np.sign(v) for v in velocities], "F_v": velocities}
     columns = [np.column_stack(pair) for pair in zip(*(derivatives[n] for n in free), strict=True)]
     found = explained_residual(before, full)
     assert list(found) == ["sensor_offset", "sensor_drift"]
@@ -124,10 +124,10 @@ def test_effects_that_both_compared_models_have_get_no_share_of_the_force(full: 
 
 def test_parameter_without_influence_keeps_the_force_attributed_to_an_effect() -> None:
     """With a warm-up of size zero the force does not depend on the time constant."""
-    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.01)
-    idle = {"F_s_n": 6.0, **LAW, "warm_up.a": 0.0, "warm_up.tau_s": 30.0}
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_rms=0.01)
+    idle = {"F_s": 6.0, **LAW, "warm_up.a": 0.0, "warm_up.tau_s": 30.0}
     before = Model(Rig(), "coulomb", ["warm_up"], idle)
-    with_offset = {**idle, "sensor_offset.b_n": 0.5}
+    with_offset = {**idle, "sensor_offset.b": 0.5}
     after = Model(Rig(), "coulomb", ["warm_up", "sensor_offset"], with_offset)
     (parts,) = explained_residual(compare(before, runs), compare(after, runs)).values()
     for part in parts:

@@ -72,7 +72,7 @@ def test_shaft_below_the_breakaway_voltage_stays_at_rest_for_ten_minutes() -> No
 
 
 def test_friction_of_a_sliding_shaft_equals_the_coulomb_law_in_volts() -> None:
-    model = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 3.0})
+    model = Model(Rig(), "coulomb", parameters={"F_c": 5.0, "F_s": 5.0, "F_v": 3.0})
     r = run(model, "none", SHORT, bench=replace(QUIET, volts_per_n=0.05))
     # Friction is constant over the step that leads to the velocity.
     before, after = r.velocity_rad_s[:-1], r.velocity_rad_s[1:]
@@ -118,15 +118,15 @@ def test_thesis_model_has_given_elastic_element_and_parameters(elastic: str, eff
     values = {n: p.value for n, p in model.parameters.items()}
     assert values == {"f_m": 0.26, **FITTED, "K0": 1e6, **ELASTIC[elastic]}
     # At f_m = 0.26 the contact deflects by one encoder count before it slides.
-    stiffness = ELASTIC["contact"]["presliding.sigma_1_m"]
+    stiffness = ELASTIC["contact"]["presliding.sigma"]
     assert stiffness * 0.0127 / COUNTS_PER_RAD == pytest.approx(0.26)
 
 
 def test_core_model_has_the_parameters_of_law_effects_bearing_and_load() -> None:
-    values = {"F_c_n": 5.0, "F_s_n": 6.0, "F_v_n_s_m": 20.0, "wear_in.a": 0.5, "wear_in.s_0_m": 0.2}
-    content = core_model(Model(Rig(), "coulomb", ["wear_in"], values))
+    values = {"F_c": 5.0, "F_s": 6.0, "F_v": 20.0, "running_in.a": 0.5, "running_in.s_0": 0.2}
+    content = core_model(Model(Rig(), "coulomb", ["running_in"], values))
     assert content["parameters"] == [5.0, 6.0, 20.0]
-    assert content["effects"] == [("wear_in", [0.5, 0.2])]
+    assert content["effects"] == [("running_in", [0.5, 0.2])]
     assert (content["bearing"], content["load_n"]) == (None, 1.0)
     bearing = core_model(thesis_model())
     assert bearing["load_n"] == THESIS_LOAD_N
@@ -135,7 +135,7 @@ def test_core_model_has_the_parameters_of_law_effects_bearing_and_load() -> None
 
 def test_user_defined_effect_in_a_control_loop_is_rejected_by_name() -> None:
     drag = Parameter("c", "N s/m", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))
-    register_effect(lambda velocity_m_s, c: c * velocity_m_s, name="my_drag", parameters=[drag])
+    register_effect(lambda velocity, c: c * velocity, name="my_drag", parameters=[drag])
     try:
         with pytest.raises(InputError, match="my_drag"):
             run(Model(Rig.thesis(), effects=["my_drag"]), "none", SHORT)

@@ -17,7 +17,7 @@ RADIUS_M = 0.0127
 
 def recorded(**columns: Any) -> Run:
     """A speed that increases by 1 rad/s each second, with additional columns."""
-    return Run.from_arrays(TIME, **{"velocity_m_s": RADIUS_M * TIME, **columns})
+    return Run.from_arrays(TIME, **{"velocity": RADIUS_M * TIME, **columns})
 
 
 def test_velocity_reference_of_a_bearing_is_the_recorded_speed_in_rad_per_second() -> None:
@@ -64,7 +64,7 @@ def test_position_reference_is_the_recorded_position_relative_to_its_start(
 
 def test_record_without_motion_or_without_the_required_position_is_rejected() -> None:
     with pytest.raises(InputError, match="does not move"):
-        follow(recorded(velocity_m_s=np.full(len(TIME), 0.1)), Rig())
+        follow(recorded(velocity=np.full(len(TIME), 0.1)), Rig())
     for rig, column in ((Rig.thesis(), "position_m"), (Rig(), "angle_rad")):
         with pytest.raises(InputError, match="no angle to follow"):
             follow(recorded(**{column: TIME}), rig, "position")

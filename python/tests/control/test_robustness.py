@@ -104,15 +104,15 @@ def test_robustness_cases_with_a_wrong_constant_differ_by_the_factor_they_name()
 
 @pytest.mark.extended
 def test_robustness_cases_exclude_model_effects_and_viscosity_without_a_film() -> None:
-    names = {case.name for case in cases(Model(Rig.thesis(), "coulomb", ["wear_in"]))}
-    assert "hidden wear_in" not in names
+    names = {case.name for case in cases(Model(Rig.thesis(), "coulomb", ["running_in"]))}
+    assert "hidden running_in" not in names
     assert "hidden coulomb_drag" not in names  # already contained in the law
     assert not any("viscosity" in name for name in names)
     assert "load doubled" in names
 
 
 EXTENDED_CASES = (
-    pytest.param(name, marks=pytest.mark.extended) for name in ("load doubled", "hidden wear_in")
+    pytest.param(name, marks=pytest.mark.extended) for name in ("load doubled", "hidden running_in")
 )
 
 

@@ -14,7 +14,7 @@ from jbf.control.schemes import Coulomb, Learning, NoCompensation, Observed, Rep
 
 POSITION, VELOCITY = TASKS["position sine"], TASKS["velocity sine"]
 SHORT = replace(VELOCITY, seconds=27.0)
-NEWTONS = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_v_n_s_m": 20.0})
+NEWTONS = Model(Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
 
 
 def extended(*values: object) -> list[Any]:
@@ -55,7 +55,7 @@ def test_observed_compensator_reduces_the_error_tenfold_on_another_drive() -> No
     assert ours < 0.1 * none
 
 
-CONSTANT = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 1e-6})
+CONSTANT = Model(Rig(), "coulomb", parameters={"F_c": 5.0, "F_s": 5.0, "F_v": 1e-6})
 """Friction of 5 N, independent of the speed."""
 TENTH_VOLT = replace(THESIS_BENCH, volts_per_n=0.1)
 

@@ -11,7 +11,7 @@ from jbf.control import TASKS, THESIS_BENCH, Bench, Settings, run, thesis_model,
 from jbf.control.bench import FITTED
 from jbf.control.tuning import friction_level_v
 
-DRY = Model(Rig(), "coulomb", parameters={"F_c_n": 5.0, "F_s_n": 5.0, "F_v_n_s_m": 20.0})
+DRY = Model(Rig(), "coulomb", parameters={"F_c": 5.0, "F_s": 5.0, "F_v": 20.0})
 VOLT = replace(THESIS_BENCH, volts_per_n=1.0 / 5.1)
 """A bench on which the friction of `DRY` at 5 mm/s corresponds to one volt."""
 
@@ -19,7 +19,7 @@ VOLT = replace(THESIS_BENCH, volts_per_n=1.0 / 5.1)
 def test_friction_level_is_the_friction_at_five_millimetres_per_second() -> None:
     assert friction_level_v(DRY, VOLT) == pytest.approx(1.0, rel=1e-3)
     assert friction_level_v(DRY, replace(VOLT, volts_per_n=1.0)) == pytest.approx(5.1, rel=1e-3)
-    stronger = Model(Rig(), "coulomb", parameters={"F_c_n": 8.0, "F_s_n": 8.0, "F_v_n_s_m": 20.0})
+    stronger = Model(Rig(), "coulomb", parameters={"F_c": 8.0, "F_s": 8.0, "F_v": 20.0})
     assert friction_level_v(stronger, VOLT) == pytest.approx(8.1 / 5.1, rel=1e-3)
 
 

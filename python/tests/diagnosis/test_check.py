@@ -17,12 +17,12 @@ from linear_campaigns import mass
 from scipy import stats
 from shared import shared
 
-RUNS = four_runs(mass(1.0), noise_n=0.1)
+RUNS = four_runs(mass(1.0), noise_rms=0.1)
 
 
 @shared
 def _model() -> Model:
-    return fit(Rig(), RUNS, ["inertia_leak"], law="coulomb").model
+    return fit(Rig(), RUNS, ["inertia"], law="coulomb").model
 
 
 @pytest.mark.parametrize("campaigns", [1, pytest.param(8, marks=pytest.mark.extended)])
@@ -32,13 +32,13 @@ def test_strong_effect_is_named_in_all_and_only_the_campaigns_that_simulate_it(
     with ThreadPoolExecutor(1) as executor:
         checked = check(_model(), RUNS, campaigns=campaigns, executor=executor)
     hidden = [answer.hidden for answer in checked.answers]
-    assert hidden == [()] * campaigns + [("inertia_leak",)] * campaigns
+    assert hidden == [()] * campaigns + [("inertia",)] * campaigns
     assert all(answer.right for answer in checked.answers)
     assert not any(answer.false for answer in checked.answers)
     rates = {rate.what: rate for rate in checked.rates}
     assert rates["nothing hidden: adequate"].count == campaigns
     assert rates["nothing hidden: a false name"].count == 0
-    assert rates["inertia_leak hidden: named, and nothing else"].count == campaigns
+    assert rates["inertia hidden: named, and nothing else"].count == campaigns
     assert {rate.campaigns for rate in checked.rates} == {campaigns}
 
 
@@ -82,13 +82,13 @@ def test_failed_diagnosis_counts_as_wrong_even_if_no_effect_is_simulated() -> No
 def test_answers_of_an_earlier_check_are_not_computed_again() -> None:
     done = [
         Answer((), 0, "adequate", (), {}),
-        Answer(("inertia_leak",), 0, "ambiguous", ("sensor_lag",), {}),
+        Answer(("inertia",), 0, "ambiguous", ("sensor_lag",), {}),
     ]
     new: list[Answer] = []
     found = check(_model(), RUNS, campaigns=1, done=done, keep=new.append)
     assert (found.answers, new) == (tuple(done), [])
     counts = {rate.what: rate.count for rate in found.rates}
-    assert counts["inertia_leak hidden: a false name"] == 1
+    assert counts["inertia hidden: a false name"] == 1
 
 
 def test_check_of_zero_campaigns_is_rejected() -> None:
@@ -102,17 +102,17 @@ def test_identity_of_a_check_differs_by_model_runs_and_policy() -> None:
         identity(model, RUNS),
         identity(fit(Rig(), RUNS, law="coulomb").model, RUNS),
         identity(model, RUNS[1:]),
-        identity(model, RUNS, Policy(false_alarms=0.1)),
+        identity(model, RUNS, Policy(false_alarm_rate=0.1)),
     }
     assert len(names) == 4
-    assert identity(model, four_runs(mass(1.0), noise_n=0.1)) == identity(model, RUNS)
+    assert identity(model, four_runs(mass(1.0), noise_rms=0.1)) == identity(model, RUNS)
 
 
 @pytest.fixture
 def command(tmp_path: Path) -> list[str]:
     """Run `jbf check` for a base law and two runs, with a file of stored results."""
     paths = []
-    for run in four_runs(coulomb, noise_n=0.1)[:2]:
+    for run in four_runs(coulomb, noise_rms=0.1)[:2]:
         paths.append(str(tmp_path / f"{run.name}.csv"))
         run.write_csv(paths[-1])
     (tmp_path / "rig.toml").write_text('[drive]\nmotion = "linear"\nfriction = "force"\n')
@@ -134,7 +134,7 @@ def test_stored_answers_are_reused_unless_damaged_or_of_another_policy(
     (answer,) = json.loads(answers.read_text())["answers"]
     assert answer.items() <= json.loads(first).items()
     capsys.readouterr()
-    assert main([*command, "-n", "2", "--false-alarms", "0.1"]) == 2
+    assert main([*command, "-n", "2", "--false-alarm-rate", "0.1"]) == 2
     assert capsys.readouterr().err.count("\n") == 1
     kept.write_text("no answer\n" + first)
     assert main([*command, "-n", "2"]) == 2
@@ -167,12 +167,10 @@ def test_machine_terms_of_a_drive_count_as_identified_effects_in_a_check() -> No
         speed = 1.71 * np.cos(1.9 * time) + 0.35 * k * np.cos(k * time)
         run = Run.from_arrays(time, speed, np.zeros(600), angle_rad=angle, name=f"run_{k}")
         runs.append(replace(run, quantities=rig.quantities))
-    values = {"F_c_n": 0.12, "F_s_n": 0.12, "F_v_n_s_m": 0.012, "inertia_leak.m_e_kg": 0.009}
-    values |= {"gravity.G_n": 0.3, "gravity.theta_0_rad": 0.0}
-    model = Model(rig, "coulomb", ["inertia_leak", "gravity"], values)
+    values = {"F_c": 0.12, "F_s": 0.12, "F_v": 0.012, "inertia.m_e": 0.009}
+    values |= {"gravity.G": 0.3, "gravity.theta_0_rad": 0.0}
+    model = Model(rig, "coulomb", ["inertia", "gravity"], values)
     rng = np.random.default_rng(2)
-    runs = [
-        replace(run, friction_n=model.predict(run) + 0.01 * rng.normal(size=600)) for run in runs
-    ]
+    runs = [replace(run, friction=model.predict(run) + 0.01 * rng.normal(size=600)) for run in runs]
     found = check(model, runs, campaigns=1)
     assert [answer.right for answer in found.answers] == [True, True]

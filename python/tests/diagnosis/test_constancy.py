@@ -104,7 +104,7 @@ def test_disagreement_on_an_effect_excludes_that_on_the_law(term: str, disagrees
     assert disagreement(problem, solution).gain > 40.0
 
 
-@pytest.mark.parametrize(("deviates", "disagrees"), [("F_c_n", False), ("zero", True)])
+@pytest.mark.parametrize(("deviates", "disagrees"), [("F_c", False), ("zero", True)])
 def test_parameter_with_a_random_effect_may_differ_by_run(deviates: str, disagrees: bool) -> None:
     """The random effects are too small to change the whitening."""
     residuals = [ALTERNATING + a for a in (0.5, -0.5, 0.2)]
@@ -179,9 +179,9 @@ def test_correlated_noise_that_is_not_modelled_is_not_disagreement() -> None:
         assert gain > DEFAULT.constancy_ratio * 3
 
 
-def solved(other: Friction, noise_n: float) -> tuple[Problem, Solution]:
+def solved(other: Friction, noise_rms: float) -> tuple[Problem, Solution]:
     """Four runs with Coulomb friction, the last with a different value, and their common fit."""
-    runs = [*four_runs(coulomb, noise_n=noise_n)[:3], four_runs(other, noise_n=noise_n)[3]]
+    runs = [*four_runs(coulomb, noise_rms=noise_rms)[:3], four_runs(other, noise_rms=noise_rms)[3]]
     problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", ())
     return problem, minimum(problem, [{}])
 
@@ -190,8 +190,8 @@ def solved(other: Friction, noise_n: float) -> tuple[Problem, Solution]:
 def test_deviation_of_a_positive_parameter_is_reported_in_percent(more: float, words: str) -> None:
     """Estimates to first order in the logarithm: dry friction of 6 N or 4 N, and the common fit."""
     problem, solution = solved(lambda t, v, a: coulomb(t, v, a) + more * np.sign(v), 1e-6)
-    common = dict(zip(problem.names, solution.values, strict=True))["F_c_n"]
-    (change,) = numbers_in(rf"^F_c_n (\S+) % {words}", run_specific_step(problem, solution, "d"))
+    common = dict(zip(problem.names, solution.values, strict=True))["F_c"]
+    (change,) = numbers_in(rf"^F_c (\S+) % {words}", run_specific_step(problem, solution, "d"))
     expected = 100.0 * abs(np.expm1((5.0 + more) / common - 1.0))
     assert change == pytest.approx(expected, abs=0.051)
 
@@ -201,7 +201,7 @@ def test_deviation_of_a_signed_parameter_is_reported_in_its_unit(more: float, wo
     """One of four runs has 8 N s/m more viscous friction, or 6 more than in the common fit."""
     problem, solution = solved(lambda t, v, a: coulomb(t, v, a) + more * v, 0.05)
     (found,) = find_disagreement(problem, solution, DEFAULT)
-    (change,) = numbers_in(rf"run d asks for F_v_n_s_m (\S+) N s/m {words}", found.where)
+    (change,) = numbers_in(rf"run d asks for F_v (\S+) N s/m {words}", found.where)
     assert change == pytest.approx(6.0, rel=0.25)
 
 
@@ -211,7 +211,7 @@ def test_parameter_change_over_twentyfold_is_reported_as_many_times(step: float,
     orthogonal = ALTERNATING - np.mean(ALTERNATING)
     residuals = [orthogonal + step * 5.0 * LEVEL, orthogonal]
     words = run_specific_step(*solution_with(one_way(2), residuals), "a")
-    assert words.startswith("F_c_n")
+    assert words.startswith("F_c")
     assert size in words
     assert ("many times" in words) == (size != "%")
 
@@ -246,7 +246,7 @@ def fitted(rig: Rig, runs: list[Run], effects: tuple[str, ...] = ()) -> tuple[Pr
 
 @pytest.mark.extended
 @pytest.mark.parametrize("coloured", [False, True])
-@pytest.mark.parametrize("effects", [(), ("sensor_lag",), ("wear_in",), ("drive_compliance",)])
+@pytest.mark.parametrize("effects", [(), ("sensor_lag",), ("running_in",), ("drive_compliance",)])
 def test_parameters_agree_in_runs_of_one_bearing(effects: tuple[str, ...], coloured: bool) -> None:
     seed = 34 if effects == ("drive_compliance",) else 11
     rig, runs, _ = simulated(seed, effects, coloured=coloured)
@@ -257,6 +257,6 @@ def test_parameters_agree_in_runs_of_one_bearing(effects: tuple[str, ...], colou
 
 def test_run_with_an_eight_percent_larger_force_is_reported_as_deviating() -> None:
     rig, runs, _ = simulated(11)
-    changed = replace(runs[2], friction_n=1.08 * np.asarray(runs[2].friction_n))
+    changed = replace(runs[2], friction=1.08 * np.asarray(runs[2].friction))
     (found,) = find_disagreement(*fitted(rig, [*runs[:2], changed, *runs[3:]]), DEFAULT)
     assert f"run {runs[2].name} asks for" in found.where

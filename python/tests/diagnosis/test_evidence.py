@@ -35,8 +35,8 @@ def test_evidence_is_twice_the_log_likelihood_gain_minus_the_threshold() -> None
     assert len(found.steps[0].trials) == CANDIDATES
     assert 35.0 < book.gain() < 80.0
     expected = book.gain() - threshold(1, book.samples)
-    assert trial(found, "inertia_leak").evidence == pytest.approx(expected, abs=0.5)
-    assert (found.verdict, found.effects) == ("missing", ("inertia_leak",))
+    assert trial(found, "inertia").evidence == pytest.approx(expected, abs=0.5)
+    assert (found.verdict, found.effects) == ("missing", ("inertia",))
 
 
 def test_evidence_of_an_effect_without_gain_is_minus_its_threshold() -> None:
@@ -45,7 +45,7 @@ def test_evidence_of_an_effect_without_gain_is_minus_its_threshold() -> None:
     for each in found.steps[0].trials:
         assert each.outcome == "no gain"
         assert each.evidence < -5.0
-        if each.rms_n == found.steps[0].rms_n:
+        if each.rms == found.steps[0].rms:
             assert round(-each.evidence, 2) in thresholds, each.effect
     assert (found.verdict, found.effects) == ("adequate", ())
 
@@ -55,8 +55,8 @@ def test_fit_error_and_held_out_error_of_a_step_are_those_of_least_squares(hidde
     found, book = linear_diagnosis(hidden), Textbook(linear_runs(hidden))
     for step, columns in zip(found.steps, (2, 3), strict=False):
         # jbf smooths the recorded speed, which changes both errors by the same factor.
-        assert step.rms_n == pytest.approx(book.rms(columns), rel=1e-3)
-        excess = step.holdout_rms_n / step.rms_n - 1.0
+        assert step.rms == pytest.approx(book.rms(columns), rel=1e-3)
+        excess = step.held_out_rms / step.rms - 1.0
         expected = book.held_out_rms(columns) / book.rms(columns) - 1.0
         assert excess == pytest.approx(expected, rel=0.05)
         assert excess > 5e-4
@@ -66,8 +66,8 @@ def test_two_simulated_effects_are_added_in_successive_steps() -> None:
     found = linear_diagnosis("offset and drag")
     assert found.effects == ("sensor_offset", "quadratic_drag")
     assert [step.effects for step in found.steps] == [(), found.effects[:1], found.effects]
-    assert found.steps[-1].rms_n == pytest.approx(0.1, rel=0.05)
-    for name, true in (("sensor_offset.b_n", 0.5), ("quadratic_drag.c_n_s2_m2", 150.0)):
+    assert found.steps[-1].rms == pytest.approx(0.1, rel=0.05)
+    for name, true in (("sensor_offset.b", 0.5), ("quadratic_drag.c", 150.0)):
         assert_recovered(found.fit.parameters[name], true)
 
 
@@ -76,10 +76,12 @@ def test_effect_in_one_run_only_is_reported_as_residual_structure() -> None:
     book = Textbook(runs)
     assert book.rms(3) < 0.99 * book.rms(2)
     assert book.held_out_rms(3) > book.held_out_rms(2)
-    assert trial(found, "inertia_leak").outcome in ("no gain", "rejected")
+    assert trial(found, "inertia").outcome in ("no gain", "rejected")
     assert (found.verdict, found.effects) == ("unexplained", ())
-    assert any(remainder.where.endswith(f"in {runs[0].name}") for remainder in found.unexplained)
-    assert any("inertia_leak" in r.where for r in found.unexplained if r.axis == "run")
+    assert any(
+        remainder.where.endswith(f"in {runs[0].name}") for remainder in found.residual_structure
+    )
+    assert any("inertia" in r.where for r in found.residual_structure if r.axis == "run")
 
 
 def test_effect_is_named_even_if_an_unexplained_tone_remains() -> None:
@@ -87,7 +89,7 @@ def test_effect_is_named_even_if_an_unexplained_tone_remains() -> None:
     assert (found.verdict, found.effects) == ("unexplained", ("sensor_offset",))
     assert found.confounders == ()
     assert found.model.effects == ("sensor_offset",)
-    assert any(r.axis == "frequency" and "3.00 Hz" in r.where for r in found.unexplained)
+    assert any(r.axis == "frequency" and "3.00 Hz" in r.where for r in found.residual_structure)
 
 
 def test_ratio_of_weights_of_tied_effects_is_their_likelihood_ratio() -> None:
@@ -114,22 +116,22 @@ def test_effects_with_the_same_derivative_have_equal_weights() -> None:
 
 def test_effect_that_does_not_fit_has_negligible_weight_next_to_one_that_does() -> None:
     """A mass, which is absent, compared with an offset, which is present."""
-    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.03, noise_n=0.1)
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.03, noise_rms=0.1)
     candidates = coulomb_candidates(runs)
-    of_mass = weights(candidates, ("inertia_leak",))["inertia_leak"]
-    assert of_mass["inertia_leak"] < 1e-6
+    of_mass = weights(candidates, ("inertia",))["inertia"]
+    assert of_mass["inertia"] < 1e-6
     assert of_mass["sensor_offset"] == pytest.approx(of_mass["dry_asymmetry"], rel=1e-3)
-    assert "inertia_leak" not in weights(candidates, ("sensor_offset",))["sensor_offset"]
+    assert "inertia" not in weights(candidates, ("sensor_offset",))["sensor_offset"]
 
 
 def _offset_runs(offset_n: float) -> list[Run]:
-    return four_runs(lambda t, v, a: coulomb(t, v, a) + offset_n, noise_n=0.1)
+    return four_runs(lambda t, v, a: coulomb(t, v, a) + offset_n, noise_rms=0.1)
 
 
 def test_evidence_is_likelihood_gain_times_independent_share_minus_threshold() -> None:
     """A mass in one run only: the variance of its score is far above that in white noise."""
     candidates = coulomb_candidates(linear_runs("mass in one run"))
-    simple, rich = candidates.converge(()), candidates.converge(("inertia_leak",))
+    simple, rich = candidates.converge(()), candidates.converge(("inertia",))
     gain, price = likelihood_gain(rich, simple), price_of(candidates, 1)
     found = evidence(candidates, rich, simple)
     anywhere = evidence(candidates, rich, simple, anywhere=True)
@@ -146,7 +148,7 @@ def test_gain_from_samples_that_an_effect_excludes_is_not_its_evidence() -> None
     candidates = coulomb_candidates(runs)
     problem, right = candidates.fitted(()).problem, candidates.converge(())
     fewer = right.samples.within([(t < 10.0) | (t > 10.05), np.ones(len(t), dtype=bool)])
-    wrong = right.values * np.where(np.array(problem.names) == "F_c_n", 1.02, 1.0)
+    wrong = right.values * np.where(np.array(problem.names) == "F_c", 1.02, 1.0)
     simple = problem.solution(wrong, right.samples, WHITE)
     rich = replace(
         candidates.converge(("time_delay",)),
@@ -173,9 +175,9 @@ def test_gain_below_the_quantisation_error_is_not_evidence(step_n: float, counts
     """An offset of 0.03 N in noise of 0.1 N, with exact readings and with steps of 0.6 N."""
     runs = []
     for run in _offset_runs(0.03):
-        force = np.asarray(run.friction_n)
+        force = np.asarray(run.friction)
         read = step_n * np.round(force / step_n) if step_n else force
-        runs.append(replace(run, friction_n=read))
+        runs.append(replace(run, friction=read))
     candidates = coulomb_candidates(runs)
     assert (candidates.campaign.step_n > 0.0) == (step_n > 0.0)
     simple, rich = candidates.converge(()), candidates.converge(("sensor_offset",))
@@ -189,15 +191,15 @@ def test_gain_below_the_quantisation_error_is_not_evidence(step_n: float, counts
 
 def test_fit_far_from_its_minimum_is_improved_from_a_richer_model() -> None:
     candidates = coulomb_candidates(linear_runs("mass"))
-    rich = candidates.converge(("inertia_leak", "sensor_offset"))
-    best = candidates.converge(("inertia_leak",))
-    fitted = candidates.fitted(("inertia_leak",))
-    values = np.where(np.array(fitted.problem.names) == "inertia_leak.m_e_kg", 0.0, best.values)
+    rich = candidates.converge(("inertia", "sensor_offset"))
+    best = candidates.converge(("inertia",))
+    fitted = candidates.fitted(("inertia",))
+    values = np.where(np.array(fitted.problem.names) == "inertia.m_e", 0.0, best.values)
     fitted.improve(fitted.problem.solution(values, best.samples, best.noise))
     assert fitted.current_solution().cost > best.cost + 50.0
-    found = candidates.refit_from(("inertia_leak",), rich.effects)
+    found = candidates.refit_from(("inertia",), rich.effects)
     assert found.cost == pytest.approx(best.cost, abs=0.5)
-    assert candidates.converge(("inertia_leak",)) is found
+    assert candidates.converge(("inertia",)) is found
 
 
 def test_score_test_predicts_likelihood_gain_and_value_of_a_linear_effect() -> None:
@@ -205,13 +207,13 @@ def test_score_test_predicts_likelihood_gain_and_value_of_a_linear_effect() -> N
     bare, near = fit_from_truth(campaign)
     near = replace(near, noise=WHITE, cost=near.samples.cost(near.residuals, WHITE))
     problem, fitted = fit_from_truth(campaign, "sensor_offset")
-    null = dict(zip(bare.names, near.values.tolist(), strict=True)) | {"sensor_offset.b_n": 0.0}
+    null = dict(zip(bare.names, near.values.tolist(), strict=True)) | {"sensor_offset.b": 0.0}
     start = np.array([null[name] for name in problem.names])
     gain, directions, stepped = score_test(problem, [start], near, ("sensor_offset",))
     real_gain = likelihood_gain(fitted, near)
     assert real_gain > 50.0
     assert gain == pytest.approx(real_gain, rel=0.1)
-    place = problem.names.index("sensor_offset.b_n")
+    place = problem.names.index("sensor_offset.b")
     assert stepped[place] == pytest.approx(fitted.values[place], rel=0.1)
     assert (directions.ways[:, 0] @ directions.innovations) ** 2 == pytest.approx(gain, rel=0.1)
     # Both halves of the samples contribute to the gain.

@@ -50,7 +50,7 @@ def test_proposed_sines_have_two_periods_and_respect_the_acceleration_limit() ->
     assert [words for words in found if words.startswith("a two-way")] == expected
     for speed, rates in allowed.items():
         for w in rates:
-            assert found[sine(speed, w)].velocity_m_s == pytest.approx(speed * np.sin(w * time_s()))
+            assert found[sine(speed, w)].velocity == pytest.approx(speed * np.sin(w * time_s()))
 
 
 def test_sine_exceeds_the_acceleration_limit_by_at_most_one_percent() -> None:
@@ -63,11 +63,11 @@ def test_unidirectional_motions_start_with_half_the_acceleration_limit() -> None
     found, t = motions(), time_s()
     start = np.minimum(t, 1.0)
     for w in (0.25, 0.5, 1.0):
-        v = found[f"a one-way sine from 0.01 to 0.1 m/s at {w:g} rad/s"].velocity_m_s
+        v = found[f"a one-way sine from 0.01 to 0.1 m/s at {w:g} rad/s"].velocity
         assert v == pytest.approx(0.1 * start * (0.55 + 0.45 * np.sin(w * t)))
     for speed in (0.1, 0.03):
         constant = found[f"a run at a constant {speed:g} m/s"]
-        assert constant.velocity_m_s == pytest.approx(speed * start)
+        assert constant.velocity == pytest.approx(speed * start)
 
 
 @pytest.mark.parametrize(("sharp", "ramp_s"), [(0.2, 1.0), (0.05, 2.1)])
@@ -80,7 +80,7 @@ def test_stop_and_go_motion_rests_for_8_s_and_moves_for_3_s(sharp: float, ramp_s
         corners = np.array([0.0, 8.0, 8.0 + ramp, 11.0 + ramp, cycle])
         height = speed * np.interp(np.mod(t, cycle), corners, [0.0, 0.0, 1.0, 1.0, 0.0])
         expected = np.where((t // cycle) % 2 == 0, height, -height)
-        assert found[stops(speed)].velocity_m_s == pytest.approx(expected, abs=1e-9)
+        assert found[stops(speed)].velocity == pytest.approx(expected, abs=1e-9)
 
 
 def test_mixed_motion_is_stop_and_go_then_a_fast_and_a_short_sine() -> None:
@@ -89,11 +89,11 @@ def test_mixed_motion_is_stop_and_go_then_a_fast_and_a_short_sine() -> None:
     for stop_speed in (0.04, 0.1):
         for speed, w in ((0.03, 4.0), (0.01, 16.0), (0.002, 16.0)):
             words = f"{stops(stop_speed)}, then {sine(0.1, 2.0)}, then {sine(speed, w)}"
-            first = found[stops(stop_speed)].velocity_m_s
+            first = found[stops(stop_speed)].velocity
             last_s = 26.0 + 10.0 * np.pi / 2.0
             middle, last = 0.1 * np.sin(2.0 * (t - 26.0)), speed * np.sin(w * (t - last_s))
             expected = np.where(t < 26.0, first, np.where(t < last_s, middle, last))
-            assert found[words].velocity_m_s == pytest.approx(expected, abs=1e-9)
+            assert found[words].velocity == pytest.approx(expected, abs=1e-9)
     assert sum(", then " in words for words in found) == 6
 
 
@@ -109,11 +109,11 @@ def test_mixed_motion_requires_a_minimum_duration_and_acceleration() -> None:
 def test_proposed_motions_begin_at_rest_and_respect_limits_and_descriptions() -> None:
     for words, x in motions(0.3, 1.7, 90.0).items():
         fastest = max(float(speed) for speed in re.findall(r"(\S+) m/s", words))
-        assert x.velocity_m_s[0] == 0.0
-        assert np.max(np.abs(x.velocity_m_s)) == pytest.approx(fastest, rel=0.02)
-        assert np.max(np.abs(x.velocity_m_s)) <= 0.3 * (1.0 + 1e-12)
-        assert np.max(np.abs(np.diff(x.velocity_m_s))) <= 1.01 * 1.7 * STEP_S
-        assert len(x.velocity_m_s) == round(90.0 / STEP_S)
+        assert x.velocity[0] == 0.0
+        assert np.max(np.abs(x.velocity)) == pytest.approx(fastest, rel=0.02)
+        assert np.max(np.abs(x.velocity)) <= 0.3 * (1.0 + 1e-12)
+        assert np.max(np.abs(np.diff(x.velocity))) <= 1.01 * 1.7 * STEP_S
+        assert len(x.velocity) == round(90.0 / STEP_S)
 
 
 def test_description_of_a_motion_has_the_velocity_unit_of_the_rig() -> None:
@@ -154,8 +154,8 @@ def recorded(
 def test_missing_motion_limits_are_taken_from_the_records(rate: float, sharp: float) -> None:
     """The acceleration is at least that of a sine at 2 rad/s with the largest speed."""
     found = Limits().filled(recorded(rate))
-    assert found.velocity_m_s == pytest.approx(0.2, rel=1e-3)
-    assert found.acceleration_m_s2 == pytest.approx(sharp, rel=5e-3)
+    assert found.velocity == pytest.approx(0.2, rel=1e-3)
+    assert found.acceleration == pytest.approx(sharp, rel=5e-3)
     assert (found.duration_s, found.load_n, found.temperature_c) == (60.0, None, None)
 
 
@@ -163,8 +163,8 @@ def test_given_motion_limits_are_not_changed_by_the_records() -> None:
     given = Limits(0.05, 0.01, 7.0, (1.0, 2.0), (3.0, 4.0))
     assert given.filled(recorded(1.0, (40.0, 100.0), (10.0, 90.0))) == given
     # The default acceleration limit is that of the records.
-    slower = Limits(velocity_m_s=0.05).filled(recorded(1.0))
-    assert slower.acceleration_m_s2 == pytest.approx(0.2, rel=5e-3)
+    slower = Limits(velocity=0.05).filled(recorded(1.0))
+    assert slower.acceleration == pytest.approx(0.2, rel=5e-3)
 
 
 def test_limits_of_load_and_temperature_are_those_of_records_that_differ() -> None:

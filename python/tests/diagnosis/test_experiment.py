@@ -31,7 +31,7 @@ from rigsim.motions import Motion, polyline, sine, sweep
 from scipy import stats
 
 LIMITS = Limits(duration_s=10.0)
-PAIR = (("sensor_offset",), ("inertia_leak",))
+PAIR = (("sensor_offset",), ("inertia",))
 OTHER = (("sensor_drift",), ("quadratic_drag",))
 ANY_EVIDENCE = replace(DEFAULT, least_separation=1e-6)
 
@@ -44,11 +44,11 @@ def friction(t: Array, v: Array, a: Array) -> Array:
 
 
 def four_effects(policy: Policy = ANY_EVIDENCE) -> Candidates:
-    return coulomb_candidates(four_runs(friction, noise_n=0.1), policy)
+    return coulomb_candidates(four_runs(friction, noise_rms=0.1), policy)
 
 
-def no_effect(noise_n: float = 0.1) -> Candidates:
-    return coulomb_candidates(four_runs(coulomb, noise_n=noise_n))
+def no_effect(noise_rms: float = 0.1) -> Candidates:
+    return coulomb_candidates(four_runs(coulomb, noise_rms=noise_rms))
 
 
 def rival(candidates: Candidates, effects: tuple[str, ...] = ()) -> Rival:
@@ -72,7 +72,7 @@ def residual_square_after_fit(
     _, j = rival.solution.stacked()
     explained = x.T @ gap
     step = np.linalg.pinv(x.T @ x + j.T @ j) @ explained
-    return float(gap @ gap - explained @ step) / rival.noise_n**2
+    return float(gap @ gap - explained @ step) / rival.noise_rms**2
 
 
 @pytest.mark.parametrize("pairs", [1, 2])
@@ -94,14 +94,14 @@ def test_proposed_run_maximises_the_smallest_separation_between_rivals(pairs: in
     found = proposed(pairs)
     assert found.evidence == pytest.approx(evidence, rel=1e-4)
     assert words in found.words
-    assert found.run.velocity_m_s == pytest.approx(run.velocity_m_s)
+    assert found.run.velocity == pytest.approx(run.velocity)
 
 
 def test_separation_of_a_proposed_run_is_the_root_mean_square_difference() -> None:
     found, tried = proposed(1), four_effects()
     assert found.separation_sigma == pytest.approx(np.sqrt(found.evidence / len(found.run)))
-    noise_n = max(rival(tried, effects).noise_n for effects in PAIR)
-    assert found.separation_n == pytest.approx(found.separation_sigma * noise_n)
+    noise_rms = max(rival(tried, effects).noise_rms for effects in PAIR)
+    assert found.separation_n == pytest.approx(found.separation_sigma * noise_rms)
 
 
 def test_run_with_a_separation_below_the_policy_limit_is_not_proposed() -> None:
@@ -112,7 +112,7 @@ def test_run_with_a_separation_below_the_policy_limit_is_not_proposed() -> None:
     )
     assert isinstance(enough, Experiment)
     assert isinstance(too_little, str)
-    assert "sensor_offset and inertia_leak" in too_little
+    assert "sensor_offset and inertia" in too_little
 
 
 def test_no_run_is_proposed_for_models_with_the_same_predictions() -> None:
@@ -123,10 +123,10 @@ def test_no_run_is_proposed_for_models_with_the_same_predictions() -> None:
 
 
 def test_proposal_names_only_effects_that_differ_between_the_rivals() -> None:
-    groups = [[("sensor_offset", "inertia_leak"), ("sensor_offset",)]]
+    groups = [[("sensor_offset", "inertia"), ("sensor_offset",)]]
     found = propose(four_effects(), groups, LIMITS)
     assert isinstance(found, Experiment)
-    assert "inertia_leak and nothing more" in found.words
+    assert "inertia and nothing more" in found.words
     assert "sensor_offset" not in found.words
 
 
@@ -139,7 +139,7 @@ ONE_WAY = (
 
 def motion_of(run: jbf.Run) -> Motion:
     """Motion of a proposed run for the simulator, through every fifth sample."""
-    knots = zip(run.time_s[::5].tolist(), run.velocity_m_s[::5].tolist(), strict=True)
+    knots = zip(run.time_s[::5].tolist(), run.velocity[::5].tolist(), strict=True)
     return polyline("next", list(knots))
 
 
@@ -149,7 +149,7 @@ def test_diagnosis_with_a_tie_proposes_a_run_that_reverses() -> None:
     assert experiment is not None
     assert result.next_experiment == experiment.words
     assert experiment.evidence > 100.0
-    v = experiment.run.velocity_m_s
+    v = experiment.run.velocity
     assert np.min(v) < -0.5 * np.max(v) < 0.0
 
 
@@ -169,22 +169,22 @@ def test_tie_is_resolved_by_recording_the_proposed_run() -> None:
 @pytest.mark.extended
 def test_inertia_that_slow_sweeps_do_not_show_is_named_with_the_proposed_run() -> None:
     sweeps = (sweep("sweep", 0.13, 60.0), sine("slow", 140.0, 0.127, 0.045))
-    rig, runs, _ = simulated(67, ("inertia_leak",), motions=sweeps)
+    rig, runs, _ = simulated(67, ("inertia",), motions=sweeps)
     first = jbf.diagnose(rig, runs)
     assert first.verdict == "adequate"
-    assert "inertia_leak" in first.unseen
-    assert "coulomb_drag" not in first.unseen
+    assert "inertia" in first.not_detectable
+    assert "coulomb_drag" not in first.not_detectable
     assert first.experiment is not None
-    assert "inertia_leak" in first.experiment.words
+    assert "inertia" in first.experiment.words
     motions = (*sweeps, motion_of(first.experiment.run))
-    rig, runs, _ = simulated(67, ("inertia_leak",), motions=motions)
-    assert "inertia_leak" in jbf.diagnose(rig, runs).effects
+    rig, runs, _ = simulated(67, ("inertia",), motions=motions)
+    assert "inertia" in jbf.diagnose(rig, runs).effects
 
 
 @cache
-def hidden(noise_n: float) -> tuple[str, ...]:
+def hidden(noise_rms: float) -> tuple[str, ...]:
     """Effects that these runs cannot show at their usual strength."""
-    tried = no_effect(noise_n)
+    tried = no_effect(noise_rms)
     return undetectable_effects(tried, (), power(tried, ()))
 
 
@@ -192,7 +192,7 @@ def test_offset_is_reported_as_hidden_if_noise_exceeds_its_detection_level() -> 
     """The root of the gain is normal about that of its expectation: 80 % exceed the threshold."""
     (usual_n,) = effects()["sensor_offset"].parameters[0].starts
     samples, tried = 2004, 12
-    price = stats.chi2.isf(DEFAULT.false_alarms / tried, 1) + DEFAULT.imperfection
+    price = stats.chi2.isf(DEFAULT.false_alarm_rate / tried, 1) + DEFAULT.artefact_margin
     # Two runs in each direction prevent the law from explaining the offset.
     limit_n = usual_n * np.sqrt(samples) / (np.sqrt(price) + stats.norm.ppf(0.8))
     # Gains are discounted by a long-run variance that is itself estimated.
@@ -220,7 +220,7 @@ def test_probability_to_name_an_effect_is_the_mean_over_three_strengths(evidence
 
 
 def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> None:
-    names = ("inertia_leak", "presliding", "sensor_nonlinearity")
+    names = ("inertia", "presliding", "sensor_nonlinearity")
     tried = no_effect()
     limits, step_s = filled_limits(tried, LIMITS)
     base = rival(tried)
@@ -240,19 +240,19 @@ def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> N
     clear = [e for e in shown if e > 2.0 * DEFAULT.least_separation]
     assert proposed.evidence == pytest.approx(stats.gmean(clear), rel=1e-3)
     assert proposed.separation_sigma == pytest.approx(np.sqrt(proposed.evidence / len(run)))
-    assert proposed.separation_n == pytest.approx(base.noise_n * proposed.separation_sigma)
+    assert proposed.separation_n == pytest.approx(base.noise_rms * proposed.separation_sigma)
 
 
 def test_proposal_names_only_effects_that_its_run_can_detect() -> None:
     """Load-proportional friction is zero in any motion without a transmitted load."""
-    found = propose_detection_run(no_effect(), (), ("inertia_leak", "torque_proportional"), LIMITS)
+    found = propose_detection_run(no_effect(), (), ("inertia", "torque_proportional"), LIMITS)
     assert isinstance(found, Experiment)
-    assert found.words.endswith("would show inertia_leak")
+    assert found.words.endswith("would show inertia")
 
 
 @pytest.mark.parametrize(
     ("effect", "limits"),
-    [("torque_proportional", LIMITS), ("inertia_leak", Limits(1e-3, 1e-4, 10.0))],
+    [("torque_proportional", LIMITS), ("inertia", Limits(1e-3, 1e-4, 10.0))],
 )
 def test_no_run_is_proposed_if_no_motion_can_show_the_effect(effect: str, limits: Limits) -> None:
     found = propose_detection_run(no_effect(), (), (effect,), limits)
@@ -270,12 +270,12 @@ def test_planned_motion_has_the_path_of_its_velocity(linear: bool) -> None:
     t = STEP_S * np.arange(101.0)
     run = run_from_motion(rig, Excitation("up", 0.1 * t, None), STEP_S, linear=linear)
     assert run.time_s == pytest.approx(t)
-    assert run.velocity_m_s == pytest.approx(0.1 * t)
+    assert run.velocity == pytest.approx(0.1 * t)
     radius_m = 1.0 if rig.bearing is None else rig.bearing.radius_m
     path = run.position_m if linear else run.angle_rad
     assert path == pytest.approx(0.05 * t**2 / radius_m)
     assert (run.angle_rad if linear else run.position_m) is None
-    assert (run.friction_n, run.temperature_c) == (None, None)
+    assert (run.friction, run.temperature_c) == (None, None)
 
 
 def test_planned_motion_has_the_given_conditions_or_the_load_of_the_rig() -> None:
@@ -303,7 +303,7 @@ def test_planned_run_has_the_median_step_of_the_runs_and_up_to_6000_samples() ->
     tried = candidates_of(0.01, 0.02, 0.05)
     limits, step_s = filled_limits(tried, None)
     assert step_s == pytest.approx(0.02)
-    assert limits.velocity_m_s == pytest.approx(0.1, rel=1e-3)
+    assert limits.velocity == pytest.approx(0.1, rel=1e-3)
     assert limits.duration_s == 60.0
     assert MOST_SAMPLES == 6000
     long, coarser_s = filled_limits(tried, Limits(duration_s=240.0))
@@ -318,7 +318,7 @@ def test_every_motion_within_the_limits_is_a_candidate_for_the_next_run(position
     expected = list(excitations(limits, STEP_S, "m/s"))
     assert [excitation.words for excitation, *_ in found] == [x.words for x in expected]
     for (_, run, _), x in zip(found, expected, strict=True):
-        assert run.velocity_m_s == pytest.approx(x.velocity_m_s)
+        assert run.velocity == pytest.approx(x.velocity)
         assert (run.position_m is not None) == position
 
 
@@ -329,8 +329,8 @@ def law() -> Rival:
 
 def test_noise_and_information_of_a_fitted_model_are_those_of_a_regression(law: Rival) -> None:
     r, j = law.solution.stacked()
-    assert law.noise_n == pytest.approx(0.1, rel=0.05)
-    assert law.noise_n**2 * (len(r) - j.shape[1]) == pytest.approx(float(r @ r))
+    assert law.noise_rms == pytest.approx(0.1, rel=0.05)
+    assert law.noise_rms**2 * (len(r) - j.shape[1]) == pytest.approx(float(r @ r))
     assert law.known.T @ law.known == pytest.approx(j.T @ j)
 
 
@@ -340,10 +340,10 @@ def test_predicted_friction_and_slopes_in_a_motion_are_those_of_the_law(law: Riv
     v = 0.1 + 0.05 * np.sin(t)
     friction, slopes = law.at(Campaign.prepare(Rig(), [coulomb_run(t, v, seed=0)]).motions[0])
     known = dict(zip(law.problem.names, law.solution.values.tolist(), strict=True))
-    assert friction == pytest.approx(known["F_c_n"] + known["F_v_n_s_m"] * v, rel=1e-3)
+    assert friction == pytest.approx(known["F_c"] + known["F_v"] * v, rel=1e-3)
     column = {law.problem.names[i]: slopes[:, k] for k, i in enumerate(law.problem.open)}
-    assert column["F_c_n"] == pytest.approx(np.full(200, known["F_c_n"]), rel=1e-3)
-    assert column["F_v_n_s_m"] == pytest.approx(v, rel=1e-3)
+    assert column["F_c"] == pytest.approx(np.full(200, known["F_c"]), rel=1e-3)
+    assert column["F_v"] == pytest.approx(v, rel=1e-3)
 
 
 @pytest.mark.parametrize("direction", ["dry", "viscous", "new"])
@@ -357,7 +357,7 @@ def test_separation_is_the_residual_after_a_fit_to_all_runs(law: Rival, directio
     explained = own[1].T @ gap
     left = float(gap @ gap - explained @ np.linalg.pinv(information) @ explained)
     separation = law.separation(own, (own[0] + gap, own[1]), STEP_S)
-    assert separation == pytest.approx(left / law.noise_n**2, rel=1e-6)
+    assert separation == pytest.approx(left / law.noise_rms**2, rel=1e-6)
     # The old runs constrain the step: part of the gap remains even along the slopes of the law.
     # law.
     assert 0.1 * float(gap @ gap) < left < float(gap @ gap)

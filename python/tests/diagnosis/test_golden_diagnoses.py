@@ -23,26 +23,26 @@ def test_verdict_effects_and_findings_agree_with_the_simulation(name: str) -> No
     else:
         assert set(found.effects) == expected.effects
         assert not any(found.alternatives.values())
-    assert bool(found.unexplained) == (expected.verdict == "unexplained")
+    assert bool(found.residual_structure) == (expected.verdict == "unexplained")
     assert expected.findings <= {finding.kind for finding in found.findings}
 
 
 @pytest.mark.parametrize("name", EXPLAINED)
 def test_rms_error_of_the_final_model_is_the_noise_if_nothing_is_unexplained(name: str) -> None:
-    noise_n, last = golden_campaign(name)[2], golden(name).steps[-1]
-    assert last.noise_n == pytest.approx(noise_n, rel=0.1)
-    assert last.rms_n == pytest.approx(noise_n, rel=0.06)
-    assert last.holdout_rms_n < 1.1 * noise_n
+    noise_rms, last = golden_campaign(name)[2], golden(name).steps[-1]
+    assert last.noise_rms == pytest.approx(noise_rms, rel=0.1)
+    assert last.rms == pytest.approx(noise_rms, rel=0.06)
+    assert last.held_out_rms < 1.1 * noise_rms
 
 
 @pytest.mark.parametrize("name", EXPLAINED)
 def test_effects_and_rms_error_of_the_last_step_are_those_of_the_final_fit(name: str) -> None:
     found = golden(name)
     assert found.steps[-1].effects == found.model.effects
-    assert found.steps[-1].rms_n == pytest.approx(found.fit.rms_n, rel=1e-6)
-    assert found.after.rms_n == pytest.approx(found.fit.rms_n, rel=0.02)
+    assert found.steps[-1].rms == pytest.approx(found.fit.rms, rel=1e-6)
+    assert found.after.rms == pytest.approx(found.fit.rms, rel=0.02)
     if found.effects:
-        assert found.before.rms_n > found.after.rms_n
+        assert found.before.rms > found.after.rms
 
 
 @pytest.mark.parametrize("name", MISSING)
@@ -51,8 +51,8 @@ def test_each_effect_added_to_a_golden_diagnosis_reduces_both_errors(name: str) 
     assert steps[0].effects == ()
     assert len(steps) == 1 + len(GOLDEN[name].effects)
     for before, after in pairwise(steps):
-        assert after.rms_n < before.rms_n
-        assert after.holdout_rms_n < before.holdout_rms_n
+        assert after.rms < before.rms
+        assert after.held_out_rms < before.held_out_rms
 
 
 @pytest.mark.parametrize("name", GOLDEN)
@@ -81,7 +81,7 @@ def test_outcomes_of_trials_agree_with_the_sign_and_order_of_their_evidence(name
 
 
 def test_frequency_of_a_tone_that_no_effect_explains_is_reported() -> None:
-    tones = [r for r in golden("bearing_hum").unexplained if r.axis == "frequency"]
+    tones = [r for r in golden("bearing_hum").residual_structure if r.axis == "frequency"]
     assert 0.0 < max(r.share for r in tones) <= 1.0
     assert "Hz" in tones[0].where
 

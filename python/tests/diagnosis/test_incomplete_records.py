@@ -22,16 +22,16 @@ def test_speed_is_computed_from_angle_and_radius_if_it_is_missing(tmp_path: Path
         columns = run.columns()
         del columns["velocity_m_s"]
         bare = Run.from_arrays(**columns, name=run.name)  # type: ignore[arg-type]
-        assert np.isnan(bare.velocity_m_s).all()
+        assert np.isnan(bare.velocity).all()
         bare.write_csv(tmp_path / f"{run.name}.csv")
     read = read_runs(tmp_path)
     model = Model(Rig.thesis(), parameters=LAW)
     for run, without in zip(runs, read, strict=True):
         np.testing.assert_allclose(model.predict(without), model.predict(run), atol=0.3)
     found, expected = (fit(Rig.thesis(), some) for some in (read, runs))
-    assert found.rms_n == pytest.approx(expected.rms_n, rel=0.02)
+    assert found.rms == pytest.approx(expected.rms, rel=0.02)
     assert [finding.kind for finding in found.findings] == ["no_speed", "no_speed"]
-    assert compare(model, read).rms_n == pytest.approx(compare(model, runs).rms_n, rel=0.02)
+    assert compare(model, read).rms == pytest.approx(compare(model, runs).rms, rel=0.02)
 
 
 def test_angle_without_speed_and_radius_is_rejected() -> None:

@@ -20,8 +20,8 @@ def moved(run: Run, *, sign: float = 1.0, later_s: float = 0.0, turned_rad: floa
     return replace(
         run,
         time_s=run.time_s + later_s,
-        velocity_m_s=sign * run.velocity_m_s,
-        friction_n=sign * np.asarray(run.friction_n),
+        velocity=sign * run.velocity,
+        friction=sign * np.asarray(run.friction),
         angle_rad=None if run.angle_rad is None else sign * run.angle_rad + turned_rad,
     )
 
@@ -44,14 +44,14 @@ def mirrored(runs: list[Run]) -> list[Run]:
 
 
 def in_other_units(runs: list[Run]) -> list[Run]:
-    return [replace(run, friction_n=FORCE_UNIT * np.asarray(run.friction_n)) for run in runs]
+    return [replace(run, friction=FORCE_UNIT * np.asarray(run.friction)) for run in runs]
 
 
 def cut(runs: list[Run]) -> list[Run]:
     """The run with the largest number of rests, cut at a rest near its middle, or the first run."""
-    whole = max(runs, key=lambda run: int(np.sum(run.velocity_m_s == 0.0)))
+    whole = max(runs, key=lambda run: int(np.sum(run.velocity == 0.0)))
     middle = len(whole) // 2
-    resting = np.flatnonzero(whole.velocity_m_s == 0.0)
+    resting = np.flatnonzero(whole.velocity == 0.0)
     if len(resting):
         middle = int(resting[np.argmin(np.abs(resting - middle))])
     halves = [
@@ -84,13 +84,15 @@ def assert_same(
     """Check for equal verdicts and effects, and for estimates within a share of their errors."""
     for name in ("verdict", "effects", "alternatives", "confounders"):
         assert getattr(changed, name) == getattr(first, name)
-    assert {r.axis for r in changed.unexplained} == {r.axis for r in first.unexplained}
+    assert {r.axis for r in changed.residual_structure} == {
+        r.axis for r in first.residual_structure
+    }
     assert list(changed.fit.parameters) == list(first.fit.parameters)
     for name, new in changed.fit.parameters.items():
         old = first.fit.parameters[name]
         assert new.held == old.held, name
         if new.stderr is not None and old.stderr is not None:
-            expected = -old.value if mirror and name == "sensor_offset.b_n" else old.value
+            expected = -old.value if mirror and name == "sensor_offset.b" else old.value
             assert abs(new.value - expected) < within * old.stderr, name
             assert new.stderr == pytest.approx(old.stderr, rel=max(within, 1e-3)), name
 
@@ -124,7 +126,7 @@ def test_run_given_twice_is_used_once_and_reported() -> None:
     again = later([replace(runs[1], name="b on another day")])[0]
     assert copies([*runs, again]) == {4: 1}
     assert copies([*runs, *repeated(runs)]) == {4 + i: i % 4 for i in range(8)}
-    noisier = replace(again, friction_n=np.asarray(again.friction_n) + 1e-12)
+    noisier = replace(again, friction=np.asarray(again.friction) + 1e-12)
     warmer = replace(again, temperature_c=np.full(len(again), 30.0))
     faster = replace(again, time_s=1.001 * again.time_s)
     assert copies([*runs, noisier, warmer, faster]) == {}

@@ -32,7 +32,7 @@ def test_laws_are_sorted_by_held_out_error_in_any_unit(unit: float) -> None:
     sizes = {"ab": 2.0 * unit, "c": unit, "def_": 3.0 * unit}
     found = compare_errors(**{name: alternating(size) for name, size in sizes.items()})
     assert list(found) == ["c", "ab", "def_"]
-    assert {law.law: law.left_out_rms_n for law in found.values()} == pytest.approx(sizes)
+    assert {law.law: law.held_out_rms for law in found.values()} == pytest.approx(sizes)
     assert [law.parameters for law in found.values()] == [1, 2, 4]
     assert [law.tied for law in found.values()] == [True, False, False]
 
@@ -60,7 +60,7 @@ def test_laws_are_compared_only_at_samples_that_every_law_predicts() -> None:
     b[0][:500] = 1e6
     b[1][500:] = np.nan
     found = compare_errors(a=a, b=b)
-    assert [law.left_out_rms_n for law in found.values()] == pytest.approx([1.0, 2.0])
+    assert [law.held_out_rms for law in found.values()] == pytest.approx([1.0, 2.0])
 
 
 def test_laws_of_a_bearing_require_a_rig_with_a_bearing() -> None:
@@ -72,18 +72,18 @@ def test_laws_of_a_bearing_require_a_rig_with_a_bearing() -> None:
 def diagnosis_with_offset(law: str, offset_n: float) -> Diagnosis:
     """The diagnosis of the slide with a Stribeck curve, with an offset of the force sensor."""
     _, runs, _ = golden_campaign("slide_law_selection")
-    offset = [replace(run, friction_n=np.asarray(run.friction_n) + offset_n) for run in runs]
+    offset = [replace(run, friction=np.asarray(run.friction) + offset_n) for run in runs]
     return diagnose(Rig(), offset, law=law)
 
 
 def test_selected_law_is_the_simulated_one_with_the_noise_as_held_out_rms() -> None:
     found = golden("slide_law_selection")
-    noise_n = golden_campaign("slide_law_selection")[2]
+    noise_rms = golden_campaign("slide_law_selection")[2]
     assert found.model.law == found.laws[0].law == "stribeck"
     laws = {law.law: law for law in found.laws}
-    assert laws["stribeck"].left_out_rms_n == pytest.approx(noise_n, rel=0.05)
+    assert laws["stribeck"].held_out_rms == pytest.approx(noise_rms, rel=0.05)
     assert not laws["coulomb"].tied
-    assert laws["coulomb"].left_out_rms_n > 3.0 * noise_n
+    assert laws["coulomb"].held_out_rms > 3.0 * noise_rms
     # The selected one of tied laws is that with the smallest number of parameters.
     assert all(law.parameters >= laws["stribeck"].parameters for law in found.laws if law.tied)
     assert found.to_dict()["laws"][0]["law"] == "stribeck"
@@ -93,7 +93,7 @@ def test_selected_law_is_the_simulated_one_with_the_noise_as_held_out_rms() -> N
 def test_offset_of_the_sensor_does_not_change_the_selected_law() -> None:
     found = diagnosis_with_offset("auto", 20.0)
     assert (found.model.law, found.effects) == ("stribeck", ("sensor_offset",))
-    assert found.laws[0].left_out_rms_n == pytest.approx(0.2, rel=0.05)
+    assert found.laws[0].held_out_rms == pytest.approx(0.2, rel=0.05)
 
 
 @pytest.mark.extended
@@ -104,7 +104,7 @@ def test_simpler_law_is_reported_if_it_replaces_two_effects() -> None:
     assert found.laws == ()
     assert found.simpler_law is not None
     assert found.simpler_law.law == "stribeck"
-    assert found.simpler_law.left_out_rms_n == pytest.approx(0.2, rel=0.05)
+    assert found.simpler_law.held_out_rms == pytest.approx(0.2, rel=0.05)
 
 
 @pytest.mark.extended

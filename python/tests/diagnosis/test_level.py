@@ -31,36 +31,38 @@ Draw = Callable[[np.random.Generator], Array]
 
 
 def test_false_alarm_rate_is_shared_and_minimum_size_grows_with_samples() -> None:
-    policy = replace(DEFAULT, false_alarms=0.02, indifference=0.05, imperfection=7.0)
+    policy = replace(DEFAULT, false_alarm_rate=0.02, min_effect_share=0.05, artefact_margin=7.0)
     level = Level.shared(policy, 8, 1000.0, 4.0)
     assert level.chance == 0.02 / 8
-    assert level.imperfection == 7.0
-    assert level.worth == pytest.approx(0.05**2 * 1000.0)
+    assert level.artefact_margin == 7.0
+    assert level.min_gain == pytest.approx(0.05**2 * 1000.0)
     # 1 N is above 5 % of 4 N and below 5 % of 40 N.
-    in_newtons = replace(policy, indifference_n=1.0)
+    in_newtons = replace(policy, min_effect=1.0)
     assert Level.shared(in_newtons, 8, 1000.0, 4.0).worth == pytest.approx(1000.0 / 16.0)
     assert Level.shared(in_newtons, 8, 1000.0, 40.0).worth == pytest.approx(2.5)
     assert Level.shared(policy, 0, 1000.0, 4.0).chance == 0.02
 
 
 def test_threshold_is_the_largest_of_chance_level_margin_and_minimum_size() -> None:
-    level = Level(0.02, 8, 1e-4, imperfection=5.0, worth=3.0)
+    level = Level(0.02, 8, 1e-4, artefact_margin=5.0, min_gain=3.0)
     assert level.critical == pytest.approx(stats.chi2.isf(1e-4, 1))
-    assert level.white == pytest.approx(stats.chi2.isf(0.0025, 1))
+    assert level.white_noise_threshold == pytest.approx(stats.chi2.isf(0.0025, 1))
     assert level.price(1, 100) == pytest.approx(level.critical)
-    assert replace(level, imperfection=9.0).price(1, 100) == pytest.approx(level.white + 9.0)
-    assert replace(level, worth=50.0).price(1, 100) == 50.0
+    assert replace(level, artefact_margin=9.0).price(1, 100) == pytest.approx(
+        level.white_noise_threshold + 9.0
+    )
+    assert replace(level, min_gain=50.0).price(1, 100) == 50.0
 
 
 def test_each_further_parameter_raises_the_threshold_by_the_log_of_the_samples() -> None:
-    level = Level(0.02, 8, 1e-4, imperfection=5.0, worth=3.0)
+    level = Level(0.02, 8, 1e-4, artefact_margin=5.0, min_gain=3.0)
     assert level.price(3, 100) == pytest.approx(level.price(1, 100) + 2.0 * np.log(100.0))
     assert level.price(0, 100) == level.price(1, 100)
 
 
 def test_threshold_in_a_long_recording_is_the_minimum_effect_size() -> None:
     assert Level.shared(DEFAULT, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(90.0)
-    in_newtons = replace(DEFAULT, indifference=0.0, indifference_n=0.02)
+    in_newtons = replace(DEFAULT, min_effect_share=0.0, min_effect=0.02)
     assert Level.shared(in_newtons, 20, 1e5, 0.5).price(1, 100_000) == pytest.approx(160.0)
     short = Level.shared(in_newtons, 20, 1e3, 0.5).price(1, 1000)
     assert short == pytest.approx(stats.chi2.isf(0.01 / 20, 1) + 22.0)
@@ -119,8 +121,8 @@ def test_weight_of_a_score_is_reduced_if_the_noise_is_larger_where_the_effect_ac
     assert even.counted[0] == pytest.approx(0.25, rel=0.1)
 
 
-def _level(false_alarms: float = 0.01) -> Level:
-    policy = replace(DEFAULT, indifference=0.0, false_alarms=false_alarms)
+def _level(false_alarm_rate: float = 0.01) -> Level:
+    policy = replace(DEFAULT, min_effect_share=0.0, false_alarm_rate=false_alarm_rate)
     return Level.shared(policy, TESTED, RUNS * N, 1.0)
 
 
@@ -165,7 +167,7 @@ def _one_direction(way: Array, noise: Array, blocks: list[int]) -> Directions:
 def test_calibrated_level_is_a_quantile_of_random_signs(rate: float, gain: float) -> None:
     """Signed sums of four unit scores are 4 in 1/8 of the draws, 2 in 1/2, and 0 otherwise."""
     noise = np.repeat([1.0, 1.0, -1.0, -1.0], 4)
-    level = Level(false_alarms=rate, candidates=1, chance=1.0)
+    level = Level(false_alarm_rate=rate, candidates=1, chance=1.0)
     directions = [_one_direction(np.full(16, 0.25), noise, [0, 4, 8, 12])]
     found = calibrated(level, directions)
     assert found.chance == pytest.approx(stats.chi2.sf(gain, 1), rel=1e-3)
@@ -179,16 +181,16 @@ def test_candidate_with_two_parameters_has_chi_square_of_two_degrees() -> None:
     ways[:4, 0] = ways[4:, 1] = 0.5
     noise = np.tile([1.0, 1.0, -1.0, -1.0], 2)
     one = Directions(ways, noise, np.ones(2), np.array([0, 2, 4, 6]), NO_ENDS)
-    found = calibrated(Level(false_alarms=0.2, candidates=1, chance=1.0), [one])
+    found = calibrated(Level(false_alarm_rate=0.2, candidates=1, chance=1.0), [one])
     assert found.chance == pytest.approx(stats.chi2.sf(8.0, 2), rel=1e-3)
 
 
 def test_candidate_without_a_direction_keeps_its_share_of_the_level() -> None:
     one = _one_direction(np.full(4, 0.5), np.array([1.0, 1.0, -1.0, -1.0]), [0, 2])
-    level = Level(false_alarms=0.01, candidates=2, chance=1.0)
+    level = Level(false_alarm_rate=0.01, candidates=2, chance=1.0)
     chance = stats.chi2.sf(4.0, 1)
     for rate, share in ((0.01, 0.5), (0.06, 1.0)):
-        found = calibrated(replace(level, false_alarms=rate), [one])
+        found = calibrated(replace(level, false_alarm_rate=rate), [one])
         assert found.chance == pytest.approx(share * chance, rel=1e-3)
     assert calibrated(level, []) == level
 
@@ -229,7 +231,7 @@ def test_decoys_are_named_only_if_their_gain_exceeds_the_threshold() -> None:
     """Every shift of a constant has a score of 16 in a residual of 2: a gain of 256."""
     one = _one_direction(np.full(64, 0.125), np.full(64, 2.0), [0])
     for threshold, named in ((255.9, DRAWS), (256.1, 0)):
-        level = Level(0.01, 1, 1.0, worth=threshold)
+        level = Level(0.01, 1, 1.0, min_gain=threshold)
         found = with_decoys(level, [one], 100)
         assert (found.decoys, found.decoys_named) == (DRAWS, named)
     assert with_decoys(Level(0.01, 1, 1.0), [], 100) == Level(0.01, 1, 1.0)
@@ -243,7 +245,7 @@ def test_upper_limit_of_a_false_alarm_rate_is_that_of_clopper_and_pearson() -> N
 
 def test_diagnosis_reports_level_and_decoys_of_its_significance_tests() -> None:
     found, level = linear_diagnosis("nothing"), linear_diagnosis("nothing").level
-    assert (level.candidates, level.false_alarms) == (len(found.steps[0].trials), 0.01)
+    assert (level.candidates, level.false_alarm_rate) == (len(found.steps[0].trials), 0.01)
     assert level.chance <= 0.01 / level.candidates
     assert level.blocks > 0
     assert (level.decoys, level.decoys_named) == (DRAWS, 0)
@@ -257,7 +259,7 @@ def diagnosis_with(hidden: str, **changes: Any) -> Diagnosis:
 
 @pytest.mark.parametrize(
     ("name", "values"),
-    [("weak", [np.nan]), ("false_alarms", [np.nan, 0.0, 1.0]), ("least_weight", [0.0, 0.5])],
+    [("weak", [np.nan]), ("false_alarm_rate", [np.nan, 0.0, 1.0]), ("least_weight", [0.0, 0.5])],
 )
 def test_policy_value_outside_its_range_is_rejected(name: str, values: list[float]) -> None:
     for value in values:
@@ -273,25 +275,25 @@ def test_evidence_margin_of_a_tie_is_twice_the_log_odds_of_the_weight(weight: fl
 def _margins() -> list[Any]:
     """Policy values at which the gain of the weak mass equals its threshold."""
     book = Textbook(linear_runs("weak mass"))
-    gain, rms_n = book.gain(), book.rms(2)
+    gain, rms = book.gain(), book.rms(2)
     at_chance = stats.chi2.isf(0.01 / CANDIDATES, 1)
     rate = CANDIDATES * stats.chi2.sf(gain - 22.0, 1)
     share = np.sqrt(gain / book.samples)
     extended = pytest.mark.extended
     return [
-        pytest.param("imperfection", gain - at_chance, id="artefact margin"),
-        pytest.param("false_alarms", rate, id="false-alarm rate", marks=extended),
-        pytest.param("indifference", share, id="minimum effect size", marks=extended),
-        pytest.param("indifference_n", rms_n * share, id="minimum effect in N", marks=extended),
+        pytest.param("artefact_margin", gain - at_chance, id="artefact margin"),
+        pytest.param("false_alarm_rate", rate, id="false-alarm rate", marks=extended),
+        pytest.param("min_effect_share", share, id="minimum effect size", marks=extended),
+        pytest.param("min_effect", rms * share, id="minimum effect in N", marks=extended),
     ]
 
 
 @pytest.mark.parametrize(("name", "at_gain"), _margins())
 def test_effect_is_named_only_if_its_gain_exceeds_the_threshold(name: str, at_gain: float) -> None:
-    factor = {"false_alarms": 0.1, "imperfection": 1.15}.get(name, 1.1)
+    factor = {"false_alarm_rate": 0.1, "artefact_margin": 1.15}.get(name, 1.1)
     lenient = diagnosis_with("weak mass", **{name: at_gain / factor})
     strict = diagnosis_with("weak mass", **{name: at_gain * factor})
-    assert (lenient.verdict, lenient.effects) == ("missing", ("inertia_leak",))
+    assert (lenient.verdict, lenient.effects) == ("missing", ("inertia",))
     assert (strict.verdict, strict.effects) == ("adequate", ())
     assert getattr(strict.policy, name) == strict.to_dict()["policy"][name]
 
@@ -299,7 +301,7 @@ def test_effect_is_named_only_if_its_gain_exceeds_the_threshold(name: str, at_ga
 def test_search_reports_a_further_effect_beyond_the_largest_number() -> None:
     found = diagnosis_with("offset and drag", most_effects=1)
     assert (found.verdict, len(found.model.effects)) == ("unexplained", 1)
-    assert "effects" in [remainder.axis for remainder in found.unexplained]
+    assert "effects" in [remainder.axis for remainder in found.residual_structure]
 
 
 @pytest.mark.extended
@@ -317,6 +319,6 @@ def test_alternative_below_the_minimum_weight_of_the_policy_is_not_reported() ->
 def test_candidate_on_fewer_samples_counts_as_one_without_a_direction() -> None:
     one = _one_direction(np.full(4, 0.5), np.array([1.0, 1.0, -1.0, -1.0]), [0, 2])
     fewer = _one_direction(np.full(3, 0.577), np.array([1.0, 1.0, -1.0]), [0, 2])
-    level = Level(false_alarms=0.01, candidates=3, chance=1.0)
+    level = Level(false_alarm_rate=0.01, candidates=3, chance=1.0)
     expected = calibrated(level, [one, one])
     assert calibrated(level, [one, fewer, one]).chance == pytest.approx(expected.chance)

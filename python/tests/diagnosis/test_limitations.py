@@ -42,5 +42,5 @@ def test_narrow_range_of_speeds_is_reported_as_a_limitation(high: float, expecte
 def test_strokes_within_the_presliding_displacement_are_reported_as_a_limitation(
     stiffness: float, expected: bool
 ) -> None:
-    found = said(to_and_fro(0.001, 0.2), F_c_n=3.0, sigma_0_n_m=stiffness)
+    found = said(to_and_fro(0.001, 0.2), F_c=3.0, sigma_0=stiffness)
     assert ("presliding" in found) == expected

@@ -35,8 +35,8 @@ DRIVE = Rig(drive=Drive("rotary", "torque"))
 
 
 def assert_machine_is_found(found: Diagnosis) -> None:
-    assert found.steps[-1].holdout_rms_n < 1.1 * NOISE
-    for name, true in (("inertia_leak.m_e_kg", INERTIA), ("gravity.G_n", WEIGHT)):
+    assert found.steps[-1].held_out_rms < 1.1 * NOISE
+    for name, true in (("inertia.m_e", INERTIA), ("gravity.G", WEIGHT)):
         parameter = found.model.parameters[name]
         assert parameter.stderr is not None
         assert abs(parameter.value - true) < 3.0 * parameter.stderr, name
@@ -45,17 +45,17 @@ def assert_machine_is_found(found: Diagnosis) -> None:
 def test_weight_and_inertia_of_a_drive_are_machine_terms_and_not_missing_effects() -> None:
     found = diagnose(DRIVE, RUNS, law="coulomb")
     assert found.verdict == "adequate", found.summary()
-    assert (found.machine, found.effects) == (("inertia_leak", "gravity"), ())
-    assert found.to_dict()["machine"] == ["inertia_leak", "gravity"]
-    assert found.steps[0].effects == ("inertia_leak", "gravity")
-    assert "the machine's own inertia_leak and gravity" in " ".join(found.summary().split())
+    assert (found.machine, found.effects) == (("inertia", "gravity"), ())
+    assert found.to_dict()["machine"] == ["inertia", "gravity"]
+    assert found.steps[0].effects == ("inertia", "gravity")
+    assert "the machine's own inertia and gravity" in " ".join(found.summary().split())
     assert_machine_is_found(found)
 
 
 def test_weight_and_inertia_of_a_rig_without_a_drive_are_both_named_as_effects() -> None:
     """Neither effect has evidence without the other; without [drive] they are named as effects."""
     found = diagnose(Rig(), RUNS, law="coulomb")
-    assert set(found.effects) == {"inertia_leak", "gravity"}
+    assert set(found.effects) == {"inertia", "gravity"}
     assert found.machine == ()
     assert_machine_is_found(found)
 
@@ -63,12 +63,12 @@ def test_weight_and_inertia_of_a_rig_without_a_drive_are_both_named_as_effects()
 def test_effect_is_named_in_addition_to_the_machine_terms_of_a_drive() -> None:
     def with_cogging(run: Run) -> Run:
         ripple = 0.08 * np.sin(23.0 * np.asarray(run.angle_rad) + 0.4)
-        return replace(run, friction_n=run.friction_n + ripple)
+        return replace(run, friction=run.friction + ripple)
 
     found = diagnose(DRIVE, [with_cogging(run) for run in RUNS], law="coulomb")
     assert found.verdict == "missing", found.summary()
     assert found.effects == ("cogging",)
-    assert set(found.machine) == {"inertia_leak", "gravity"}
+    assert set(found.machine) == {"inertia", "gravity"}
     assert_machine_is_found(found)
 
 
@@ -104,10 +104,10 @@ def test_weight_is_identified_in_the_presence_of_a_large_inertia() -> None:
     rng = np.random.default_rng(5)
     plan = ((0.6, 0.3), (0.4, 0.6), (0.8, 0.25), (0.5, 0.5), (0.3, 0.8), (0.7, 0.35))
     found = diagnose(DRIVE, [swept(*motion, rng) for motion in plan], law="coulomb")
-    assert set(found.machine) == {"sensor_offset", "inertia_leak", "gravity"}, found.summary()
+    assert set(found.machine) == {"sensor_offset", "inertia", "gravity"}, found.summary()
     assert found.verdict == "adequate"
     parameters = found.model.parameters
-    for name, true in {"gravity.G_n": 3.9, "inertia_leak.m_e_kg": 5.9, "F_c_n": 3.0}.items():
+    for name, true in {"gravity.G": 3.9, "inertia.m_e": 5.9, "F_c": 3.0}.items():
         assert abs(parameters[name].value / true - 1.0) < 0.01, name
 
 

@@ -131,10 +131,10 @@ def test_diagnose_command_writes_json_and_models_of_many_folders(
     assert "adequate" in text
     assert "without_rig: " in text
     document = json.loads(answers.read_text())
-    assert document["mass"]["machine"] == ["inertia_leak"]
+    assert document["mass"]["machine"] == ["inertia"]
     assert "rig.toml" in document["without_rig"]["error"]
     assert [path.name for path in models.iterdir()] == ["mass.toml"]
-    assert jbf.Model.load(models / "mass.toml").effects == ("inertia_leak",)
+    assert jbf.Model.load(models / "mass.toml").effects == ("inertia",)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ def diagnosed(offset_n: float) -> Diagnosis:
     runs = reversing_runs(
         lambda i, t, f, random: f + offset_n + NOISE_N * random.standard_normal(len(t)),
     )
-    return diagnose(Rig(), runs, law="coulomb", policy=Policy(indifference=0.12))
+    return diagnose(Rig(), runs, law="coulomb", policy=Policy(min_effect_share=0.12))
 
 
 @pytest.mark.parametrize(

@@ -107,7 +107,7 @@ def test_noise_proportional_to_the_force_is_estimated_and_weighted(share: float)
     assert (found.kind, found.unit) == ("noise_with_force", "1")
     assert found.size == pytest.approx(share, rel=0.15)
     samples = campaign.samples
-    force = samples.flat([np.abs(p.friction_n) for p in campaign.prepared])
+    force = samples.flat([np.abs(p.friction) for p in campaign.prepared])
     weighted = samples.flat(solution.residuals) * samples.flat(samples.weight)
     large = force > np.median(force)
     assert np.std(weighted[large]) == pytest.approx(np.std(weighted[~large]), rel=0.06)

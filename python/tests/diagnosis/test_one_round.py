@@ -19,21 +19,21 @@ def _round(*effects: str) -> OneRound:
 def test_round_without_effects_has_the_trials_of_the_first_diagnosis_step() -> None:
     step, first = _round().step, linear_diagnosis("mass").steps[0]
     assert step.effects == ()
-    assert step.holdout_rms_n == pytest.approx(first.holdout_rms_n, rel=1e-6)
+    assert step.held_out_rms == pytest.approx(first.held_out_rms, rel=1e-6)
     evidence = [{trial.effect: trial.evidence for trial in s.trials} for s in (step, first)]
     assert evidence[0] == pytest.approx(evidence[1], abs=1e-6)
 
 
 def test_round_with_an_effect_has_the_fit_and_does_not_try_the_effect_again() -> None:
-    found = _round("inertia_leak")
-    alone = fit(Rig(), linear_runs("mass"), ["inertia_leak"], law="coulomb")
+    found = _round("inertia")
+    alone = fit(Rig(), linear_runs("mass"), ["inertia"], law="coulomb")
     assert found.fit.parameters == alone.parameters
-    assert found.step.rms_n == found.comparison.rms_n == pytest.approx(alone.rms_n, rel=1e-6)
-    assert found.step.noise_n == found.comparison.noise_n
+    assert found.step.rms == found.comparison.rms == pytest.approx(alone.rms, rel=1e-6)
+    assert found.step.noise_rms == found.comparison.noise_rms
     # No effect is missing in addition to the mass, which is not tried again.
     assert {trial.outcome for trial in found.step.trials} == {"no gain"}
     tried = {trial.effect for trial in found.step.trials}
-    assert {power.effect for power in found.power} <= tried - {"inertia_leak"} == tried
+    assert {power.effect for power in found.power} <= tried - {"inertia"} == tried
 
 
 def test_unknown_effect_of_a_round_is_rejected_by_name() -> None:
@@ -50,9 +50,9 @@ def test_fit_of_an_interrupted_round_is_reported_before_its_trials() -> None:
 
     options: Any = {"progress": interrupt, "fitted_as": lambda fitted, _: fits.append(fitted)}
     with pytest.raises(Stopped) as stopped:
-        one_round(Rig(), linear_runs("mass"), ["inertia_leak"], law="coulomb", **options)
+        one_round(Rig(), linear_runs("mass"), ["inertia"], law="coulomb", **options)
     assert stopped.value.fit is fits[0]
-    assert stopped.value.fit.model.effects == ("inertia_leak",)
+    assert stopped.value.fit.model.effects == ("inertia",)
 
 
 def test_interrupted_diagnosis_returns_the_model_of_the_last_round() -> None:
@@ -68,7 +68,7 @@ def test_interrupted_diagnosis_returns_the_model_of_the_last_round() -> None:
     with pytest.raises(Stopped) as stopped:
         diagnose(Rig(), linear_runs("offset and drag"), law="coulomb", progress=interrupt)
     assert stopped.value.fit.model.effects == ("sensor_offset",)
-    assert stopped.value.fit.parameters["sensor_offset.b_n"].value == pytest.approx(0.5, abs=0.1)
+    assert stopped.value.fit.parameters["sensor_offset.b"].value == pytest.approx(0.5, abs=0.1)
 
 
 def test_diagnosis_interrupted_before_the_first_fit_raises_keyboard_interrupt() -> None:
@@ -84,10 +84,10 @@ def test_diagnosis_interrupted_before_the_first_fit_raises_keyboard_interrupt() 
 
 def test_interrupted_diagnosis_has_standard_errors_after_the_work_limit() -> None:
     candidates = coulomb_candidates(linear_runs("mass"))
-    candidates.converge(("inertia_leak",))
+    candidates.converge(("inertia",))
     candidates.campaign.work.renew(0.0)
-    reached = Reached(candidates, ("inertia_leak",)).fit()
-    alone = fit(Rig(), linear_runs("mass"), ["inertia_leak"], law="coulomb")
+    reached = Reached(candidates, ("inertia",)).fit()
+    alone = fit(Rig(), linear_runs("mass"), ["inertia"], law="coulomb")
     assert reached is not None
     for name, expected in alone.parameters.items():
         found = reached.parameters[name]

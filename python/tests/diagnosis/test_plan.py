@@ -26,9 +26,9 @@ from shared import shared
 
 TOP_M_S, SHARP_M_S2, NOISE_N, STEP_S = 0.2, 0.4, 0.2, 0.05
 LIMITS = Limits(TOP_M_S, SHARP_M_S2, duration_s=30.0)
-VALUES = {**LAW, "F_s_n": 5.0}
+VALUES = {**LAW, "F_s": 5.0}
 MODEL = Model(Rig(), "coulomb", parameters=VALUES)
-WITH_MASS = Model(Rig(), "coulomb", ["inertia_leak"], VALUES | {"inertia_leak.m_e_kg": 3.0})
+WITH_MASS = Model(Rig(), "coulomb", ["inertia"], VALUES | {"inertia.m_e": 3.0})
 RIG_TOML = '[drive]\nmotion = "linear"\nfriction = "force"\n'
 TIME_S = 0.02 * np.arange(600.0)
 
@@ -36,7 +36,7 @@ TIME_S = 0.02 * np.arange(600.0)
 @shared
 def planned() -> Plan:
     """A plan of four runs."""
-    return plan(MODEL, limits=LIMITS, minutes=2.0, noise_n=NOISE_N, step_s=STEP_S)
+    return plan(MODEL, limits=LIMITS, minutes=2.0, noise_rms=NOISE_N, step_s=STEP_S)
 
 
 def candidate_runs() -> list[tuple[str, Run]]:
@@ -110,17 +110,17 @@ def test_plan_respects_the_total_time_and_the_limits_of_the_rig() -> None:
     descriptions = dict(candidate_runs())
     for run, words in zip(found.runs, found.words, strict=True):
         assert run.duration_s == pytest.approx(30.0, abs=0.05)
-        assert np.max(np.abs(run.velocity_m_s)) <= TOP_M_S
-        assert np.max(np.abs(np.diff(run.velocity_m_s))) <= 1.01 * SHARP_M_S2 * STEP_S
-        assert run.velocity_m_s == pytest.approx(descriptions[words].velocity_m_s)
-        assert run.friction_n is None
+        assert np.max(np.abs(run.velocity)) <= TOP_M_S
+        assert np.max(np.abs(np.diff(run.velocity))) <= 1.01 * SHARP_M_S2 * STEP_S
+        assert run.velocity == pytest.approx(descriptions[words].velocity)
+        assert run.friction is None
         assert run.position_m is not None
     assert len(set(found.words)) > 1
 
 
 def test_plan_reports_the_power_of_its_runs() -> None:
     found, table = planned(), planned().to_dict()
-    power = planned_power(MODEL, found.runs, noise_n=NOISE_N).power
+    power = planned_power(MODEL, found.runs, noise_rms=NOISE_N).power
     assert found.planned.power == power
     assert [row["run"] for row in table["plan"]] == [run.name for run in found.runs]
     assert [row["motion"] for row in table["plan"]] == list(found.words)
@@ -129,7 +129,7 @@ def test_plan_reports_the_power_of_its_runs() -> None:
 
 def test_planned_power_allows_for_uncertain_instants_of_reversals() -> None:
     """A jump of 10 N in noise of 0.2 N would reveal the side of a reversal of each sample."""
-    found: dict[str, Any] = {p.effect: p.found_80 for p in planned().planned.power}
+    found: dict[str, Any] = {p.effect: p.detectable_80 for p in planned().planned.power}
     assert found["backlash"] > 0.1 * 0.5 * SHARP_M_S2 * STEP_S**2
     assert found["time_delay"] > 0.2 * STEP_S
     assert 0.1 * STEP_S < found["sensor_lag"] < STEP_S
@@ -139,14 +139,14 @@ def test_plan_for_a_shaft_has_its_angle_and_the_default_acceleration() -> None:
     """The default acceleration limit is that of a sine at 2 rad/s with the largest speed."""
     model = Model(Rig(drive=Drive("rotary", "torque")), "coulomb", parameters=MODEL.parameters)
     limits = Limits(2.0, duration_s=15.0)
-    found = plan(model, limits=limits, minutes=0.75, noise_n=NOISE_N, step_s=STEP_S)
-    allowed = excitations(replace(limits, acceleration_m_s2=4.0), STEP_S, "rad/s")
+    found = plan(model, limits=limits, minutes=0.75, noise_rms=NOISE_N, step_s=STEP_S)
+    allowed = excitations(replace(limits, acceleration=4.0), STEP_S, "rad/s")
     assert set(found.words) <= {e.words for e in allowed}
-    assert max(np.max(np.abs(np.diff(run.velocity_m_s))) for run in found.runs) > 3.0 * STEP_S
+    assert max(np.max(np.abs(np.diff(run.velocity))) for run in found.runs) > 3.0 * STEP_S
     for run in found.runs:
         assert run.position_m is None
         assert run.angle_rad is not None
-        middle = 0.5 * (run.velocity_m_s[1:] + run.velocity_m_s[:-1])
+        middle = 0.5 * (run.velocity[1:] + run.velocity[:-1])
         assert np.diff(run.angle_rad) == pytest.approx(STEP_S * middle, abs=1e-9)
 
 
@@ -158,14 +158,14 @@ def test_plan_for_a_shaft_has_its_angle_and_the_default_acceleration() -> None:
         ({"minutes": 1e300}, "more than 200 runs"),
         ({"minutes": 0.0}, "minutes: 0 is not above zero"),
         ({"minutes": np.inf}, "minutes: inf is not above zero"),
-        ({"noise_n": -1.0}, "noise_n: -1 is not above zero"),
+        ({"noise_rms": -1.0}, "noise_rms: -1 is not above zero"),
         ({"step_s": np.nan}, "step_s"),
         ({"limits": Limits(duration_s=30.0)}, "velocity_m_s is missing"),
     ],
 )
 def test_impossible_plan_is_rejected_with_the_reason(change: dict[str, Any], problem: str) -> None:
     assert (LEAST_RUNS, MOST_RUNS) == (3, 200)
-    request: dict[str, Any] = {"limits": LIMITS, "minutes": 2.0, "noise_n": NOISE_N} | change
+    request: dict[str, Any] = {"limits": LIMITS, "minutes": 2.0, "noise_rms": NOISE_N} | change
     with pytest.raises(InputError, match=problem):
         plan(MODEL, **request)
 
@@ -180,9 +180,9 @@ def test_plan_command_writes_runs_that_the_power_command_reads(
     rig.write_text(RIG_TOML)
     minutes = f"{3.0 * float(run_s) / 60.0}"
     command = ["plan", str(rig), "--law", "coulomb", "--minutes", minutes, "--run-s", run_s]
-    command += ["--max-velocity-m-s", "0.2", "--noise-n", "0.1"]
+    command += ["--max-velocity", "0.2", "--noise", "0.1"]
     if loads:
-        command += ["--loads-n", *loads]
+        command += ["--loads", *loads]
     assert main([*command, "--out", str(out), "--json", str(table)]) == 0
     assert [f.name for f in sorted(out.glob("*.csv"))] == ["01.csv", "02.csv", "03.csv"]
     runs = read_runs([out], Rig(), need_friction=False)
@@ -191,41 +191,41 @@ def test_plan_command_writes_runs_that_the_power_command_reads(
     found = json.loads(table.read_text())
     assert [row["run"] for row in found["plan"]] == ["01", "02", "03"]
     effects = {row["effect"] for row in found["power"]}
-    assert "inertia_leak" in effects
+    assert "inertia" in effects
     assert ("dry_load_dependence" in effects) == bool(loads)
-    assert main(["power", str(rig), str(out), "--law", "coulomb", "--noise-n", "0.1"]) == 0
+    assert main(["power", str(rig), str(out), "--law", "coulomb", "--noise", "0.1"]) == 0
 
 
 def test_plan_command_without_the_noise_is_rejected(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "rig.toml").write_text(RIG_TOML)
-    command = ["plan", str(tmp_path / "rig.toml"), "--law", "coulomb", "--max-velocity-m-s", "1"]
+    command = ["plan", str(tmp_path / "rig.toml"), "--law", "coulomb", "--max-velocity", "1"]
     assert main(command) == 2
-    assert "--noise-n is missing" in capsys.readouterr().err
+    assert "--noise is missing" in capsys.readouterr().err
 
 
 def motion(name: str, rate: float = 1.0) -> Run:
     return Run.from_arrays(TIME_S, 0.1 * np.sin(rate * TIME_S), name=name)
 
 
-@pytest.mark.parametrize("noise_n", [0.01, 0.5])
-def test_planned_runs_have_the_friction_of_the_model_and_white_noise(noise_n: float) -> None:
+@pytest.mark.parametrize("noise_rms", [0.01, 0.5])
+def test_planned_runs_have_the_friction_of_the_model_and_white_noise(noise_rms: float) -> None:
     """Friction already contained in a planned run is ignored."""
-    other = replace(motion("b"), friction_n=7.0 * motion("b").velocity_m_s)
-    campaign = as_recorded(MODEL, [motion("a"), other], noise_n, DEFAULT).campaign
+    other = replace(motion("b"), friction=7.0 * motion("b").velocity)
+    campaign = as_recorded(MODEL, [motion("a"), other], noise_rms, DEFAULT).campaign
     clean = MODEL.predict_many([motion("a"), motion("b")])
-    noise = [p.friction_n - f for p, f in zip(campaign.prepared, clean, strict=True)]
-    assert [float(np.std(e)) for e in noise] == pytest.approx([noise_n] * 2, rel=0.1)
+    noise = [p.friction - f for p, f in zip(campaign.prepared, clean, strict=True)]
+    assert [float(np.std(e)) for e in noise] == pytest.approx([noise_rms] * 2, rel=0.1)
     assert abs(np.corrcoef(noise[0], noise[1])[0, 1]) < 0.15
     assert abs(np.corrcoef(noise[0][1:], noise[0][:-1])[0, 1]) < 0.15
-    again = as_recorded(MODEL, [motion("a"), other], noise_n, DEFAULT).campaign
-    assert np.array_equal(again.prepared[0].friction_n, campaign.prepared[0].friction_n)
+    again = as_recorded(MODEL, [motion("a"), other], noise_rms, DEFAULT).campaign
+    assert np.array_equal(again.prepared[0].friction, campaign.prepared[0].friction)
 
 
 def test_samples_next_to_a_planned_reversal_are_excluded_from_the_fit() -> None:
     campaign = as_recorded(MODEL, [motion("a")], 0.1, DEFAULT).campaign
-    turns = np.flatnonzero(np.diff(np.sign(campaign.prepared[0].motion.velocity_m_s)))
+    turns = np.flatnonzero(np.diff(np.sign(campaign.prepared[0].motion.velocity)))
     assert len(turns) > 2
     counted = campaign.samples.counted[0]
     assert not counted[turns].any()
@@ -233,38 +233,38 @@ def test_samples_next_to_a_planned_reversal_are_excluded_from_the_fit() -> None:
     assert np.count_nonzero(~counted) <= 2 * len(turns) + 1
 
 
-@pytest.mark.parametrize("noise_n", [0.0, -1.0, np.inf, 2.0 * MOST])
-def test_planned_power_with_noise_outside_its_range_is_rejected(noise_n: float) -> None:
-    with pytest.raises(InputError, match="noise_n"):
-        planned_power(MODEL, [motion("a")], noise_n=noise_n)
+@pytest.mark.parametrize("noise_rms", [0.0, -1.0, np.inf, 2.0 * MOST])
+def test_planned_power_with_noise_outside_its_range_is_rejected(noise_rms: float) -> None:
+    with pytest.raises(InputError, match="noise_rms"):
+        planned_power(MODEL, [motion("a")], noise_rms=noise_rms)
 
 
 def test_planned_power_of_no_runs_is_rejected() -> None:
     with pytest.raises(InputError, match="no run was given"):
-        planned_power(MODEL, [], noise_n=0.1)
+        planned_power(MODEL, [], noise_rms=0.1)
 
 
 def test_planned_power_of_a_mass_is_that_of_a_regression() -> None:
-    noise_n, runs = 0.1, [motion("a", 4.0), motion("b", 6.0), motion("c", 8.0)]
-    planned, rows = planned_power(MODEL, runs, noise_n=noise_n), []
-    found = next(p for p in planned.power if p.effect == "inertia_leak")
+    noise_rms, runs = 0.1, [motion("a", 4.0), motion("b", 6.0), motion("c", 8.0)]
+    planned, rows = planned_power(MODEL, runs, noise_rms=noise_rms), []
+    found = next(p for p in planned.power if p.effect == "inertia")
     for run in runs:
-        v = run.velocity_m_s
+        v = run.velocity
         turn = np.flatnonzero(np.diff(np.sign(v)) != 0.0)
         # The sign of the friction is unknown next to a reversal.
         known = ~np.isin(np.arange(len(v)), [*turn, *(turn + 1)])
         rows.append(np.column_stack([np.sign(v), v, np.gradient(v, TIME_S)])[known])
     design, a = np.split(np.concatenate(rows), [2], axis=1)
     left = np.linalg.norm(a - design @ np.linalg.lstsq(design, a, rcond=None)[0])
-    wanted = noise_n * np.sqrt(non_centrality(planned.level.price(1, len(a)), 1, 0.8))
-    assert found.found_80 is not None
-    assert found.found_80 * left == pytest.approx(wanted, rel=0.03)
+    wanted = noise_rms * np.sqrt(non_centrality(planned.level.price(1, len(a)), 1, 0.8))
+    assert found.detectable_80 is not None
+    assert found.detectable_80 * left == pytest.approx(wanted, rel=0.03)
 
 
 def test_dictionary_of_planned_power_has_its_law_runs_level_and_results() -> None:
-    planned = planned_power(MODEL, [motion("a"), motion("b", 1.7)], noise_n=0.2)
+    planned = planned_power(MODEL, [motion("a"), motion("b", 1.7)], noise_rms=0.2)
     table = planned.to_dict()
-    assert (table["law"], table["effects"], table["noise_n"]) == ("coulomb", [], 0.2)
+    assert (table["law"], table["effects"], table["noise_rms"]) == ("coulomb", [], 0.2)
     assert table["runs"] == ["a", "b"]
     assert table["level"] == planned.level.to_dict()
     assert table["power"] == [p.to_dict() for p in planned.power]
@@ -273,13 +273,13 @@ def test_dictionary_of_planned_power_has_its_law_runs_level_and_results() -> Non
 
 
 def test_planned_power_excludes_the_effects_of_the_model() -> None:
-    planned = planned_power(WITH_MASS, [motion("a"), motion("b", 1.7)], noise_n=0.1)
-    assert planned.to_dict()["effects"] == ["inertia_leak"]
-    assert "inertia_leak" not in {p.effect for p in planned.power}
+    planned = planned_power(WITH_MASS, [motion("a"), motion("b", 1.7)], noise_rms=0.1)
+    assert planned.to_dict()["effects"] == ["inertia"]
+    assert "inertia" not in {p.effect for p in planned.power}
 
 
 def test_friction_of_planned_runs_includes_the_effects_of_the_model() -> None:
     (run,) = as_recorded(WITH_MASS, [motion("a")], 1e-3, DEFAULT).campaign.prepared
     (without,) = as_recorded(MODEL, [motion("a")], 1e-3, DEFAULT).campaign.prepared
-    inertial = run.friction_n - without.friction_n
+    inertial = run.friction - without.friction
     assert inertial == pytest.approx(0.3 * np.cos(TIME_S), abs=0.01)

@@ -30,7 +30,7 @@ NOISE_N = 0.1
 
 def runs(friction: Friction = coulomb, seed: int = 0) -> list[Run]:
     return [
-        one_way(f"{k}", friction, way=way, rate=rate, noise_n=NOISE_N, seed=4 * seed + k)
+        one_way(f"{k}", friction, way=way, rate=rate, noise_rms=NOISE_N, seed=4 * seed + k)
         for k, (way, rate) in enumerate([(1.0, 0.7), (-1.0, 1.3), (1.0, 2.1), (-1.0, 4.0)])
     ]
 
@@ -44,8 +44,8 @@ def powers() -> dict[str, Any]:
 def columns() -> tuple[Array, Array, Array]:
     """Velocity, acceleration and time of all samples."""
     records = runs()
-    v = np.concatenate([run.velocity_m_s for run in records])
-    a = np.concatenate([np.gradient(run.velocity_m_s, run.time_s) for run in records])
+    v = np.concatenate([run.velocity for run in records])
+    a = np.concatenate([np.gradient(run.velocity, run.time_s) for run in records])
     return v, a, np.concatenate([run.time_s for run in records])
 
 
@@ -79,14 +79,14 @@ def test_gain_that_counts_for_a_share_requires_a_larger_non_centrality() -> None
 def test_detectable_strength_of_a_mass_is_that_of_a_regression() -> None:
     """The mass is a third column in addition to dry and viscous friction."""
     v, a, _ = columns()
-    found = powers()["inertia_leak"]
-    for value, chance in ((found.found_80, 0.8), (found.found_95, 0.95)):
+    found = powers()["inertia"]
+    for value, chance in ((found.detectable_80, 0.8), (found.detectable_95, 0.95)):
         wanted = np.sqrt(non_centrality(price(), 1, chance)) * NOISE_N
         # The noise estimate from 2000 samples has an error of a few percent.
         assert value * residual_norm(a) == pytest.approx(wanted, rel=0.03)
-    share = found.found_80 * np.sqrt(np.mean(a**2) / np.mean((5.0 + 20.0 * np.abs(v)) ** 2))
+    share = found.detectable_80 * np.sqrt(np.mean(a**2) / np.mean((5.0 + 20.0 * np.abs(v)) ** 2))
     assert found.share_80 == pytest.approx(share, rel=0.02)
-    assert (found.parameter, found.unit) == ("m_e_kg", "kg")
+    assert (found.parameter, found.unit) == ("m_e", "kg")
 
 
 @pytest.mark.parametrize("effect", ["sensor_offset", "sensor_drift", "viscous_asymmetry"])
@@ -95,7 +95,11 @@ def test_detectable_size_of_a_smooth_change_is_larger_than_in_white_noise(effect
     v, _, t = columns()
     changes = {"sensor_offset": np.ones(len(v)), "sensor_drift": t, "viscous_asymmetry": np.abs(v)}
     wanted = np.sqrt(non_centrality(price(), 1, 0.8)) * NOISE_N
-    assert 1.05 * wanted < powers()[effect].found_80 * residual_norm(changes[effect]) < 1.7 * wanted
+    assert (
+        1.05 * wanted
+        < powers()[effect].detectable_80 * residual_norm(changes[effect])
+        < 1.7 * wanted
+    )
 
 
 def test_effect_that_the_law_explains_has_no_detectable_strength() -> None:
@@ -103,7 +107,9 @@ def test_effect_that_the_law_explains_has_no_detectable_strength() -> None:
     t = np.arange(0.0, 20.0, 0.02)
     records = [coulomb_run(t, np.full(len(t), v), seed=k) for k, v in enumerate((0.1, -0.1))]
     (found,) = power(coulomb_candidates(records), (), ["quadratic_drag"])
-    assert (found.found_80, found.found_95, found.alone_80, found.share_80) == (None,) * 4
+    assert (found.detectable_80, found.detectable_95, found.distinguishable_80, found.share_80) == (
+        None,
+    ) * 4
     assert found.like == ()
     assert found.hidden
 
@@ -115,16 +121,16 @@ def test_effect_is_reported_as_hidden_if_its_usual_strength_is_undetectable() ->
         assert model is not None
         if model.page.null == 0.0:
             usual = float(model.usual[model.which])
-            assert p.hidden == (p.found_80 is None or p.found_80 > usual), p
+            assert p.hidden == (p.detectable_80 is None or p.detectable_80 > usual), p
     hidden = [p for p in powers().values() if p.hidden]
-    assert {p.found_80 is None for p in hidden} == {True, False}
+    assert {p.detectable_80 is None for p in hidden} == {True, False}
 
 
 def test_effects_with_the_same_signature_are_confounded() -> None:
     """Without rests a direction-dependent dry friction is equivalent to a sensor offset."""
     offset, dry = powers()["sensor_offset"], powers()["dry_asymmetry"]
-    assert offset.found_80 is not None
-    assert (offset.alone_80, dry.alone_80) == (None, None)
+    assert offset.detectable_80 is not None
+    assert (offset.distinguishable_80, dry.distinguishable_80) == (None, None)
     assert offset.like[0] == "dry_asymmetry"
     assert dry.like[0] == "sensor_offset"
 
@@ -133,7 +139,7 @@ def test_effect_with_a_unique_signature_is_distinguishable_if_detectable() -> No
     for name in ("stribeck_asymmetry", "sensor_hysteresis", "sensor_drift"):
         found = powers()[name]
         assert found.like == ()
-        assert found.alone_80 == pytest.approx(found.found_80, rel=0.1)
+        assert found.distinguishable_80 == pytest.approx(found.detectable_80, rel=0.1)
 
 
 def test_distinguishable_strength_is_that_of_a_regression_on_law_and_rival() -> None:
@@ -150,15 +156,15 @@ def test_distinguishable_strength_is_that_of_a_regression_on_law_and_rival() -> 
         margin = (unexplained**2 - DEFAULT.tie) / (2.0 * unexplained)
         return float(gains * stats.norm.cdf(margin)) - 0.8
 
-    assert found.alone_80 == pytest.approx(optimize.brentq(surplus, 0.05, 5.0), rel=0.05)
-    assert found.alone_80 > 1.5 * found.found_80
+    assert found.distinguishable_80 == pytest.approx(optimize.brentq(surplus, 0.05, 5.0), rel=0.05)
+    assert found.distinguishable_80 > 1.5 * found.detectable_80
 
 
 def test_power_is_reported_for_effects_that_are_not_in_the_model() -> None:
     tried = coulomb_candidates(runs(lambda t, v, a: coulomb(t, v, a) + 2.0 * a))
-    found = power(tried, ("inertia_leak",))
-    assert {p.effect for p in found} == set(tried.names) - {"inertia_leak"}
-    (offset,) = power(tried, ("inertia_leak",), ["inertia_leak", "sensor_offset"])
+    found = power(tried, ("inertia",))
+    assert {p.effect for p in found} == set(tried.names) - {"inertia"}
+    (offset,) = power(tried, ("inertia",), ["inertia", "sensor_offset"])
     assert offset == next(p for p in found if p.effect == "sensor_offset")
 
 
@@ -167,31 +173,31 @@ def test_presliding_is_not_detectable_at_any_stiffness_from_rests() -> None:
     t = np.arange(0.0, 20.0, 0.02)
     moving = np.mod(t, 6.0) > 2.0
     records = [coulomb_run(t, 0.1 * np.sin((0.6 + 0.2 * k) * t) * moving, seed=k) for k in range(3)]
-    found = power(coulomb_candidates(records), (), ["presliding", "inertia_leak"])
-    assert {p.effect: p.always for p in found} == {"presliding": False, "inertia_leak": False}
+    found = power(coulomb_candidates(records), (), ["presliding", "inertia"])
+    assert {p.effect: p.always for p in found} == {"presliding": False, "inertia": False}
     (presliding, _) = found
-    assert presliding.found_80 is not None
+    assert presliding.detectable_80 is not None
 
 
 def test_diagnosis_reports_power_only_if_no_structure_is_unexplained() -> None:
     result = golden("bearing_coulomb_drag")
     names = {p.effect for p in result.power}
-    assert "inertia_leak" in names
+    assert "inertia" in names
     assert "coulomb_drag" not in names
-    row = next(r for r in result.to_dict()["power"] if r["effect"] == "inertia_leak")
-    assert row["found_95"] > row["found_80"] > 0.0
+    row = next(r for r in result.to_dict()["power"] if r["effect"] == "inertia")
+    assert row["detectable_95"] > row["detectable_80"] > 0.0
     assert golden("bearing_hum").power == ()
 
 
 @pytest.mark.extended
-@pytest.mark.parametrize("effect", ["inertia_leak", "sensor_drift"])
+@pytest.mark.parametrize("effect", ["inertia", "sensor_drift"])
 def test_effect_of_detectable_strength_is_detected_in_eighty_percent_of_campaigns(
     effect: str,
 ) -> None:
-    value: float = powers()[effect].found_80
+    value: float = powers()[effect].detectable_80
 
     def friction(t: Array, v: Array, a: Array) -> Array:
-        return coulomb(t, v, a) + value * (a if effect == "inertia_leak" else t)
+        return coulomb(t, v, a) + value * (a if effect == "inertia" else t)
 
     found, campaigns = 0, 60
     for seed in range(1, campaigns + 1):
@@ -307,6 +313,8 @@ def test_delay_and_lag_are_confounded_if_reversals_are_uncertain(velocity_noise:
         own = found[name]
         if velocity_noise:
             assert other in own.like
-            assert own.alone_80 is None or own.alone_80 > 1.2 * own.found_80
+            assert (
+                own.distinguishable_80 is None or own.distinguishable_80 > 1.2 * own.detectable_80
+            )
         else:
-            assert own.alone_80 < 2e-3
+            assert own.distinguishable_80 < 2e-3

@@ -28,7 +28,7 @@ def sines() -> Campaign:
     return slides(RECORDED_M_S)
 
 
-VELOCITIES = [p.motion.velocity_m_s for p in sines().prepared]
+VELOCITIES = [p.motion.velocity for p in sines().prepared]
 FRICTION = friction_of(sines())
 TONE = 0.6 * np.sin(2.0 * np.pi * 7.3 * TIME_S)
 
@@ -138,16 +138,16 @@ def test_random_effect_in_the_model_is_not_residual_structure() -> None:
 
 @pytest.mark.parametrize(("part", "found"), [(0.9, False), (1.15, True)])
 def test_structure_within_the_quantisation_is_not_reported(part: float, found: bool) -> None:
-    exact = [slide(v, name, noise_n=0.05) for v, name in zip(RECORDED_M_S, "ab", strict=True)]
-    runs = [replace(run, friction_n=quantised(run.friction_n, 0.8)) for run in exact]
+    exact = [slide(v, name, noise_rms=0.05) for v, name in zip(RECORDED_M_S, "ab", strict=True)]
+    runs = [replace(run, friction=quantised(run.friction, 0.8)) for run in exact]
     campaign = Campaign.prepare(Rig(), runs)
-    step_rms_n = campaign.steps_rms_n(0.05)
-    assert 0.05 < step_rms_n < 0.8
-    tone = part * step_rms_n * np.sqrt(2.0) * np.sin(2.0 * np.pi * 7.3 * TIME_S)
+    step_rms = campaign.steps_rms(0.05)
+    assert 0.05 < step_rms < 0.8
+    tone = part * step_rms * np.sqrt(2.0) * np.sin(2.0 * np.pi * 7.3 * TIME_S)
     residuals = [e + tone for e in white_noise(campaign, 1, 0.05)]
     problem, solution = solution_with(campaign, residuals)
     reported = {r.axis for r in find_remainder(problem, solution)}
-    assert campaign.steps_rms_n(solution.rms_n) == pytest.approx(step_rms_n, rel=0.1)
+    assert campaign.steps_rms(solution.rms) == pytest.approx(step_rms, rel=0.1)
     assert ("frequency" in reported) == found
 
 

@@ -52,7 +52,7 @@ def waves(
     signals = []
     for i, (p, path) in enumerate(zip(campaign.prepared, paths(campaign), strict=True)):
         angle = 2.0 * np.pi * path / pitch + (2.4 * i if phase is None else phase)
-        sign = np.sign(p.motion.velocity_m_s) if friction else 1.0
+        sign = np.sign(p.motion.velocity) if friction else 1.0
         signals.append(random.standard_normal(len(path)) + amplitudes[i] * np.cos(angle) * sign)
     return signals
 
@@ -92,12 +92,12 @@ def test_ripple_with_the_sign_of_the_velocity_is_reported_as_friction() -> None:
 
 
 @pytest.mark.parametrize("friction_n", [0.5, 2.0])
-def test_only_the_larger_of_two_ripples_is_reported(friction_n: float) -> None:
+def test_only_the_larger_of_two_ripples_is_reported(friction: float) -> None:
     campaign = reversing()
     force = waves(campaign, [1.0] * 5)
-    friction = waves(campaign, [friction_n] * 5, friction=True, seed=4)
+    friction = waves(campaign, [friction] * 5, friction=True, seed=4)
     (found,) = ripples_in(campaign, [a + b for a, b in zip(force, friction, strict=True)])
-    assert found.where.startswith("friction" if friction_n > 1.0 else "a force")
+    assert found.where.startswith("friction" if friction > 1.0 else "a force")
 
 
 def test_no_ripple_is_reported_in_white_noise() -> None:

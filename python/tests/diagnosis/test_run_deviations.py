@@ -146,7 +146,7 @@ def _four_runs(mass_kg: float, offsets_n: tuple[float, ...]) -> list[Run]:
 def test_effect_and_offsets_that_differ_by_run_are_identified_together() -> None:
     offsets_n = (0.5, -0.3, 0.1, -0.4)
     found = diagnose(Rig(), _four_runs(2.0, offsets_n), law="coulomb")
-    assert found.effects == ("inertia_leak",)
+    assert found.effects == ("inertia",)
     sizes = {f.kind: f.size for f in found.findings}
     assert sizes["level_by_run"] == pytest.approx(np.std(offsets_n, ddof=1), rel=0.2)
-    assert_recovered(found.fit.parameters["inertia_leak.m_e_kg"], 2.0)
+    assert_recovered(found.fit.parameters["inertia.m_e"], 2.0)

@@ -32,11 +32,11 @@ def diagnosed(seed: int, hidden: tuple[str, ...] = (), law: str = "coulomb") -> 
 @pytest.mark.parametrize(
     ("seed", "machine"),
     [
-        pytest.param(4014, {"inertia_leak"}, id="point to point, tachometer"),
-        pytest.param(4017, {"sensor_offset", "inertia_leak"}, id="hand, late force"),
-        pytest.param(4030, {"inertia_leak"}, id="saturated steps, command"),
-        pytest.param(4032, {"inertia_leak", "gravity"}, id="swinging, position alone"),
-        pytest.param(4612, {"sensor_offset", "inertia_leak"}, id="hand, stamps at arrival"),
+        pytest.param(4014, {"inertia"}, id="point to point, tachometer"),
+        pytest.param(4017, {"sensor_offset", "inertia"}, id="hand, late force"),
+        pytest.param(4030, {"inertia"}, id="saturated steps, command"),
+        pytest.param(4032, {"inertia", "gravity"}, id="swinging, position alone"),
+        pytest.param(4612, {"sensor_offset", "inertia"}, id="hand, stamps at arrival"),
     ],
 )
 def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) -> None:
@@ -105,7 +105,7 @@ def campaign_of(seed: int) -> tuple[servosim.Campaign, Campaign]:
 def test_force_noise_is_estimated_separately_from_the_motion_errors() -> None:
     """A smooth motion between corners, for which the smoother overestimates the motion errors."""
     simulated, campaign = campaign_of(4013)
-    problem = Problem(campaign, "coulomb", "journal", ["inertia_leak"])
+    problem = Problem(campaign, "coulomb", "journal", ["inertia"])
     _, solution = with_motion_errors(problem, minimum(problem, [{}]))
     motion = solution.samples.motion
     assert motion is not None
@@ -114,7 +114,7 @@ def test_force_noise_is_estimated_separately_from_the_motion_errors() -> None:
 
 def test_scale_of_the_motion_errors_is_that_of_the_true_errors_of_the_acceleration() -> None:
     simulated, campaign = campaign_of(4013)
-    problem = Problem(campaign, "coulomb", "journal", ["inertia_leak"])
+    problem = Problem(campaign, "coulomb", "journal", ["inertia"])
     problem, solution = with_motion_errors(problem, minimum(problem, [{}]))
     motion = solution.samples.motion
     assert motion is not None
@@ -125,7 +125,7 @@ def test_scale_of_the_motion_errors_is_that_of_the_true_errors_of_the_accelerati
         true = np.interp(p.run.time_s, record.time_s, record.true_acceleration)
         assert p.motion.errors is not None
         sd = np.sqrt(p.motion.errors.covariance[:, 2, 2])
-        ratios.append(((p.motion.acceleration_m_s2 - true) / sd)[counted])
+        ratios.append(((p.motion.acceleration - true) / sd)[counted])
     true_scale = float(np.sqrt(np.mean(np.concatenate(ratios) ** 2)))
     assert true_scale < 0.8
     assert motion.scale == pytest.approx(true_scale, rel=0.2)
@@ -141,6 +141,6 @@ def test_acceleration_error_of_a_hand_guided_drive_is_below_7_percent_of_its_jum
         campaign.prepared, campaign.samples.counted, simulated.records, strict=True
     ):
         true = np.interp(p.run.time_s, record.time_s, record.true_acceleration)
-        squares.append((p.motion.acceleration_m_s2 - true)[counted] ** 2)
+        squares.append((p.motion.acceleration - true)[counted] ** 2)
     error = float(np.sqrt(np.mean(np.concatenate(squares))))
     assert error < 0.062 * jump

@@ -13,7 +13,7 @@ from linear_campaigns import coulomb_candidates, coulomb_run
 
 @pytest.fixture(scope="module")
 def candidates() -> Candidates:
-    return coulomb_candidates(four_runs(coulomb, noise_n=0.1))
+    return coulomb_candidates(four_runs(coulomb, noise_rms=0.1))
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def model_of(candidates: Candidates, effect: str) -> Strength:
 
 @pytest.mark.parametrize(
     "name",
-    ["sensor_offset", "dry_asymmetry", "inertia_leak", "presliding", "warm_up", "stribeck_excess"],
+    ["sensor_offset", "dry_asymmetry", "inertia", "presliding", "warm_up", "stribeck_excess"],
 )
 def test_parameter_moves_from_its_null_with_strength(name: str, candidates: Candidates) -> None:
     model = model_of(candidates, name)
@@ -71,13 +71,13 @@ def test_all_coefficients_of_an_effect_grow_with_its_strength(candidates: Candid
 def test_change_by_a_linear_effect_is_strength_times_its_column(
     candidates: Candidates, at_hand: RunsAtHand
 ) -> None:
-    offset, mass = (model_of(candidates, name) for name in ("sensor_offset", "inertia_leak"))
+    offset, mass = (model_of(candidates, name) for name in ("sensor_offset", "inertia"))
     prepared = candidates.campaign.prepared
     for times in (1.0, 2.0, 1.0):
         for change in at_hand.change(offset, times):
             assert change == pytest.approx(times * offset.usual[offset.which], abs=1e-9)
         for change, p in zip(at_hand.change(mass, times), prepared, strict=True):
-            inertial = times * mass.usual[mass.which] * p.motion.acceleration_m_s2
+            inertial = times * mass.usual[mass.which] * p.motion.acceleration
             assert change == pytest.approx(inertial, abs=1e-6)
     assert at_hand.shares(offset, 1.0) is None
 
@@ -86,11 +86,11 @@ def test_part_of_a_change_beyond_the_law_is_a_regression_residual(
     candidates: Candidates, at_hand: RunsAtHand
 ) -> None:
     changes = [np.sin(3.0 * np.arange(len(f))) + 0.3 * np.sign(f) + 0.02 * f for f in at_hand.now]
-    v = np.concatenate([p.motion.velocity_m_s for p in candidates.campaign.prepared])
+    v = np.concatenate([p.motion.velocity for p in candidates.campaign.prepared])
     counted = np.concatenate(at_hand.samples.counted)
     x, y = np.column_stack([np.sign(v), v])[counted], np.concatenate(changes)[counted]
     assert at_hand.noise.white
-    sigma = at_hand.base.rms_n / np.sqrt(effective_share(at_hand.solution))
+    sigma = at_hand.base.rms / np.sqrt(effective_share(at_hand.solution))
     expected = (y - x @ np.linalg.lstsq(x, y, rcond=None)[0]) / sigma
     tolerance = 1e-3 * float(np.max(np.abs(expected)))
     assert at_hand.shown(changes)[:, 0] == pytest.approx(expected, abs=tolerance)
@@ -132,7 +132,7 @@ def test_share_of_a_change_not_absorbed_by_noise_is_a_likelihood_ratio(
 ) -> None:
     """Loss of likelihood with the re-estimated noise, relative to that with the previous noise."""
     signs = [np.sign(f) for f in at_hand.now]
-    velocities = [p.motion.velocity_m_s for p in candidates.campaign.prepared]
+    velocities = [p.motion.velocity for p in candidates.campaign.prepared]
     designs = [np.column_stack(columns) for columns in zip(signs, velocities, strict=True)]
     changes = [w + 0.1 * s for w, s in zip(waves(at_hand, size, rate), signs, strict=True)]
     step = np.linalg.lstsq(np.concatenate(designs), np.concatenate(changes), rcond=None)[0]

@@ -55,7 +55,7 @@ def anova(campaign: Campaign, residuals: list[Array]) -> tuple[float, float, int
     between, within, degrees = 0.0, 0.0, 0
     friction, counted = friction_of(campaign), campaign.samples.counted
     for p, f, r, c in zip(campaign.prepared, friction, residuals, counted, strict=True):
-        stroke = np.cumsum(np.diff(np.sign(p.motion.velocity_m_s[c]), prepend=0.0) != 0.0)
+        stroke = np.cumsum(np.diff(np.sign(p.motion.velocity[c]), prepend=0.0) != 0.0)
         rows = [np.flatnonzero(c)[stroke == k] for k in np.unique(stroke)]
         halves = [np.array_split(at, 2) for at in rows if len(at) >= 16]
         weight = np.array([[f[h] @ f[h] for h in pair] for pair in halves])
@@ -86,8 +86,8 @@ def test_strokes_end_where_the_motion_reverses() -> None:
     for p in sines().prepared:
         stroke = stroke_of(p)
         for k in range(int(stroke.max()) + 1):
-            signs = np.sign(p.motion.velocity_m_s[stroke == k])
-            assert np.all(signs == (-1.0) ** k * np.sign(p.motion.velocity_m_s[stroke == 0][0]))
+            signs = np.sign(p.motion.velocity[stroke == k])
+            assert np.all(signs == (-1.0) ** k * np.sign(p.motion.velocity[stroke == 0][0]))
 
 
 def test_sample_at_rest_belongs_to_no_stroke_and_does_not_end_one() -> None:
@@ -135,7 +135,7 @@ def test_errors_that_depend_on_run_or_speed_are_not_stroke_levels() -> None:
     campaign = slides([0.1 * np.sin(w * t) for w in (1.1, 1.7)])
     friction = friction_of(campaign)
     by_run = [0.0 * friction[0], 0.05 * friction[1]]
-    velocities = [p.motion.velocity_m_s for p in campaign.prepared]
+    velocities = [p.motion.velocity for p in campaign.prepared]
     by_speed = [20.0 * np.sin(30.0 * v) * np.abs(v) for v in velocities]
     for seed in range(5):
         noise = with_levels(campaign, 0.0, seed)

@@ -78,7 +78,7 @@ def test_gain_of_variances_is_invariant_to_units_with_an_effect_that_moves_jumps
         runs = reversing_runs(
             lambda i, t, f, random, k=factor: k * (f + (1.0 + i) * white(i, len(t), random))
         )
-        law = {"F_s_n": 6.0 * factor}
+        law = {"F_s": 6.0 * factor}
         problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", ("time_delay",), law)
         near = approach(problem, [{}], 20)
         gains.append(proposed(variance_by_run(model_of(problem, settle(problem, near)))).gain)

@@ -100,7 +100,7 @@ def _candidates(extra: Callable[[int, Array], Array | float], runs: int = 4) -> 
 
 def test_effect_that_is_equal_in_all_runs_is_not_a_confounder_if_a_tone_remains() -> None:
     candidates = _candidates(lambda i, t: 0.5 + 0.3 * np.sin(2.0 * np.pi * 6.3 * t))
-    assert candidates.converge((OFFSET,)).rms_n > 0.2
+    assert candidates.converge((OFFSET,)).rms > 0.2
     assert confounders(candidates, (OFFSET,)) == ()
 
 
@@ -144,17 +144,17 @@ def test_json_of_a_diagnosis_has_the_documented_keys_and_values() -> None:
     found = linear_diagnosis("mass")
     document = found.to_dict()
     assert document["verdict"] == "missing"
-    assert document["effects"] == ["inertia_leak"]
-    assert document["alternatives"] == {"inertia_leak": []}
-    assert document["weights"] == {"inertia_leak": {"inertia_leak": 1.0}}
+    assert document["effects"] == ["inertia"]
+    assert document["alternatives"] == {"inertia": []}
+    assert document["weights"] == {"inertia": {"inertia": 1.0}}
     assert document["law"] == "coulomb"
     assert document["level"]["candidates"] == len(found.steps[0].trials)
-    assert document["policy"]["false_alarms"] == 0.01
+    assert document["policy"]["false_alarm_rate"] == 0.01
     bare, last = document["steps"]
-    assert (bare["effects"], last["effects"]) == ([], ["inertia_leak"])
-    assert bare["rms_n"] == found.steps[0].rms_n
-    assert last["holdout_rms_n"] == found.steps[1].holdout_rms_n
-    assert {t["effect"]: t["outcome"] for t in bare["tried"]}["inertia_leak"] == "added"
-    estimate = document["parameters"]["inertia_leak.m_e_kg"]
+    assert (bare["effects"], last["effects"]) == ([], ["inertia"])
+    assert bare["rms"] == found.steps[0].rms
+    assert last["held_out_rms"] == found.steps[1].held_out_rms
+    assert {t["effect"]: t["outcome"] for t in bare["tried"]}["inertia"] == "added"
+    estimate = document["parameters"]["inertia.m_e"]
     assert abs(estimate["value"] - 0.2) < 4.0 * estimate["stderr"]
     assert {"axis", "where", "share"} <= set(document["failures"][0])

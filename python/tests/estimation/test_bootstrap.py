@@ -25,8 +25,8 @@ from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.wild_bootstrap import recorded_by
 
-PAGE = Parameter("b_n", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))
-SCALE = Parameter("F_c_n", lower=0.0, upper=1e5, starts=(1.0,))
+PAGE = Parameter("b", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))
+SCALE = Parameter("F_c", lower=0.0, upper=1e5, starts=(1.0,))
 ANGLE = Parameter("phase", lower=-np.pi, upper=np.pi, starts=(0.0,), period=2.0 * np.pi)
 MIDDLE = 0.84134 - 0.15866
 """Probability within one standard deviation of a normal distribution."""
@@ -76,7 +76,7 @@ def test_bootstrap_rejects_a_number_of_repeats_outside_its_limits() -> None:
 
 @pytest.fixture(scope="module")
 def runs() -> list[Run]:
-    return four_runs(coulomb, noise_n=0.2, seed=3)[:2]
+    return four_runs(coulomb, noise_rms=0.2, seed=3)[:2]
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,7 @@ def fitted(runs: list[Run]) -> Fit:
 
 
 def test_bootstrap_of_a_linear_fit_gives_regression_errors(fitted: Fit, runs: list[Run]) -> None:
-    v = np.concatenate([r.velocity_m_s for r in runs])
+    v = np.concatenate([r.velocity for r in runs])
     x = np.column_stack([np.sign(v), v, np.ones(len(v))])
     errors = 0.2 * np.sqrt(np.diag(np.linalg.inv(x.T @ x)))
     # The errors of the fit are divided by 1000 so that the estimates determine the result.
@@ -95,18 +95,18 @@ def test_bootstrap_of_a_linear_fit_gives_regression_errors(fitted: Fit, runs: li
     options: dict[str, Any] = {"seed": 7, "progress": lambda *step: steps.append(step[1:])}
     found = bootstrap(replace(fitted, parameters=precise), runs, repeats=19, **options)
     assert steps == [(k, 19) for k in range(19)]
-    for name, error in zip(("F_c_n", "F_v_n_s_m", "sensor_offset.b_n"), errors, strict=True):
+    for name, error in zip(("F_c", "F_v", "sensor_offset.b"), errors, strict=True):
         # The half width of the middle 68 % of 19 estimates is known to 22 %, their spread to 16 %.
         assert found.fit.parameters[name].stderr == pytest.approx(error, rel=0.6), name
         assert np.std(found.values[name]) == pytest.approx(error, rel=0.45), name
         assert abs(np.mean(found.values[name]) - fitted.parameters[name].value) < 0.8 * error
     assert found.fit.model.parameters == found.fit.parameters
-    assert set(found.values["F_s_n"]) == {6.0}
-    assert found.fit.parameters["F_s_n"].stderr is None
+    assert set(found.values["F_s"]) == {6.0}
+    assert found.fit.parameters["F_s"].stderr is None
 
 
 def test_innovation_rms_is_that_of_the_run_or_of_all_runs_if_the_run_is_short() -> None:
-    runs = [four_runs(coulomb, noise_n=0.1 * (k + 1), seed=k)[k] for k in range(3)]
+    runs = [four_runs(coulomb, noise_rms=0.1 * (k + 1), seed=k)[k] for k in range(3)]
     runs[2] = runs[2].select(np.arange(501) < 99)
     found = fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0})
     innovations = [found.noise.innovations(r, 0.02) for r in found.residuals]
@@ -140,7 +140,7 @@ def test_resampled_motion_has_the_recorded_errors_with_random_signs(prepared: Pr
     bearing = prepared.rig.bearing
     arm_m = 1.0 if bearing is None else bearing.radius_m
     for new, old, true in (
-        (again.velocity_m_s, run.velocity_m_s, motion.velocity_m_s),
+        (again.velocity, run.velocity, motion.velocity),
         (again.position_m, run.position_m, arm_m * motion.angle_rad),
     ):
         error, recorded_error = (new - true)[moving], (old - true)[moving]
@@ -151,14 +151,14 @@ def test_resampled_motion_has_the_recorded_errors_with_random_signs(prepared: Pr
 
 def test_resampling_keeps_friction_that_is_missing_or_of_unknown_sign(prepared: Prepared) -> None:
     known = prepared.motion.sign_known
-    friction = np.where(np.arange(len(known)) == 57, np.nan, prepared.friction_n)
-    some, random = replace(prepared, friction_n=friction), np.random.default_rng(1)
+    friction = np.where(np.arange(len(known)) == 57, np.nan, prepared.friction)
+    some, random = replace(prepared, friction=friction), np.random.default_rng(1)
     again = simulated_readings(some, np.full(len(known), 99.0), random)
     assert 0 < np.count_nonzero(~known) < len(known) // 2
-    np.testing.assert_array_equal(again.friction_n[~known], friction[~known])
+    np.testing.assert_array_equal(again.friction[~known], friction[~known])
     kept = known & (np.arange(len(known)) != 57)
-    assert set(again.friction_n[kept]) == {99.0}
-    assert np.isnan(again.friction_n[57])
+    assert set(again.friction[kept]) == {99.0}
+    assert np.isnan(again.friction[57])
 
 
 def test_simulated_record_has_noise_of_the_fitted_rms_and_correlation(prepared: Prepared) -> None:
@@ -167,7 +167,7 @@ def test_simulated_record_has_noise_of_the_fitted_rms_and_correlation(prepared: 
     again = simulated_recording(prepared, np.full(n, 3.0), noise, 0.5, np.random.default_rng(7))
     kicks = np.random.default_rng(7).normal(0.0, 0.5, n)
     wanted = 3.0 + noise.coloured(kicks, prepared.step_s)
-    np.testing.assert_allclose(again.friction_n[known], wanted[known])
+    np.testing.assert_allclose(again.friction[known], wanted[known])
 
 
 def test_resampled_encoder_position_has_the_recorded_step_at_another_phase() -> None:
@@ -188,14 +188,14 @@ def wild_errors(model: Model, runs: list[Run], hidden: tuple[str, ...], draw: in
     known = {n: p for n, p in model.parameters.items() if n.partition(".")[0] in (n, *hidden)}
     some = Model(model.rig, model.law, hidden, known)
     again = recorded_by(model, runs, hidden, draw)
-    return [np.asarray(a.friction_n) - some.predict(r) for a, r in zip(again, runs, strict=True)]
+    return [np.asarray(a.friction) - some.predict(r) for a, r in zip(again, runs, strict=True)]
 
 
 def test_wild_bootstrap_flips_signs_of_residuals_in_blocks_of_one_second() -> None:
-    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_n=0.1)[:2]
-    values = {**LAW, "F_s_n": 6.0, "sensor_offset.b_n": 0.5}
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_rms=0.1)[:2]
+    values = {**LAW, "F_s": 6.0, "sensor_offset.b": 0.5}
     model = Model(Rig(), "coulomb", ["sensor_offset"], values)
-    residuals = [np.asarray(r.friction_n) - model.predict(r) for r in runs]
+    residuals = [np.asarray(r.friction) - model.predict(r) for r in runs]
     patterns = set()
     for draw in range(2):
         for hidden in (("sensor_offset",), ()):

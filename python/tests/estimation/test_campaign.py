@@ -11,7 +11,7 @@ import pytest
 from by_hand import Array, coulomb
 from jbf import InputError, Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.converter import curve_rms_n, noise_before
+from jbf.estimation.converter import curve_rms, noise_before
 from jbf.estimation.prepared import Prepared
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
@@ -39,7 +39,7 @@ def prepared(*runs: Run) -> Campaign:
 def test_campaign_is_rejected_if_it_has_no_run_or_every_force_is_zero() -> None:
     with pytest.raises(InputError, match="no run"):
         prepared()
-    last = replace(run("b", np.zeros(N)), path=Path("last.csv"), velocity_m_s=2.0 * SPEED)
+    last = replace(run("b", np.zeros(N)), path=Path("last.csv"), velocity=2.0 * SPEED)
     with pytest.raises(InputError) as refused:
         prepared(run("a", np.zeros(N)), last)
     assert (refused.value.file, refused.value.column) == ("a", "friction_n")
@@ -78,14 +78,14 @@ def test_campaign_has_loads_if_runs_differ_by_five_percent(share: float, differ:
 
 
 @pytest.mark.parametrize(
-    ("noise_n", "swing_n", "differ"),
+    ("noise_rms", "swing_n", "differ"),
     # 90 % of a sine's samples lie within 0.988 of its amplitude.
     [(4.0, 0.0, False), (1.5, 1.8, False), (0.0, 2.4, False), (0.0, 2.7, True), (1.0, 5.0, True)],
 )
 def test_campaign_has_loads_if_the_load_of_a_run_varies_beyond_its_noise(
-    noise_n: float, swing_n: float, differ: bool
+    noise_rms: float, swing_n: float, differ: bool
 ) -> None:
-    noise = noise_n * np.random.default_rng(1).standard_normal(N)
+    noise = noise_rms * np.random.default_rng(1).standard_normal(N)
     load = 100.0 + swing_n * np.sin(np.pi * TIME / 8.0) + noise
     assert prepared(run(load_n=load)).has_loads == differ
 
@@ -131,16 +131,16 @@ def test_quantisation_rms_follows_from_step_and_noise_of_the_readings() -> None:
     campaign = prepared(run(force=step * np.round((5.0 * np.sign(SPEED) + noise) / step)))
     assert campaign.step_n == pytest.approx(step, rel=1e-6)
     (p,), (counted,) = campaign.prepared, campaign.samples.counted
-    raw = replace(campaign, prepared=(replace(p, friction_n=p.readings_n),))
-    noise_n = noise_before(step, np.diff(p.readings_n)[counted[1:] & counted[:-1]])
-    assert raw.steps_rms_n(2.0) == pytest.approx(curve_rms_n(step, noise_n), rel=1e-6)
+    raw = replace(campaign, prepared=(replace(p, friction=p.readings_n),))
+    noise_rms = noise_before(step, np.diff(p.readings_n)[counted[1:] & counted[:-1]])
+    assert raw.steps_rms(2.0) == pytest.approx(curve_rms(step, noise_rms), rel=1e-6)
     # The residual is not smaller than the noise.
-    assert raw.steps_rms_n(0.5 * noise_n) == pytest.approx(curve_rms_n(step, 0.5 * noise_n))
+    assert raw.steps_rms(0.5 * noise_rms) == pytest.approx(curve_rms(step, 0.5 * noise_rms))
     # After a bias correction three tenths of the correction are assumed to remain.
-    corrected = replace(campaign, prepared=(replace(p, friction_n=p.readings_n - 0.25 * step),))
-    assert corrected.steps_rms_n(2.0) == pytest.approx(0.3 * 0.25 * step)
+    corrected = replace(campaign, prepared=(replace(p, friction=p.readings_n - 0.25 * step),))
+    assert corrected.steps_rms(2.0) == pytest.approx(0.3 * 0.25 * step)
     plain = prepared(run(force=5.0 * np.sign(SPEED) + noise))
-    assert (plain.step_n, plain.steps_rms_n(1.0)) == (0.0, 0.0)
+    assert (plain.step_n, plain.steps_rms(1.0)) == (0.0, 0.0)
 
 
 STEP_S = 3.0 / 128.0
@@ -186,7 +186,7 @@ def test_force_with_a_separate_time_column_is_compared_at_its_reading_instants()
     found = Prepared.of(Rig(), Run.from_channels(channels, name="slide"))
     np.testing.assert_array_equal(found.run.time_s, INSTANTS[10:301:5])
     assert found.step_s == pytest.approx(5.0 * STEP_S)
-    np.testing.assert_allclose(found.motion.velocity_m_s, speed(found.run.time_s), atol=2e-3)
+    np.testing.assert_allclose(found.motion.velocity, speed(found.run.time_s), atol=2e-3)
     np.testing.assert_array_equal(found.recorded[0], instants)
 
 
@@ -202,9 +202,9 @@ def test_interpolated_force_is_compared_at_the_rate_of_its_original_readings() -
     found = Prepared.of(Rig(), interpolated(20.0, 1))
     assert found.drawn_at_hz == pytest.approx(20.0, rel=1e-3)
     assert found.step_s == pytest.approx(0.05, rel=1e-3)
-    assert len(found.run) == len(found.motion.velocity_m_s) == pytest.approx(1200, abs=3)
+    assert len(found.run) == len(found.motion.velocity) == pytest.approx(1200, abs=3)
     v = 0.1 * np.sin(0.3 * found.run.time_s)
-    np.testing.assert_allclose(found.motion.velocity_m_s, v, atol=1e-4)
+    np.testing.assert_allclose(found.motion.velocity, v, atol=1e-4)
     assert len(found.recorded[0]) == 3000
 
 
@@ -226,9 +226,9 @@ def test_shift_compares_the_force_with_the_motion_at_the_shifted_instants(
     found = ready.shifted(steps * STEP_S, drift)
     read = INSTANTS - steps * STEP_S - drift * (INSTANTS - 0.5 * (INSTANTS[0] + INSTANTS[-1]))
     np.testing.assert_allclose(found.run.time_s, read[first:last], atol=1e-12)
-    np.testing.assert_array_equal(found.friction_n, ready.friction_n[first:last])
+    np.testing.assert_array_equal(found.friction, ready.friction[first:last])
     np.testing.assert_array_equal(found.examined.usable, ready.examined.usable[first:last])
-    speeds = found.motion.velocity_m_s[5:-5]
+    speeds = found.motion.velocity[5:-5]
     np.testing.assert_allclose(speeds, speed(read[first:last])[5:-5], atol=1e-4)
 
 

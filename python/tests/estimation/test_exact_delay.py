@@ -56,8 +56,8 @@ def rms(values: Array) -> float:
 @cache
 def solved(held: bool = False, speed_noise_m_s: float = 1e-4) -> tuple[Problem, Solution, Spread]:
     """Least-squares fit whose delay is determined by the samples between the jumps."""
-    known = {**LAW, "F_s_n": 5.0, TAU: 0.045}
-    fixed = {"F_s_n": 5.0, **({TAU: TAU_S} if held else {})}
+    known = {**LAW, "F_s": 5.0, TAU: 0.045}
+    fixed = {"F_s": 5.0, **({TAU: TAU_S} if held else {})}
     campaign = Campaign.prepare(Rig(), delayed_runs(3, 2, 12.0, speed_noise_m_s))
     problem = Problem(campaign, "coulomb", "journal", DELAY, fixed)
     start = problem.starts({n: known[n] for n in problem.names})[0]
@@ -96,7 +96,7 @@ def test_law_parameters_follow_a_change_of_delay_as_in_a_regression() -> None:
         # Exclude the first samples, whose force acted before the recorded motion begins.
         v = np.concatenate([speed(i, delay_s)[5:] for i in (0, 1)])
         x = np.column_stack([np.ones(len(v)), v])
-        y = np.concatenate([p.friction_n[5:] for p in problem.campaign.prepared])
+        y = np.concatenate([p.friction[5:] for p in problem.campaign.prepared])
         return np.linalg.lstsq(x, y, rcond=None)[0]
 
     slope = (regression(tau_s + 1e-3) - regression(tau_s - 1e-3)) / 2e-3
@@ -106,7 +106,7 @@ def test_law_parameters_follow_a_change_of_delay_as_in_a_regression() -> None:
     found = exact_delay(problem, solution, errors, start)
     change = found.values - start
     assert change[which] == pytest.approx(-2e-3, rel=0.05)
-    for name, expected in zip(("F_c_n", "F_v_n_s_m"), slope, strict=True):
+    for name, expected in zip(("F_c", "F_v"), slope, strict=True):
         i = problem.names.index(name)
         assert change[i] == pytest.approx(expected * change[which], rel=0.03), name
     assert found.sd_s == pytest.approx(errors.error(problem.open.index(which)), rel=0.05)
@@ -119,8 +119,8 @@ def test_delay_from_jumps_and_its_error_are_moments_of_a_mixture_likelihood() ->
     `-2 log((1 - p) exp(-r0^2 / 2) + p exp(-r1^2 / 2))` next to them.
     """
     problem, solution, errors = solved(speed_noise_m_s=1e-3)
-    dry, viscous = (value(problem, solution, n) for n in ("F_c_n", "F_v_n_s_m"))
-    noise_n = solution.rms_n
+    dry, viscous = (value(problem, solution, n) for n in ("F_c", "F_v"))
+    noise_rms = solution.rms
     counted = [r * c for r, c in zip(solution.residuals, solution.samples.counted, strict=True)]
     share = independent_share(counted, solution.samples.steps_s)
 
@@ -132,13 +132,13 @@ def test_delay_from_jumps_and_its_error_are_moments_of_a_mixture_likelihood() ->
             read = np.maximum(t - tau_s, t[0])
             nearest = np.argmin(np.abs(read[:, None] - turns.at_s[None, :]), axis=1)
             gone = read - turns.at_s[nearest]
-            v = p.motion.at(t, read).velocity_m_s
+            v = p.motion.at(t, read).velocity
             after = np.where(gone > 0.0, np.sign(v), -np.sign(v))
             far = np.abs(gone) > 0.1
             after = np.where(far, np.sign(v), after)
             before = np.where(far, after, -after)
-            errors = (p.friction_n - dry * sign - viscous * v for sign in (before, after))
-            squares = [np.minimum((error / noise_n) ** 2, 25.0) for error in errors]
+            errors = (p.friction - dry * sign - viscous * v for sign in (before, after))
+            squares = [np.minimum((error / noise_rms) ** 2, 25.0) for error in errors]
             over = np.where(far, 1.0, norm.cdf(gone / turns.sd_s[nearest]))
             doubt = np.minimum(over, 1.0 - over) > 0.5 * np.exp(-0.5 * 3.5**2)
             with np.errstate(divide="ignore"):
@@ -182,19 +182,19 @@ def test_fitted_delay_is_within_its_error_and_the_rms_equals_the_noise(seed: int
     tau = found.parameters[TAU]
     assert tau.stderr < 0.05 * STEP_S
     assert abs(tau.value - TAU_S) < 4.0 * tau.stderr
-    assert found.rms_n == pytest.approx(NOISE_N, rel=0.05)
+    assert found.rms == pytest.approx(NOISE_N, rel=0.05)
     # One of 4,000 samples on the wrong side of a reversal would multiply the RMS by 1.3.
     fresh = delayed_runs(seed + 100)
-    errors = [(r.friction_n - found.model.predict(r))[r.time_s > TAU_S] for r in fresh]
+    errors = [(r.friction - found.model.predict(r))[r.time_s > TAU_S] for r in fresh]
     assert rms(np.concatenate(errors)) < 1.15 * NOISE_N
-    again = np.concatenate([r.friction_n - found.model.predict(r) for r in runs])
+    again = np.concatenate([r.friction - found.model.predict(r) for r in runs])
     np.testing.assert_allclose(np.concatenate(found.residuals), again, atol=1e-9)
-    assert compare(found.model, runs).rms_n == pytest.approx(NOISE_N, rel=0.05)
+    assert compare(found.model, runs).rms == pytest.approx(NOISE_N, rel=0.05)
 
 
 TIME = np.arange(0.0, 12.0, STEP_S)
 RATE = 1.7
-VALUES = {**LAW, "F_s_n": LAW["F_c_n"]}
+VALUES = {**LAW, "F_s": LAW["F_c"]}
 
 
 def delayed_model(tau_s: float, stderr: float | None = None) -> Model:
@@ -203,7 +203,7 @@ def delayed_model(tau_s: float, stderr: float | None = None) -> Model:
 
 
 def friction(v: Array) -> Array:
-    return LAW["F_c_n"] * np.sign(v) + LAW["F_v_n_s_m"] * v
+    return LAW["F_c"] * np.sign(v) + LAW["F_v"] * v
 
 
 def known_motion(time: Array, velocity: Array, acceleration: Array, error: float) -> ImposedMotion:
@@ -221,7 +221,7 @@ def test_delayed_force_jumps_within_one_sample_at_reversals(tau_s: float) -> Non
     run = Run.from_arrays(TIME, 0.1 * np.sin(RATE * TIME + 0.3))
     error = np.abs(delayed_model(tau_s).predict(run) - late)[settled]
     assert np.count_nonzero(np.diff(np.sign(late))) >= 6
-    assert np.max(error) < 0.02 * LAW["F_c_n"]
+    assert np.max(error) < 0.02 * LAW["F_c"]
 
 
 @pytest.mark.parametrize("begins_s", [2.004, 2.0101, 2.0163])
@@ -230,12 +230,12 @@ def test_delayed_start_between_samples_follows_from_the_acceleration(begins_s: f
     run = Run.from_arrays(TIME, 0.02 * np.maximum(TIME - begins_s, 0.0))
     late = friction(0.02 * np.maximum(TIME - tau_s - begins_s, 0.0))
     error = np.abs(delayed_model(tau_s).predict(run) - late)
-    assert np.max(error) < 0.02 * LAW["F_c_n"]
+    assert np.max(error) < 0.02 * LAW["F_c"]
 
 
 def test_sensor_drift_is_not_delayed_in_a_model_with_a_time_delay() -> None:
     run = Run.from_arrays(TIME, np.full(len(TIME), 0.1))
-    values = {**VALUES, TAU: 0.3, "sensor_drift.d_n_s": 2.0}
+    values = {**VALUES, TAU: 0.3, "sensor_drift.d": 2.0}
     model = Model(Rig(), "coulomb", ["time_delay", "sensor_drift"], values)
     late = TIME > 0.3 + STEP_S
     expected = friction(np.full(len(TIME), 0.1)) + 2.0 * TIME
@@ -254,12 +254,12 @@ def test_mean_force_near_a_reversal_is_blurred_by_the_errors_of_instant_and_dela
     reading = chain.read(model.values, run, time, motion, delay_sd_s)
     gone_s = time - tau_s - turn_s
     sd_s = np.hypot(error / slope, delay_sd_s)
-    expected = LAW["F_c_n"] * (2.0 * norm.cdf(gone_s / sd_s) - 1.0)
-    expected += LAW["F_v_n_s_m"] * slope * gone_s
+    expected = LAW["F_c"] * (2.0 * norm.cdf(gone_s / sd_s) - 1.0)
+    expected += LAW["F_v"] * slope * gone_s
     settled = time > tau_s + STEP_S
     np.testing.assert_allclose(reading.mean_n[settled], expected[settled], atol=0.02)
     jump = reading.after_n - reading.before_n
-    np.testing.assert_allclose(jump[settled], 2.0 * LAW["F_c_n"], rtol=0.01)
+    np.testing.assert_allclose(jump[settled], 2.0 * LAW["F_c"], rtol=0.01)
 
 
 @pytest.mark.parametrize("begins_s", [0.5002, 0.5191])
@@ -274,7 +274,7 @@ def test_start_or_stop_between_samples_follows_acceleration(begins_s: float, way
     v = speed(time)
     motion = known_motion(time, v, np.where(v > 0.0, 0.3 * way, 0.0), 1e-4)
     interpolated = motion.at(time, there)
-    np.testing.assert_allclose(interpolated.velocity_m_s, speed(there), atol=1e-12)
+    np.testing.assert_allclose(interpolated.velocity, speed(there), atol=1e-12)
     np.testing.assert_array_equal(interpolated.resting, speed(there) == 0.0)
     # The instant is independent of the samples around it.
     (turn_s,) = reversals(there + 0.4e-3, motion.at(time, there + 0.4e-3)).at_s

@@ -67,7 +67,7 @@ def test_fit_of_the_simulated_effect_recovers_its_parameters(effect: str) -> Non
     rig, runs, truth = simulated(effect)
     found = fit(rig, runs, [effect])
     assert found.converged
-    assert found.rms_n == pytest.approx(truth["noise_n"], rel=0.06)
+    assert found.rms == pytest.approx(truth["noise_n"], rel=0.06)
     for name, value in truth_of(effect, truth).items():
         p = found.parameters[name]
         assert name in POORLY_KNOWN or not p.held, name
@@ -124,15 +124,15 @@ def test_fit_rejects_unknown_names_values_out_of_range_and_unusable_runs() -> No
 
 @pytest.mark.parametrize("more_n", [1.0, -1.0])
 def test_residuals_are_record_minus_model_with_means_reported_by_direction(more_n: float) -> None:
-    runs = there_and_back(along(more_n), noise_n=0.05)
-    fixed = {"F_c": LAW["F_c_n"], "F_v": LAW["F_v_n_s_m"]}
+    runs = there_and_back(along(more_n), noise_rms=0.05)
+    fixed = {"F_c": LAW["F_c"], "F_v": LAW["F_v"]}
     fitted = fit(Rig(), runs, law="coulomb", fixed=fixed)
     compared = compare(fitted.model, runs)
     for run, own, other in zip(runs, fitted.residuals, compared.residuals, strict=True):
-        left = np.asarray(run.friction_n) - fitted.model.predict(run)
+        left = np.asarray(run.friction) - fitted.model.predict(run)
         np.testing.assert_allclose(own, left, atol=1e-9)
         np.testing.assert_allclose(other, left, atol=1e-9)
-        assert np.mean(left * np.sign(run.velocity_m_s)) == pytest.approx(more_n, abs=0.01)
+        assert np.mean(left * np.sign(run.velocity)) == pytest.approx(more_n, abs=0.01)
     (direction,) = [f for f in compared.failures if f.axis == "direction"]
     assert direction.labels == ("v < 0", "v > 0")
     assert direction.means_n == pytest.approx([-more_n, more_n], abs=0.01)

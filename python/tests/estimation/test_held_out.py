@@ -58,23 +58,23 @@ def solved(runs: list[Run], *effects: str, law: str = "coulomb") -> tuple[Proble
 def pushed_runs(others: float = 0.0, second_half: float = 1.0) -> list[Run]:
     """Four runs; the first has a push, with a factor in its second half, the others a share."""
     runs = []
-    for i, run in enumerate(four_runs(coulomb, noise_n=NOISE_N)):
+    for i, run in enumerate(four_runs(coulomb, noise_rms=NOISE_N)):
         push = np.sign(np.sin(9.0 * run.time_s)) * (1.0 if i == 0 else others)
         actual = push * np.where((i == 0) & (run.time_s > 5.0), second_half, 1.0)
-        force = np.asarray(run.friction_n) + PUSH_N * actual
-        runs.append(replace(run, friction_n=force, extra={"push": push}))
+        force = np.asarray(run.friction) + PUSH_N * actual
+        runs.append(replace(run, friction=force, extra={"push": push}))
     return runs
 
 
 @pytest.mark.parametrize("off_n", [0.0, 3.0])
 def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) -> None:
     """One run may differ from the others too far for a single Gauss-Newton step."""
-    runs = four_runs(coulomb, noise_n=NOISE_N)
-    force = np.asarray(runs[0].friction_n) + off_n * np.sign(runs[0].velocity_m_s)
-    problem, solution = solved([replace(runs[0], friction_n=force), *runs[1:]])
-    speeds = [p.motion.velocity_m_s for p in problem.campaign.prepared]
+    runs = four_runs(coulomb, noise_rms=NOISE_N)
+    force = np.asarray(runs[0].friction) + off_n * np.sign(runs[0].velocity)
+    problem, solution = solved([replace(runs[0], friction=force), *runs[1:]])
+    speeds = [p.motion.velocity for p in problem.campaign.prepared]
     design = [np.column_stack([np.sign(v), v]) for v in speeds]
-    forces = [p.friction_n for p in problem.campaign.prepared]
+    forces = [p.friction for p in problem.campaign.prepared]
     expected = []
     for i in range(4):
         rest = [k for k in range(4) if k != i]
@@ -88,16 +88,16 @@ def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) 
         np.testing.assert_allclose(found, wanted, atol=atol)
     together = np.concatenate(expected)
     np.testing.assert_allclose(held_out_residuals(problem, solution), together, atol=atol)
-    rms_n = float(np.sqrt(np.mean(together**2)))
-    assert held_out_rms(problem, solution) == pytest.approx(rms_n, rel=0.01)
+    rms = float(np.sqrt(np.mean(together**2)))
+    assert held_out_rms(problem, solution) == pytest.approx(rms, rel=0.01)
 
 
 def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> None:
     """Alternate tenths of the run have an additional 1 N, so that each half has an error of 1 N."""
-    run = one_way("only", coulomb, rate=2.0 * np.pi, noise_n=NOISE_N)
+    run = one_way("only", coulomb, rate=2.0 * np.pi, noise_rms=NOISE_N)
     count = len(run.time_s)
     odd = (np.arange(count) * 10 // count) % 2 == 1
-    problem, solution = solved([replace(run, friction_n=run.friction_n + odd)])
+    problem, solution = solved([replace(run, friction=run.friction + odd)])
     assert held_out_rms(problem, solution) == pytest.approx(np.hypot(1.0, NOISE_N), rel=0.03)
     first, second = held_out_parts(problem, solution)
     np.testing.assert_array_equal(first.left[0], odd)
@@ -107,7 +107,7 @@ def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> 
 
 def test_fourteen_runs_are_held_out_in_twelve_groups_whatever_their_order() -> None:
     plan = [{"way": (-1.0) ** k, "rate": 10.0 + k, "seed": k} for k in range(14)]
-    runs = [wandering(f"{p['seed']:02d}", coulomb, noise_n=NOISE_N, **p) for p in plan]
+    runs = [wandering(f"{p['seed']:02d}", coulomb, noise_rms=NOISE_N, **p) for p in plan]
     groups = []
     for some in (runs, runs[::-1]):
         parts = held_out_parts(*solved(some))
@@ -141,7 +141,7 @@ def test_faster_run_is_held_out_in_parts_and_its_extrapolation_reported_separate
     last = result.steps[-1]
     assert [e.run for e in last.extrapolations] == ["fast"]
     assert "speed" in last.extrapolations[0].where
-    assert last.holdout_rms_n < 0.055
+    assert last.held_out_rms < 0.055
     assert last.to_dict()["extrapolated"][0]["run"] == "fast"
     assert "extrapolation" in result.summary()
 
@@ -192,8 +192,8 @@ def test_halves_of_the_only_informative_run_predict_each_other(factor: float, of
 def test_parameter_is_at_its_null_if_the_remaining_half_does_not_determine_it() -> None:
     first, *others = pushed_runs()
     early = np.where(first.time_s < 4.9, first.extra["push"], 0.0)
-    force = np.asarray(first.friction_n) + PUSH_N * (early - first.extra["push"])
-    run = replace(first, friction_n=force, extra={"push": early})
+    force = np.asarray(first.friction) + PUSH_N * (early - first.extra["push"])
+    run = replace(first, friction=force, extra={"push": early})
     problem, solution = solved([run, *others], "pushed")
     k = problem.open.index(problem.names.index("pushed.k_n"))
     without_first, without_second = held_out_halves(problem, solution, 0)
@@ -204,7 +204,7 @@ def test_parameter_is_at_its_null_if_the_remaining_half_does_not_determine_it() 
 
 
 def test_held_out_error_of_each_sample_is_from_the_fit_without_that_sample() -> None:
-    problem, solution = solved(four_runs(coulomb, noise_n=NOISE_N)[:2])
+    problem, solution = solved(four_runs(coulomb, noise_rms=NOISE_N)[:2])
     count = len(problem.campaign.prepared[0].run)
     first, every = np.arange(count) < count // 2, np.ones(count, dtype=bool)
     ramp, determined = np.arange(count, dtype=float), np.ones(solution.free, dtype=bool)
@@ -232,10 +232,10 @@ def test_held_out_part_without_a_run_keeps_the_residuals_of_its_other_runs() -> 
 
 def test_random_effects_of_runs_are_removed_from_held_out_errors_on_request() -> None:
     """The offset of a single run, here 2 N in noise of 0.1 N, is not predictable by any model."""
-    runs = four_runs(coulomb, noise_n=NOISE_N)
+    runs = four_runs(coulomb, noise_rms=NOISE_N)
     offsets = (2.0, -2.0, 2.0, -2.0)
-    off = [replace(r, friction_n=r.friction_n + b) for r, b in zip(runs, offsets, strict=True)]
-    problem = Problem(Campaign.prepare(Rig(), off), "coulomb", "journal", (), LAW | {"F_s_n": 5.0})
+    off = [replace(r, friction=r.friction + b) for r, b in zip(runs, offsets, strict=True)]
+    problem = Problem(Campaign.prepare(Rig(), off), "coulomb", "journal", (), LAW | {"F_s": 5.0})
     directions = tuple(np.full((len(r), 1), 5.0) for r in off)
     between = BetweenRuns(("offset",), directions, NOISE_N)
     samples = replace(problem.campaign.samples, between=between)

@@ -26,7 +26,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.put_back import put_back
 from jbf.estimation.spread import spread
 
-RUNS = there_and_back(coulomb, noise_n=0.1)
+RUNS = there_and_back(coulomb, noise_rms=0.1)
 """Two runs at 0.05 to 0.15 m/s without rests or reversals."""
 
 
@@ -40,50 +40,50 @@ def notes_of(found: Fit) -> dict[str, str]:
     assert found.correlations.shape == (free, free)
     np.testing.assert_allclose(np.diag(found.correlations), 1.0)
     for run, residual in zip(RUNS, found.residuals, strict=True):
-        np.testing.assert_allclose(run.friction_n - found.model.predict(run), residual, atol=1e-9)
+        np.testing.assert_allclose(run.friction - found.model.predict(run), residual, atol=1e-9)
     return notes
 
 
 def test_breakaway_force_without_influence_is_held_at_the_sliding_force() -> None:
     found = fit(Rig(), RUNS, law="coulomb")
-    assert notes_of(found) == {"F_s_n": NEVER_MOVED}
-    assert found.parameters["F_s_n"].value == found.parameters["F_c_n"].value
-    assert found.parameters["F_c_n"].value == pytest.approx(LAW["F_c_n"], abs=0.03)
+    assert notes_of(found) == {"F_s": NEVER_MOVED}
+    assert found.parameters["F_s"].value == found.parameters["F_c"].value
+    assert found.parameters["F_c"].value == pytest.approx(LAW["F_c"], abs=0.03)
     given = fit(Rig(), RUNS, law="coulomb", start={"F_s": 8.0})
-    assert given.parameters["F_s_n"] == ParameterValue(8.0, None, NEVER_MOVED, held=True)
+    assert given.parameters["F_s"] == ParameterValue(8.0, None, NEVER_MOVED, held=True)
 
 
 def test_fixed_parameter_is_held_at_the_value_given_by_the_user() -> None:
     fixed = {"F_s": 6.0, "sensor_offset.b": 0.25}
     found = fit(Rig(), RUNS, ["sensor_offset"], law="coulomb", fixed=fixed)
-    assert notes_of(found) == {"F_s_n": HELD, "sensor_offset.b_n": HELD}
-    assert found.fixed == ("F_s_n", "sensor_offset.b_n")
-    assert found.parameters["sensor_offset.b_n"].value == 0.25
+    assert notes_of(found) == {"F_s": HELD, "sensor_offset.b": HELD}
+    assert found.fixed == ("F_s", "sensor_offset.b")
+    assert found.parameters["sensor_offset.b"].value == 0.25
 
 
 def test_only_confounded_parameters_and_those_without_influence_are_held() -> None:
     found = fit(Rig(), RUNS, law="seven_parameter")
     notes = notes_of(found)
     # The last point of the search in its flat valley determines which of two notes is given.
-    assert notes["v_s_m_s"] == NOT_SEPARATE or "larger than itself" in notes["v_s_m_s"]
-    assert notes["gamma_s"] == notes["k_t_n_m"] == NEVER_MOVED
-    friction = found.parameters["F_c_n"]
-    assert abs(friction.value - LAW["F_c_n"]) < 3.0 * friction.stderr < 0.3
+    assert notes["v_s"] == NOT_SEPARATE or "larger than itself" in notes["v_s"]
+    assert notes["gamma_s"] == notes["k_t"] == NEVER_MOVED
+    friction = found.parameters["F_c"]
+    assert abs(friction.value - LAW["F_c"]) < 3.0 * friction.stderr < 0.3
 
 
 def test_viscous_coefficient_is_held_at_zero_if_friction_falls_with_speed() -> None:
-    runs = there_and_back(lambda t, v, a: 5.0 * np.sign(v) - 0.5 * v, noise_n=0.05)
+    runs = there_and_back(lambda t, v, a: 5.0 * np.sign(v) - 0.5 * v, noise_rms=0.05)
     found = fit(Rig(), runs, law="coulomb", fixed={"F_s": 6.0}).parameters
-    assert (found["F_v_n_s_m"].value, found["F_v_n_s_m"].held) == (0.0, True)
-    assert "lower bound" in str(found["F_v_n_s_m"].note)
+    assert (found["F_v"].value, found["F_v"].held) == (0.0, True)
+    assert "lower bound" in str(found["F_v"].note)
     # The other parameter is the mean friction in the direction of motion.
-    mean = np.mean([r.friction_n * np.sign(r.velocity_m_s) for r in runs])
-    assert found["F_c_n"].value == pytest.approx(mean, abs=8e-4)
-    assert not found["F_c_n"].held
+    mean = np.mean([r.friction * np.sign(r.velocity) for r in runs])
+    assert found["F_c"].value == pytest.approx(mean, abs=8e-4)
+    assert not found["F_c"].held
 
 
 def test_asymmetry_ends_at_its_upper_bound_if_the_true_value_is_larger() -> None:
-    runs = there_and_back(lambda t, v, a: np.where(v > 0, 10.0, 0.0), noise_n=0.05)
+    runs = there_and_back(lambda t, v, a: np.where(v > 0, 10.0, 0.0), noise_rms=0.05)
     fixed = {"F_c": 5.0, "F_s": 6.0, "F_v": 0.0}
     found = fit(Rig(), runs, ["direction_asymmetry"], law="coulomb", fixed=fixed)
     assert found["direction_asymmetry.a"].value == pytest.approx(0.95)
@@ -93,29 +93,29 @@ def test_asymmetry_ends_at_its_upper_bound_if_the_true_value_is_larger() -> None
 @pytest.mark.parametrize(
     ("effect", "values", "put"),
     [
-        ("presliding", {"sigma_1_m": 1e12}, {"sigma_1_m": math.inf}),
-        ("quadratic_drag", {"c_n_s2_m2": 0.0}, {"c_n_s2_m2": 0.0}),
+        ("presliding", {"sigma": 1e12}, {"sigma": math.inf}),
+        ("quadratic_drag", {"c": 0.0}, {"c": 0.0}),
         # Parameters without a null move to their starting values: a slow speed of these runs.
         (
             "stribeck_excess",
-            {"a": 0.0, "v_s_m_s": 2e-5, "n": 7.9},
-            {"a": 0.0, "v_s_m_s": pytest.approx(0.0526, rel=1e-3), "n": 1.5},
+            {"a": 0.0, "v_s": 2e-5, "n": 7.9},
+            {"a": 0.0, "v_s": pytest.approx(0.0526, rel=1e-3), "n": 1.5},
         ),
     ],
 )
 def test_parameters_of_an_effect_at_its_null_are_held(effect: str, values: Any, put: Any) -> None:
-    ended_at = {**LAW, "F_s_n": 6.0} | {f"{effect}.{n}": v for n, v in values.items()}
+    ended_at = {**LAW, "F_s": 6.0} | {f"{effect}.{n}": v for n, v in values.items()}
     problem = Problem(Campaign.prepare(Rig(), RUNS), "coulomb", "journal", [effect])
     here = np.array([ended_at[name] for name in problem.names])
     found = finish(problem, problem.solution(here, problem.samples_at(here), WHITE))
-    wanted = {"F_s_n": NEVER_MOVED} | {f"{effect}.{n}": NO_EFFECT for n in values}
+    wanted = {"F_s": NEVER_MOVED} | {f"{effect}.{n}": NO_EFFECT for n in values}
     assert notes_of(found) == wanted
     assert {n: found.parameters[f"{effect}.{n}"].value for n in values} == put
 
 
 Walled = Callable[[float, float, float], str]
 WALL = [
-    Parameter("F_c_n", "N", lower=0.0, upper=1e4, starts=(5.0,)),
+    Parameter("F_c", "N", lower=0.0, upper=1e4, starts=(5.0,)),
     Parameter("p", lower=0.0, upper=1e4, starts=(4.0,)),
     Parameter("q", lower=1e-7, upper=1e3, starts=(0.01,), log=True),
 ]
@@ -126,9 +126,9 @@ def walled(request: pytest.FixtureRequest) -> Walled:
     """A law that changes by a jump (N) where p or q is below a limit, and is constant elsewhere."""
 
     def law(jump_n: float, wall_p: float, wall_q: float) -> str:
-        def walled_law(velocity_m_s, F_c_n, p, q):  # type: ignore[no-untyped-def]
+        def walled_law(velocity, F_c, p, q):  # type: ignore[no-untyped-def]
             below = (np.real(p) < wall_p) | (np.real(q) < wall_q)
-            return F_c_n * np.sign(velocity_m_s) + jump_n * below
+            return F_c * np.sign(velocity) + jump_n * below
 
         request.addfinalizer(lambda: jbf.forget_law("walled_law"))
         return jbf.register_law(walled_law, parameters=WALL).name
@@ -181,17 +181,17 @@ def test_parameter_without_influence_returns_to_the_start_value_of_the_user(wall
 def test_predictions_count_as_equal_within_1e_4_of_the_residual_rms(
     walled: Walled, share: float, same: bool
 ) -> None:
-    residual = [r.friction_n - 5.0 * np.sign(r.velocity_m_s) for r in RUNS]
+    residual = [r.friction - 5.0 * np.sign(r.velocity) for r in RUNS]
     rms = float(np.sqrt(np.mean(np.concatenate(residual) ** 2)))
     p, _, _ = moved_back(walled(share * 1e-4 * rms, 500.0, 0.0), 900.0, 1.0)
     assert (p == 4.0) == same
 
 
-SCALE = Parameter("v_s_m_s", lower=1e-7, upper=1e3, starts=(0.01,), log=True)
-PLAIN = Parameter("F_v_n_s_m", lower=0.0, upper=1e7, starts=(10.0,))
-SIGNED = Parameter("b_n", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))
-DRAG = Parameter("F_d_n", lower=0.0, upper=1e4, null=0.0, starts=(0.5,))
-STIFF = Parameter("sigma_1_m", lower=1.0, upper=1e12, null=math.inf, starts=(3e3,), log=True)
+SCALE = Parameter("v_s", lower=1e-7, upper=1e3, starts=(0.01,), log=True)
+PLAIN = Parameter("F_v", lower=0.0, upper=1e7, starts=(10.0,))
+SIGNED = Parameter("b", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))
+DRAG = Parameter("F_d", lower=0.0, upper=1e4, null=0.0, starts=(0.5,))
+STIFF = Parameter("sigma", lower=1.0, upper=1e12, null=math.inf, starts=(3e3,), log=True)
 FACTOR = Parameter("factor", lower=1e-3, upper=1e3, null=1.0, starts=(0.5,), log=True)
 SHARE = Parameter("share", lower=0.0, upper=1.0, null=1.0, starts=(0.5,))
 
@@ -296,13 +296,13 @@ def test_fixed_parameter_is_at_its_null_only_if_equal_to_the_null() -> None:
 
 def test_effect_is_idle_if_all_its_parameters_with_a_null_are_at_it() -> None:
     pages = {
-        "F_v_n_s_m": PLAIN,
-        "one.F_d_n": DRAG,
-        "one.v_s_m_s": SCALE,
-        "two.F_d_n": DRAG,
+        "F_v": PLAIN,
+        "one.F_d": DRAG,
+        "one.v_s": SCALE,
+        "two.F_d": DRAG,
         "two.b_n": SIGNED,
         "three.sigma_1_m": STIFF,
-        "four.v_s_m_s": SCALE,
+        "four.v_s": SCALE,
     }
     effects = ("one", "two", "three", "four")
     values = [0.0, 0.0, 5.0, 0.0, 0.0, 1e12, 1e-7]
@@ -310,4 +310,4 @@ def test_effect_is_idle_if_all_its_parameters_with_a_null_are_at_it() -> None:
     assert idle_effects(effects, pages, values, fixed=("two.b_n",)) == ("one", "two", "three")
     values[1] = 1e-9
     assert idle_effects(effects, pages, values) == ("three",)
-    assert idle_effects(effects, pages, values, {"one.F_d_n": 0.1}) == ("one", "three")
+    assert idle_effects(effects, pages, values, {"one.F_d": 0.1}) == ("one", "three")

@@ -54,12 +54,12 @@ def after(run: Run, before: tuple[float, float] | None, seed: int = 0) -> Run:
     motion = p.core if before is None else core_motion(p.rig, p.run, p.motion, before)
     (force,) = problem.chain.predict(values, [motion])
     noise = NOISE_N * np.random.default_rng(seed).standard_normal(len(run))
-    return replace(run, friction_n=force + noise)
+    return replace(run, friction=force + noise)
 
 
-def masks(*runs: Run, noise_n: float = NOISE_N) -> list[Array]:
+def masks(*runs: Run, noise_rms: float = NOISE_N) -> list[Array]:
     problem, values = journal_problem(*runs)
-    return [np.asarray(m) for m in unsettled(problem, values, noise_n)]
+    return [np.asarray(m) for m in unsettled(problem, values, noise_rms)]
 
 
 @cache
@@ -110,13 +110,13 @@ def test_run_start_in_motion_is_excluded_until_the_film_does_not_depend_on_it() 
     assert 0.1 < run.time_s[mask][-1] < 3.0
     assert np.count_nonzero(np.diff(mask.astype(int))) == 1
     # A previous motion at half of the top speed leads to an equal exclusion.
-    slow, half = (after(run, before).friction_n for before in (SLOW, (0.5, 6.0)))
+    slow, half = (after(run, before).friction for before in (SLOW, (0.5, 6.0)))
     apart = np.abs(np.asarray(slow) - np.asarray(half))
     assert apart[mask].max() > 10.0 * NOISE_N
     assert apart[~mask].max() <= REMEMBERED * NOISE_N
     # A run that is too short for the transient to end is not excluded.
     assert not masks(run.select(run.time_s < 0.5))[0].any()
-    counts = [int(masks(run, noise_n=noise_n)[0].sum()) for noise_n in (0.01, 0.1, 1.0)]
+    counts = [int(masks(run, noise_rms=noise_rms)[0].sum()) for noise_rms in (0.01, 0.1, 1.0)]
     assert counts[0] > counts[1] > counts[2] > 0
 
 
@@ -143,7 +143,7 @@ def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
     # K0 is poorly determined.
     known, truth = np.array(problems[0].names) != "K0", problems[0].starts({})[0]
     errors = [float(np.abs(solution.values / truth - 1.0)[known].max()) for solution in fits]
-    assert fits[0].rms_n == pytest.approx(NOISE_N, rel=0.1)
+    assert fits[0].rms == pytest.approx(NOISE_N, rel=0.1)
     assert errors[0] < 0.02
     assert errors[1] > 3.0 * errors[0]
 
@@ -185,7 +185,7 @@ def test_no_further_samples_are_excluded_for_a_film_as_fast_as_that_of_the_law()
 
 
 def test_no_samples_are_excluded_at_starts_or_gaps_for_a_law_without_a_state() -> None:
-    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1))
     assert settled_campaign(campaign, "coulomb", "journal") is campaign
     problem = Problem(campaign, "coulomb", "journal", ())
     assert not any(m.any() for m in unsettled(problem, problem.starts({})[0], 0.1))
@@ -220,8 +220,8 @@ def play_runs(branch: float) -> list[Run]:
 
 def play_problem(runs: list[Run]) -> tuple[Problem, Array]:
     problem = Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", PLAY)
-    truth = {"F_c_n": DRY_N, "F_s_n": DRY_N, "F_v_n_s_m": VISCOUS_N_S_M}
-    truth["sensor_hysteresis.w_n"] = HALF_WIDTH_N
+    truth = {"F_c": DRY_N, "F_s": DRY_N, "F_v": VISCOUS_N_S_M}
+    truth["sensor_hysteresis.w"] = HALF_WIDTH_N
     return problem, np.array([truth[name] for name in problem.names])
 
 
@@ -262,7 +262,7 @@ def test_run_starts_are_excluded_only_if_the_play_of_the_model_has_a_width() -> 
     every = problem.campaign.samples
     gone = [w & ~c for w, c in zip(every.counted, problem.samples_at(values).counted, strict=True)]
     assert all(8.0 < 0.02 * int(g.sum()) < 30.0 for g in gone)
-    values[problem.names.index("sensor_hysteresis.w_n")] = 0.0
+    values[problem.names.index("sensor_hysteresis.w")] = 0.0
     assert problem.samples_at(values) is every
 
 
@@ -280,7 +280,7 @@ def with_gap(first_s: float, last_s: float, at_s: float = 8.0, up: bool = True) 
     """Friction of the bearing without the rows between two instants."""
     whole = Run.from_arrays(TIME, step_of_speed(at_s, up), np.ones(len(TIME)), name="gap")
     problem, values = journal_problem(whole)
-    whole = replace(whole, friction_n=problem.predict(values)[0])
+    whole = replace(whole, friction=problem.predict(values)[0])
     return whole.select((first_s > TIME) | (last_s < TIME))
 
 
@@ -322,19 +322,19 @@ def test_four_missing_rows_count_as_a_gap_and_three_do_not(missing: int, gap: bo
 
 
 def test_samples_after_a_gap_are_excluded_if_errors_exceed_a_fifth_of_the_noise() -> None:
-    run, noise_n = with_gap(7.0, 8.11, up=False), 0.02
-    noise = noise_n * np.random.default_rng(4).standard_normal(len(run))
-    campaign = Campaign.prepare(Rig.thesis(), [replace(run, friction_n=run.friction_n + noise)])
+    run, noise_rms = with_gap(7.0, 8.11, up=False), 0.02
+    noise = noise_rms * np.random.default_rng(4).standard_normal(len(run))
+    campaign = Campaign.prepare(Rig.thesis(), [replace(run, friction=run.friction + noise)])
     settled = settled_campaign(campaign, "journal", "journal")
     gone = run.time_s[campaign.samples.counted[0] & ~settled.samples.counted[0]]
-    (behind,) = samples_affected_by_gaps(*journal_problem(run), REMEMBERED * noise_n)
+    (behind,) = samples_affected_by_gaps(*journal_problem(run), REMEMBERED * noise_rms)
     found, expected = gone[gone > 8.0], run.time_s[behind]
     assert (found[0], found[-1]) == pytest.approx((expected[0], expected[-1]), abs=0.15)
 
 
 def test_samples_excluded_after_a_gap_do_not_depend_on_the_zero_of_time() -> None:
     run = with_gap(7.0, 8.11)
-    later = Run.from_arrays(run.time_s + 1000.0, run.velocity_m_s, run.friction_n, name="later")
+    later = Run.from_arrays(run.time_s + 1000.0, run.velocity, run.friction, name="later")
     masks = [samples_affected_by_gaps(*journal_problem(r), LEAST_N)[0] for r in (run, later)]
     assert masks[0].any()
     np.testing.assert_array_equal(*masks)

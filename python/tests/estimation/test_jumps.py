@@ -77,7 +77,7 @@ def test_effects_are_classified_by_whether_they_move_or_blur_jumps() -> None:
 
 def test_effect_is_inactive_only_if_all_its_nulls_are_reached() -> None:
     pages = {
-        "F_c_n": Parameter("F_c_n"),
+        "F_c": Parameter("F_c"),
         "one.a": Parameter("a", null=0.0),
         "one.b": Parameter("b"),
         "two.c": Parameter("c", null=np.inf),
@@ -93,11 +93,11 @@ def test_effect_is_inactive_only_if_all_its_nulls_are_reached() -> None:
         assert found == (["load_dependence"] if active else [])
 
 
-def square_wave(noise_n: float) -> tuple[Campaign, Array]:
+def square_wave(noise_rms: float) -> tuple[Campaign, Array]:
     """A run whose force changes its sign once, at sample 250, with noise of alternating sign."""
     t = np.arange(0.0, 10.0, 0.02)
     force = np.where(t < 5.0, 20.0, -20.0)
-    noise = noise_n * np.where(np.arange(len(t)) % 2, 1.0, -1.0)
+    noise = noise_rms * np.where(np.arange(len(t)) % 2, 1.0, -1.0)
     run = Run.from_arrays(t, np.where(t < 5.0, 0.1, -0.1), force + noise, name="a")
     prepared = Campaign.prepare(Rig(), [run])
     every = np.ones(len(t))
@@ -105,17 +105,17 @@ def square_wave(noise_n: float) -> tuple[Campaign, Array]:
     return replace(prepared, samples=samples), force
 
 
-@pytest.mark.parametrize("noise_n", [0.3, 3.0])
+@pytest.mark.parametrize("noise_rms", [0.3, 3.0])
 @pytest.mark.parametrize("before", [1.0, 0.5])
-def test_weight_at_a_moved_jump_is_the_share_of_noise(noise_n: float, before: float) -> None:
+def test_weight_at_a_moved_jump_is_the_share_of_noise(noise_rms: float, before: float) -> None:
     """Half of the change, 20 N, is added to the noise in squares; tests exclude these samples."""
-    campaign_, force = square_wave(noise_n)
+    campaign_, force = square_wave(noise_rms)
     samples = replace(campaign_.samples, weight=(np.full(len(force), before),))
     found = samples_near_jumps(samples, campaign_.prepared, [force], ["time_delay"])
     adjacent = np.isin(np.arange(len(force)), [249, 250])
     np.testing.assert_array_equal(found.counted[0], ~adjacent)
     np.testing.assert_array_equal(found.weight[0][~adjacent], before)
-    expected = before * noise_n / np.hypot(noise_n, 20.0)
+    expected = before * noise_rms / np.hypot(noise_rms, 20.0)
     np.testing.assert_allclose(found.weight[0][adjacent], expected, rtol=1e-9)
     assert samples_near_jumps(samples, campaign_.prepared, [force], ["sensor_offset"]) is samples
 
@@ -128,17 +128,17 @@ def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_erro
     true = 0.004 * (t - 10.0)
     since = np.maximum(t - 10.0, 0.0)
     force = np.where(true < 0.0, -5.0, 5.0 - 10.0 * np.exp(-since / 0.5))
-    noise_n = 0.2
-    run = Run.from_arrays(t, v, force + noise_n * random.standard_normal(len(t)), name="a")
+    noise_rms = 0.2
+    run = Run.from_arrays(t, v, force + noise_rms * random.standard_normal(len(t)), name="a")
     campaign_ = Campaign.prepare(Rig(), [run])
     (p,) = campaign_.prepared
     found = samples_near_jumps(campaign_.samples, [p], [force], ["sensor_lag"])
     counted = campaign_.samples.counted[0]
-    rms_n = float(np.sqrt(np.mean((force - p.friction_n)[counted] ** 2)))
-    error_n = instant_errors_n(p, force, 0.5 * rms_n)
+    rms = float(np.sqrt(np.mean((force - p.friction)[counted] ** 2)))
+    error_n = instant_errors_n(p, force, 0.5 * rms)
     assert 5 < np.count_nonzero(error_n) < 200
     np.testing.assert_array_equal(found.counted[0], counted & (error_n == 0.0))
-    expected = np.where(counted, rms_n / np.hypot(rms_n, error_n), 0.0)
+    expected = np.where(counted, rms / np.hypot(rms, error_n), 0.0)
     np.testing.assert_allclose(found.weight[0], expected)
 
 
@@ -146,7 +146,7 @@ def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_erro
 def test_parameter_of_an_effect_that_moves_jumps_is_recovered_within_its_error(name: str) -> None:
     rig, runs, truth = campaign(5, (name,))
     solution = fit(rig, runs, [name])
-    assert solution.rms_n < 1.03 * truth["noise_n"]
+    assert solution.rms < 1.03 * truth["noise_n"]
     (short, value), *_ = truth["effects"][name].items()
     full = next(n for n in solution.parameters if n.startswith(f"{name}.{short}"))
     found = solution.parameters[full]
@@ -155,7 +155,7 @@ def test_parameter_of_an_effect_that_moves_jumps_is_recovered_within_its_error(n
     # Only the samples next to the moved jumps are excluded.
     bare = compare(Model(rig), runs)
     assert 0.97 * bare.samples.count < solution.samples < bare.samples.count
-    assert compare(solution.model, runs).rms_n < 1.03 * truth["noise_n"]
+    assert compare(solution.model, runs).rms < 1.03 * truth["noise_n"]
 
 
 STEP_S = 0.1
@@ -176,7 +176,7 @@ def prepared(
     errors = np.broadcast_to(np.asarray(error, dtype=float), (n,)).copy()
     motion = ImposedMotion(v, np.zeros(n), STEP_S * np.cumsum(v), errors, rest, known)
     short = made.run.select(np.arange(200) < n)
-    return replace(made, run=short, motion=motion, friction_n=made.friction_n[:n])
+    return replace(made, run=short, motion=motion, friction=made.friction[:n])
 
 
 def ramp(p: Prepared, rate_n_s: float = 10.0) -> Array:
@@ -254,9 +254,9 @@ def true_model(
     rig, runs, truth = campaign(seed, effects, motions=SLOW)
     if speed_noise_m_s > 0.0:
         random = np.random.default_rng(seed)
-        noisy = [r.velocity_m_s + random.normal(0.0, speed_noise_m_s, len(r)) for r in runs]
+        noisy = [r.velocity + random.normal(0.0, speed_noise_m_s, len(r)) for r in runs]
         pairs = zip(runs, noisy, strict=True)
-        runs = [replace(r, velocity_m_s=v, angle_rad=None) for r, v in pairs]
+        runs = [replace(r, velocity=v, angle_rad=None) for r, v in pairs]
     problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", effects)
     known = {name.removesuffix("_m_s"): value for name, value in truth["base"].items()}
     for effect, values in truth["effects"].items():
@@ -271,15 +271,15 @@ def true_model(
 def test_errors_after_slow_reversals_are_as_large_as_predicted(seeds: range) -> None:
     doubtful, others = [], []
     for seed in seeds:
-        problem, values, noise_n = true_model(seed, ("sensor_lag",), speed_noise_m_s=1e-3)
+        problem, values, noise_rms = true_model(seed, ("sensor_lag",), speed_noise_m_s=1e-3)
         (p,), (prediction,) = problem.campaign.prepared, problem.predict(values)
-        error_n = instant_errors_n(p, prediction, 0.5 * noise_n)
-        residual = p.friction_n - prediction
+        error_n = instant_errors_n(p, prediction, 0.5 * noise_rms)
+        residual = p.friction - prediction
         counted = p.motion.sign_known
         behind = counted & (error_n > 0.0)
-        doubtful.append(residual[behind] / np.hypot(noise_n, error_n[behind]))
-        others.append(residual[counted & (error_n == 0.0)] / noise_n)
+        doubtful.append(residual[behind] / np.hypot(noise_rms, error_n[behind]))
+        others.append(residual[counted & (error_n == 0.0)] / noise_rms)
         assert 0 < behind.sum() < 0.1 * counted.sum()
-        assert np.max(error_n) > 2.0 * noise_n
+        assert np.max(error_n) > 2.0 * noise_rms
     assert 0.4 < np.sqrt(np.mean(np.concatenate(doubtful) ** 2)) < 2.0
     assert np.sqrt(np.mean(np.concatenate(others) ** 2)) == pytest.approx(1.0, abs=0.05)

@@ -81,11 +81,11 @@ def test_expected_gain_is_that_of_one_gauss_newton_step() -> None:
 
 
 def test_score_gain_of_a_linear_effect_is_the_gain_of_its_fit() -> None:
-    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.2, noise_n=0.1)
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.2, noise_rms=0.1)
     bare, offset = coulomb_problem(runs), coulomb_problem(runs, ["sensor_offset"])
     near = solution_at(bare, values_of(bare))
-    at_null = values_of(offset, **{"sensor_offset.b_n": 0.0})
-    v = np.concatenate([p.motion.velocity_m_s for p in bare.campaign.prepared])
+    at_null = values_of(offset, **{"sensor_offset.b": 0.0})
+    v = np.concatenate([p.motion.velocity for p in bare.campaign.prepared])
     r = np.concatenate(near.residuals)
     x = np.column_stack([np.sign(v), v, np.ones(len(v))])
     left = r - x @ np.linalg.lstsq(x, r, rcond=None)[0]
@@ -103,7 +103,7 @@ TARGET = np.array([3.0, 8.0, -1.0, 2.0])
 def test_regression_residual_does_not_depend_on_the_scale_of_the_columns(scale: float) -> None:
     design = DESIGN * [1.0, scale, 1.0] if scale == 1e200 else scale * DESIGN
     design[:, 2] = design[:, 0] + design[:, 1]
-    left = likelihood.unexplained(design, TARGET)
+    left = likelihood.residual_structure(design, TARGET)
     np.testing.assert_allclose(left, [0.0, 0.0, -1.0, 2.0], atol=1e-12)
     assert likelihood.unexplained_square(design, TARGET) == pytest.approx(5.0)
     span = likelihood.spanned(scale * DESIGN)

@@ -24,8 +24,8 @@ NOISE_N = 0.1
 
 
 def runs_with(more: Callable[[int, Run], Array], seed: int = 0) -> list[Run]:
-    runs = four_runs(coulomb, noise_n=NOISE_N, seed=seed)
-    return [replace(r, friction_n=r.friction_n + more(i, r)) for i, r in enumerate(runs)]
+    runs = four_runs(coulomb, noise_rms=NOISE_N, seed=seed)
+    return [replace(r, friction=r.friction + more(i, r)) for i, r in enumerate(runs)]
 
 
 def fitted(runs: list[Run]) -> tuple[Problem, Solution]:
@@ -39,9 +39,9 @@ def regression(
     """Least squares for F_c and F_v with samples or innovations; estimates and residuals."""
     rows, forces = [], []
     for p, c in zip(problem.campaign.prepared, problem.campaign.samples.counted, strict=True):
-        v = p.motion.velocity_m_s[c]
+        v = p.motion.velocity[c]
         rows.append(np.stack([np.sign(v), v], axis=1))
-        forces.append(p.friction_n[c])
+        forces.append(p.friction[c])
     j, y = np.concatenate(rows), np.concatenate(forces)
     left, right = j, y
     if noise is not None:
@@ -75,14 +75,14 @@ def test_fit_in_coloured_noise_is_generalised_least_squares_if_the_rms_hardly_ri
 
 @pytest.mark.parametrize("height", [1.0, 3.0])
 def test_error_of_a_wrong_law_is_not_weighted_as_coloured_noise(height: float) -> None:
-    runs = runs_with(lambda i, r: height * np.sign(r.velocity_m_s) * np.exp(-r.time_s / 2.0))
+    runs = runs_with(lambda i, r: height * np.sign(r.velocity) * np.exp(-r.time_s / 2.0))
     problem, found = fitted(runs)
     assert found.noise.colour > 0.0
     values, least = regression(problem)
     _, coloured = regression(problem, found.noise)
     # With weights for this colour the fit would be far worse.
     assert rms(coloured) > 1.1 * MOST_FORGIVEN * rms(least)
-    assert found.rms_n <= MOST_FORGIVEN * rms(least)
+    assert found.rms <= MOST_FORGIVEN * rms(least)
     np.testing.assert_allclose(found.values[[0, 2]], values, rtol=1e-3)
 
 
@@ -115,7 +115,7 @@ def test_other_peaks_are_the_two_lowest_minima_within_the_bounds() -> None:
 
 @pytest.mark.extended
 def test_resonance_of_a_drive_is_recovered_from_a_wrong_starting_frequency() -> None:
-    name = "drive_compliance.J_kg_m2"
+    name = "drive_compliance.J"
     rig, runs, truth = campaign(8, ("drive_compliance",))
     problem = Problem(Campaign.prepare(rig, runs), "journal", "journal", ("drive_compliance",))
     right = truth["effects"]["drive_compliance"]["J"]
@@ -149,7 +149,7 @@ def test_student_weights_have_the_derivative_of_the_log_density() -> None:
 
 def test_unweighted_fit_is_returned_if_noise_is_gaussian() -> None:
     for seed in range(3):
-        problem, plain = fitted(four_runs(coulomb, noise_n=NOISE_N, seed=seed))
+        problem, plain = fitted(four_runs(coulomb, noise_rms=NOISE_N, seed=seed))
         assert best_weighting(problem, plain) is plain
 
 
@@ -167,10 +167,10 @@ def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error
     random = np.random.default_rng(seed)
     # In one run three of ten samples deviate by ten standard deviations.
     runs = runs_with(
-        lambda i, run: (random.random(len(run)) < 0.3) * np.sign(run.velocity_m_s) * (i == 0), seed
+        lambda i, run: (random.random(len(run)) < 0.3) * np.sign(run.velocity) * (i == 0), seed
     )
     early = np.arange(501) < 30
-    spoilt = [replace(r, friction_n=r.friction_n + 20.0 * early) for r in runs]
+    spoilt = [replace(r, friction=r.friction + 20.0 * early) for r in runs]
     # Excluded samples have zero weight, regardless of their residuals.
     kept = coulomb_problem(spoilt).campaign.without([early] * 4)
     problem = Problem(kept, "coulomb", "journal", (), HELD)
@@ -182,7 +182,7 @@ def test_robust_weights_are_used_if_outliers_in_one_run_raise_the_held_out_error
     ends = [iteratively_reweighted(problem, weights) for weights in (huber, student)]
     assert min(np.max(np.abs(found.values[[0, 2]] / end - 1.0)) for end in ends) < 1e-3
     speed = np.linspace(0.05, 0.15, 11)
-    true = LAW["F_c_n"] + LAW["F_v_n_s_m"] * speed
+    true = LAW["F_c"] + LAW["F_v"] * speed
     before, after = (rms(s.values[0] + s.values[2] * speed - true) for s in (plain, found))
     assert after < 0.6 * before
     far = np.abs(found.samples.flat(found.residuals)) > 6.0 * NOISE_N
@@ -196,11 +196,11 @@ def test_robust_weights_reduce_the_bias_of_the_slope_by_few_outliers() -> None:
     random = np.random.default_rng(1)
 
     def wild(i: int, run: Run) -> Array:
-        v = run.velocity_m_s
+        v = run.velocity
         return 4.0 * (random.random(len(run)) < 0.05) * np.sign(v) * (np.abs(v) > 0.1)
 
     problem, plain = fitted(runs_with(wild))
-    slope = LAW["F_v_n_s_m"]
+    slope = LAW["F_v"]
     assert abs(plain.values[2] / slope - 1.0) > 0.1
     found = best_weighting(problem, plain)
     assert abs(found.values[2] - slope) < 0.3 * abs(plain.values[2] - slope)

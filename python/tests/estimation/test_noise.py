@@ -153,21 +153,21 @@ def test_coloured_part_of_estimated_noise_is_limited_to_the_largest_noise() -> N
 
 def test_periodic_model_error_is_not_taken_for_coloured_noise() -> None:
     """An unmodelled mass that oscillates once a second: repetitions reveal noise of 0.1 N."""
-    options: dict[str, Any] = {"rate": 2.0 * np.pi, "noise_n": 0.1}
+    options: dict[str, Any] = {"rate": 2.0 * np.pi, "noise_rms": 0.1}
     runs = [
         one_way("forth", mass(1.5), seed=1, **options),
         one_way("back", mass(1.5), way=-1.0, seed=2, **options),
     ]
     fitted = fit(Rig(), runs, law="coulomb")
-    assert fitted.rms_n > 0.2
-    share = 0.1**2 / fitted.rms_n**2
+    assert fitted.rms > 0.2
+    share = 0.1**2 / fitted.rms**2
     assert fitted.noise.coloured_share(STEP_S) == pytest.approx(share, rel=0.2)
 
 
 def test_noise_of_a_model_is_estimated_from_the_samples_that_count() -> None:
     slow = [autoregressive(i, 0.2, 0.3, 501) for i in range(4)]
-    plain = zip(four_runs(coulomb, noise_n=0.1), slow, strict=True)
-    runs = [replace(run, friction_n=run.friction_n + noise) for run, noise in plain]
+    plain = zip(four_runs(coulomb, noise_rms=0.1), slow, strict=True)
+    runs = [replace(run, friction=run.friction + noise) for run, noise in plain]
     problem = coulomb_problem(runs)
     samples = problem.campaign.samples.within([np.arange(len(r)) > 150 for r in runs])
     values = values_of(problem)
@@ -183,7 +183,7 @@ def test_noise_of_a_model_is_estimated_from_the_samples_that_count() -> None:
 
 
 def test_random_effect_of_a_run_is_not_taken_for_coloured_noise() -> None:
-    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5 * np.sign(v), noise_n=0.1)
+    runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5 * np.sign(v), noise_rms=0.1)
     problem = coulomb_problem(runs)
     samples, values = problem.campaign.samples, values_of(problem)
     assert not noise_at(problem, samples, values).white
@@ -225,7 +225,7 @@ def test_noise_floor_of_quantised_readings_includes_quantisation_error(over_nois
     1956)."""
     rig, runs, truth = campaign(6)
     step = over_noise * truth["noise_n"]
-    coarse = [replace(run, friction_n=step * np.round(run.friction_n / step)) for run in runs]
+    coarse = [replace(run, friction=step * np.round(run.friction / step)) for run in runs]
     expected = np.hypot(truth["noise_n"], step / np.sqrt(12.0))
     assert floor_of(rig, coarse) == pytest.approx(expected, rel=0.15)
 
@@ -238,7 +238,7 @@ def test_largest_noise_at_rest_is_the_scatter_about_a_line_through_each_rest() -
     for p in Campaign.prepare(Rig(), runs).prepared:
         rest = np.flatnonzero(p.motion.resting)
         assert 240 < len(rest) == rest[-1] - rest[0] + 1
-        part = p.friction_n[rest[len(rest) // 4 :]]
+        part = p.friction[rest[len(rest) // 4 :]]
         place = np.arange(len(part))
         off = part - np.polyval(np.polyfit(place, part, 1), place)
         total += float(off @ off) / (len(part) - 2) * len(part)

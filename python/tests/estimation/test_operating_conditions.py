@@ -33,7 +33,7 @@ def drive_runs(seed: int, *effects: str, **options: Any) -> list[Run]:
     runs = []
     for r in axis_campaign(seed, effects, **options)[0]:
         columns = {"position_m": r.path, "load_n": r.load_n, "temperature_c": r.temperature_c}
-        runs.append(Run.from_arrays(r.time_s, r.velocity_m_s, r.force_n, name=r.name, **columns))
+        runs.append(Run.from_arrays(r.time_s, r.velocity, r.force_n, name=r.name, **columns))
     return runs
 
 
@@ -63,11 +63,11 @@ def test_mean_of_a_noisy_load_is_used_in_predictions_and_in_resampled_runs() -> 
 def test_prediction_scales_dry_and_viscous_friction_with_the_temperature() -> None:
     """`F_c (1 + a (T - T_0)) sign(v) + F_v exp(B / (T + 95) - B / (T_0 + 95)) v`."""
     run = slide_run(BODY_C)
-    values = {"F_c_n": 6.0, "F_s_n": 6.0, "F_v_n_s_m": 40.0}
+    values = {"F_c": 6.0, "F_s": 6.0, "F_v": 40.0}
     own = {f"{DRY}.a": -0.01, f"{DRY}.T_0": 25.0, f"{VISCOUS}.B": 700.0, f"{VISCOUS}.T_0": 20.0}
     model = Model(Rig(), effects=[DRY, VISCOUS], parameters={**values, **own}, **COULOMB)
     law = Model(Rig(), parameters=values, **COULOMB)
-    v = (law.predict(run) - 6.0 * np.sign(run.velocity_m_s)) / 40.0
+    v = (law.predict(run) - 6.0 * np.sign(run.velocity)) / 40.0
     viscosity = np.exp(700.0 / (BODY_C + 95.0) - 700.0 / 115.0)
     expected = 6.0 * (1.0 - 0.01 * (BODY_C - 25.0)) * np.sign(v) + 40.0 * viscosity * v
     moving = np.abs(v) > 0.005
@@ -96,7 +96,7 @@ def test_fit_does_not_depend_on_the_reference_temperature() -> None:
     assert reference.stderr is None
     assert not found[f"{DRY}.a"].held
     other = fit(Rig(), runs, [DRY], fixed={f"{DRY}.T_0": 10.0}, **COULOMB)
-    assert other.rms_n == pytest.approx(found.rms_n, rel=1e-6)
+    assert other.rms == pytest.approx(found.rms, rel=1e-6)
     slope = found[f"{DRY}.a"].value
     expected = slope / (1.0 + slope * (10.0 - reference.value))
     assert other[f"{DRY}.a"].value == pytest.approx(expected, rel=1e-3)
@@ -126,7 +126,7 @@ def test_temperature_coefficient_of_dry_friction_is_recovered_within_its_error()
     slope = found[f"{DRY}.a"]
     assert abs(slope.value + 0.25 / 16.0 / level) < 4.0 * slope.stderr
     assert slope.stderr < 0.1 * abs(slope.value)
-    assert found.rms_n == pytest.approx(0.2, rel=0.05)
+    assert found.rms == pytest.approx(0.2, rel=0.05)
 
 
 @EXTENDED

@@ -46,7 +46,7 @@ def test_first_exception_cancels_the_remaining_tasks(at_once: int) -> None:
 @pytest.fixture
 def drag_effect() -> Iterator[None]:
     jbf.register_effect(
-        lambda velocity_m_s, c_n: c_n * np.sign(velocity_m_s),
+        lambda velocity, c_n: c_n * np.sign(velocity),
         parameters=[jbf.Parameter("c_n", "N", lower=-9.0, upper=9.0, null=0.0, starts=(0.5,))],
         name="own_drag",
     )
@@ -59,7 +59,7 @@ def test_number_of_parallel_fits_is_that_of_threads_and_one_for_python_effects(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Effects in Python may have a state and are therefore fitted one at a time."""
-    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1))
     for threads, expected in (("64", FEW), ("2", 2), ("1", 1)):
         monkeypatch.setenv("RAYON_NUM_THREADS", threads)
         assert parallel_fits(campaign, "coulomb", ["sensor_offset"]) == expected
@@ -68,8 +68,8 @@ def test_number_of_parallel_fits_is_that_of_threads_and_one_for_python_effects(
 
 
 def test_parallel_fits_have_the_same_values_as_sequential_fits() -> None:
-    runs = four_runs(coulomb, noise_n=0.1)[:2]
-    effects = ["sensor_offset", "quadratic_drag", "inertia_leak"]
+    runs = four_runs(coulomb, noise_rms=0.1)[:2]
+    effects = ["sensor_offset", "quadratic_drag", "inertia"]
 
     def fitted(effect: str) -> dict[str, float]:
         return jbf.fit(Rig(), runs, [effect], law="coulomb").values

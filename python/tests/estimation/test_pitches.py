@@ -29,7 +29,7 @@ def waves_of(x: Array, waves: Waves) -> Array:
 
 
 def axis_runs(
-    waves: Waves = (), *, along: bool = False, seed: int = 0, noise_n: float = NOISE_N
+    waves: Waves = (), *, along: bool = False, seed: int = 0, noise_rms: float = NOISE_N
 ) -> list[Run]:
     """Two runs of an axis under dry and viscous friction, a mass and a weight that turns.
 
@@ -44,7 +44,7 @@ def axis_runs(
         x = -0.06 / 0.9 * np.cos(0.9 * t + i) - 0.03 / 2.3 * np.cos(2.3 * t + 2.0 * i)
         force = (5.0 + i) * np.sign(v) + 30.0 * v + 3.0 * a + 20.0 * np.sin(x - 1.0)
         force = force + waves_of(x, waves) * (np.sign(v) if along else 1.0)
-        force = force + noise_n * rng.standard_normal(len(t))
+        force = force + noise_rms * rng.standard_normal(len(t))
         runs.append(Run.from_arrays(t, v, force, position_m=x, name=f"{i}"))
     return runs
 
@@ -81,7 +81,7 @@ def test_pitch_of_maximum_likelihood_is_that_of_the_simulated_wave(
 
 def test_pitches_of_waves_are_listed_in_the_order_of_their_amplitudes() -> None:
     some = [(0.0123, 0.4), (0.0079, 0.2), (0.0043, 0.04)]
-    campaign = Campaign.prepare(Rig(), axis_runs(some, noise_n=0.05))
+    campaign = Campaign.prepare(Rig(), axis_runs(some, noise_rms=0.05))
     found = pitches(campaign, along=False)
     assert found == pytest.approx([p for p, _ in some], rel=0.01)
 
@@ -168,7 +168,7 @@ def test_drive_gives_the_pitches_of_screw_and_motor(drive: Any, found: tuple[flo
 def test_fit_of_cogging_starts_at_the_pitches_of_the_drive() -> None:
     rig = Rig(drive=Drive("linear", "force", pitch_m=0.02, gear_ratio=4.0))
     problem = Problem(Campaign.prepare(rig, axis_runs()), "coulomb", "journal", ("cogging",))
-    assert {0.02, 0.005} <= set(problem.parameters["cogging.pitch_m"].starts)
+    assert {0.02, 0.005} <= set(problem.parameters["cogging.pitch"].starts)
 
 
 SLIDE_NOISE_N = 0.15
@@ -205,7 +205,7 @@ def test_ends_of_the_stroke_are_taken_from_the_runs_and_not_fitted() -> None:
     places = np.concatenate([np.asarray(r.position_m) for r in runs])
     found = fit(Rig(), runs, [STROKE], law="coulomb")
     # A tenth of the path is added at either end.
-    wanted = {"x_0_m": 0.5 * (places.min() + places.max()), "h_m": 0.6 * np.ptp(places)}
+    wanted = {"x_0": 0.5 * (places.min() + places.max()), "h": 0.6 * np.ptp(places)}
     for name, value in wanted.items():
         p = found[f"{STROKE}.{name}"]
         assert (p.held, p.stderr) == (True, None)
@@ -224,5 +224,5 @@ def test_tight_spot_is_diagnosed_as_stroke_dependence() -> None:
     runs = slide(lambda x: 6.0 + 1.5 * np.exp(-(((x - 0.3) / 0.08) ** 2)) - 2.0 * (x - 0.2))
     found = diagnose(Rig(), runs, law="coulomb")
     assert (found.verdict, found.effects) == ("missing", (STROKE,))
-    assert found.steps[-1].rms_n == pytest.approx(SLIDE_NOISE_N, rel=0.05)
-    assert found.steps[-1].holdout_rms_n == pytest.approx(SLIDE_NOISE_N, rel=0.05)
+    assert found.steps[-1].rms == pytest.approx(SLIDE_NOISE_N, rel=0.05)
+    assert found.steps[-1].held_out_rms == pytest.approx(SLIDE_NOISE_N, rel=0.05)

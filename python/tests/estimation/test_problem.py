@@ -13,16 +13,16 @@ from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import BOUNDLESS, Problem, bounded, named_values
 from jbf.estimation.rows import MOST_SEARCHED, every_so_many, triangular
 
-OFFSET = "sensor_offset.b_n"
+OFFSET = "sensor_offset.b"
 
 
 @pytest.fixture(scope="module")
 def problem() -> Problem:
-    return coulomb_problem(four_runs(coulomb, noise_n=0.1), ["sensor_offset"])
+    return coulomb_problem(four_runs(coulomb, noise_rms=0.1), ["sensor_offset"])
 
 
 def test_encode_takes_logarithms_of_scales_and_drops_fixed_parameters() -> None:
-    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1)[:2])
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1)[:2])
     problem = Problem(campaign, "stribeck", "journal", ["sensor_offset"], {"delta": 1.5})
     values = problem.starts({})[0]
     names = [n for n in problem.names if n != "delta"]
@@ -35,10 +35,10 @@ def test_encode_takes_logarithms_of_scales_and_drops_fixed_parameters() -> None:
 
 
 def test_decode_takes_fixed_parameters_from_the_base_and_clips_at_bounds(problem: Problem) -> None:
-    values, base = values_of(problem), values_of(problem, F_s_n=9.0)
+    values, base = values_of(problem), values_of(problem, F_s=9.0)
     x = problem.encode(values)
     back = problem.decode(x, base)
-    held = problem.names.index("F_s_n")
+    held = problem.names.index("F_s")
     assert back[held] == base[held] == 9.0
     np.testing.assert_allclose(np.delete(back, held), np.delete(values, held))
     for far, bound in ((-1e9, problem.lower), (1e9, problem.upper)):
@@ -50,8 +50,8 @@ def test_decode_takes_fixed_parameters_from_the_base_and_clips_at_bounds(problem
 
 def test_starts_combine_all_values_of_parameters_that_the_seed_lacks(problem: Problem) -> None:
     pages = problem.parameters
-    starts = problem.starts({"F_s_n": 6.0, OFFSET: 0.125})
-    free = [n for n in problem.names if n not in ("F_s_n", OFFSET)]
+    starts = problem.starts({"F_s": 6.0, OFFSET: 0.125})
+    free = [n for n in problem.names if n not in ("F_s", OFFSET)]
     assert len(starts) == np.prod([len(pages[n].starts) for n in free])
     assert len({tuple(s.tolist()) for s in starts}) == len(starts)
     assert {float(s[problem.names.index(OFFSET)]) for s in starts} == {0.125}
@@ -69,21 +69,21 @@ def test_angle_parameters_are_wrapped_into_one_period() -> None:
 
 
 def test_named_values_are_accepted_within_their_bounds_or_at_their_null() -> None:
-    pages = {"b_n": Parameter("b_n", lower=1.0, upper=5.0, null=0.0)}
+    pages = {"b": Parameter("b", lower=1.0, upper=5.0, null=0.0)}
     for value in (0.0, 1.0, 5.0):
-        assert named_values({"b": value}, pages) == {"b_n": value}
+        assert named_values({"b": value}, pages) == {"b": value}
     for wrong in (0.999, 5.001):
         with pytest.raises(InputError, match="out of range"):
-            named_values({"b_n": wrong}, pages)
+            named_values({"b": wrong}, pages)
 
 
 def test_residual_of_each_run_is_record_minus_prediction(problem: Problem) -> None:
-    values = values_of(problem, F_c_n=5.2, **{OFFSET: 0.3})
+    values = values_of(problem, F_c=5.2, **{OFFSET: 0.3})
     predictions, residuals = problem.predict(values), problem.residuals(values)
     for f, r, p in zip(predictions, residuals, problem.campaign.prepared, strict=True):
-        v = p.motion.velocity_m_s
+        v = p.motion.velocity
         np.testing.assert_allclose(f, 5.2 * np.sign(v) + 20.0 * v + 0.3)
-        np.testing.assert_allclose(r, p.friction_n - f)
+        np.testing.assert_allclose(r, p.friction - f)
     for some, i in zip(problem.residuals(values, [2, 0]), (2, 0), strict=True):
         np.testing.assert_array_equal(some, residuals[i])
     wanted = problem.campaign.samples.square(residuals)
@@ -95,15 +95,15 @@ def test_derivatives_are_those_of_the_prediction_by_the_search_variables(problem
     residuals, slopes = problem.linearise(values)
     names = [problem.names[i] for i in problem.open]
     for p, r, j in zip(problem.campaign.prepared, residuals, slopes, strict=True):
-        v = p.motion.velocity_m_s
-        columns = {"F_c_n": np.sign(v), "F_v_n_s_m": v, OFFSET: np.ones(len(v))}
+        v = p.motion.velocity
+        columns = {"F_c": np.sign(v), "F_v": v, OFFSET: np.ones(len(v))}
         for k, name in enumerate(names):
             scale = VALUES[name] if problem.parameters[name].log else 1.0
             np.testing.assert_allclose(j[:, k], scale * columns[name], atol=1e-9)
-        np.testing.assert_allclose(r, p.friction_n - coulomb(v, v, v) - values_of(problem)[-1])
-    some, by = problem.linearise(values, [1], [problem.names.index("F_v_n_s_m")])
+        np.testing.assert_allclose(r, p.friction - coulomb(v, v, v) - values_of(problem)[-1])
+    some, by = problem.linearise(values, [1], [problem.names.index("F_v")])
     np.testing.assert_array_equal(some[0], residuals[1])
-    np.testing.assert_array_equal(by[0][:, 0], slopes[1][:, names.index("F_v_n_s_m")])
+    np.testing.assert_array_equal(by[0][:, 0], slopes[1][:, names.index("F_v")])
 
 
 def test_derivatives_above_a_limit_or_undefined_are_replaced_by_zero() -> None:
@@ -127,7 +127,7 @@ def test_gauss_newton_rows_have_inner_products_of_all_rows(problem: Problem, noi
     assert found.cost == pytest.approx(len(r) * np.log(float(r @ r) / len(r)))
     np.testing.assert_allclose(found.stacked()[0], r)
     assert found.free == 3
-    assert found.rms_n == pytest.approx(samples.rms(lines[0]))
+    assert found.rms == pytest.approx(samples.rms(lines[0]))
 
 
 @cache
@@ -190,11 +190,11 @@ def test_fit_of_a_million_samples_is_the_regression_over_all_of_them() -> None:
     assert len(problem.thinned.campaign.prepared) == 5
     found = minimum(problem, [{}])
     assert found.converged
-    v = np.concatenate([p.motion.velocity_m_s for p in problem.campaign.prepared])
-    f = np.concatenate([p.friction_n for p in problem.campaign.prepared])
+    v = np.concatenate([p.motion.velocity for p in problem.campaign.prepared])
+    f = np.concatenate([p.friction for p in problem.campaign.prepared])
     x = np.column_stack([np.sign(v), v, np.ones(len(v))])
     wanted, (square,), *_ = np.linalg.lstsq(x, f, rcond=None)
-    at = [problem.names.index(n) for n in ("F_c_n", "F_v_n_s_m", "sensor_offset.b_n")]
+    at = [problem.names.index(n) for n in ("F_c", "F_v", "sensor_offset.b")]
     errors = np.sqrt(square / len(v) * np.diag(np.linalg.inv(x.T @ x)))
     assert np.all(np.abs(found.values[at] - wanted) < 0.05 * errors)
-    assert found.rms_n == pytest.approx(np.sqrt(square / len(v)), rel=1e-6)
+    assert found.rms == pytest.approx(np.sqrt(square / len(v)), rel=1e-6)

@@ -14,7 +14,7 @@ from jbf import Rig, Run
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.terms.quantiser import without_bias
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.converter import MOST_NOISE, bias_n, curve_rms_n, noise_before, origin_n
+from jbf.estimation.converter import MOST_NOISE, bias_n, curve_rms, noise_before, origin_n
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
@@ -54,8 +54,8 @@ def test_rms_of_the_quantisation_bias_is_that_of_its_first_harmonic(step: float)
     force = step * np.linspace(0.0, 1.0, 1000, endpoint=False)
     for noise in (0.3, 0.4):
         rms = np.sqrt(np.mean(bias_n(step, noise * step, force) ** 2))
-        assert curve_rms_n(step, noise * step) == pytest.approx(rms, rel=1e-2)
-    assert curve_rms_n(step, 0.0) == pytest.approx(step / (np.pi * np.sqrt(2.0)))
+        assert curve_rms(step, noise * step) == pytest.approx(rms, rel=1e-2)
+    assert curve_rms(step, 0.0) == pytest.approx(step / (np.pi * np.sqrt(2.0)))
 
 
 @pytest.mark.parametrize("step", [1e-3, 2.5, 40.0])
@@ -103,12 +103,12 @@ def quantised() -> tuple[Problem, list[Array]]:
         steps = ORIGIN_N + STEP_N * np.round((noisy - ORIGIN_N) / STEP_N)
         runs.append(Run.from_arrays(t, v, steps if i == 0 else noisy, name="ab"[i]))
         forces.append(force)
-    fixed = {"F_s_n": 6.0, "F_v_n_s_m": LAW["F_v_n_s_m"]}
+    fixed = {"F_s": 6.0, "F_v": LAW["F_v"]}
     return Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", (), fixed), forces
 
 
 def at_truth(problem: Problem) -> Solution:
-    values = problem.starts({**LAW, "F_s_n": 6.0})[0]
+    values = problem.starts({**LAW, "F_s": 6.0})[0]
     return problem.solution(values, problem.campaign.samples, WHITE)
 
 
@@ -118,27 +118,27 @@ def test_quantisation_bias_is_removed_if_the_model_is_the_true_one() -> None:
     assert problem.campaign.step_n == pytest.approx(STEP_N)
     corrected = without_bias(problem, at_truth(problem), DEFAULT)[0]
     coarse, fine = corrected.prepared
-    removed = coarse.readings_n - coarse.friction_n
+    removed = coarse.readings_n - coarse.friction
     expected = mean_reading(STEP_N, NOISE_N, forces[0] - ORIGIN_N) - (forces[0] - ORIGIN_N)
     assert np.std(expected) > 0.05 * STEP_N
     np.testing.assert_allclose(removed, expected, atol=0.015 * STEP_N)
-    np.testing.assert_array_equal(fine.friction_n, fine.readings_n)
+    np.testing.assert_array_equal(fine.friction, fine.readings_n)
     # A share of the removed bias is assumed to remain.
-    assert corrected.steps_rms_n(1.0) < 0.5 * problem.campaign.steps_rms_n(1.0)
+    assert corrected.steps_rms(1.0) < 0.5 * problem.campaign.steps_rms(1.0)
     again = Problem(corrected, "coulomb", "journal", (), problem.fixed)
     assert without_bias(again, at_truth(again), DEFAULT) is None
     # A shift in time is applied to the uncorrected readings.
-    np.testing.assert_array_equal(coarse.shifted(0.0, 0.0).friction_n, coarse.readings_n)
+    np.testing.assert_array_equal(coarse.shifted(0.0, 0.0).friction, coarse.readings_n)
 
 
 def test_quantisation_bias_is_removed_iteratively_if_the_model_is_fitted() -> None:
     """A fit to biased readings predicts another force and hence another bias; both are iterated."""
     problem, forces = quantised()
-    free = Problem(problem.campaign, "coulomb", "journal", (), {"F_s_n": 6.0})
-    start = free.starts({**LAW, "F_s_n": 6.0, "F_c_n": 5.1})[0]
+    free = Problem(problem.campaign, "coulomb", "journal", (), {"F_s": 6.0})
+    start = free.starts({**LAW, "F_s": 6.0, "F_c": 5.1})[0]
     start_fit = free.solution(start, free.campaign.samples, WHITE)
     corrected = without_bias(free, start_fit, DEFAULT)[0]
-    removed = corrected.prepared[0].readings_n - corrected.prepared[0].friction_n
+    removed = corrected.prepared[0].readings_n - corrected.prepared[0].friction
     expected = mean_reading(STEP_N, NOISE_N, forces[0] - ORIGIN_N) - (forces[0] - ORIGIN_N)
     np.testing.assert_allclose(removed, expected, atol=0.03 * STEP_N)
 
@@ -147,7 +147,7 @@ def test_quantisation_bias_is_kept_if_its_correction_is_below_the_policy_limit()
     problem, _ = quantised()
     solution = at_truth(problem)
     corrected = without_bias(problem, solution, DEFAULT)[0]
-    off = [p.readings_n - p.friction_n for p in corrected.prepared]
+    off = [p.readings_n - p.friction for p in corrected.prepared]
     moves = corrected.samples.rms(off) / problem.campaign.step_n
     for share, removed in ((0.95, True), (1.05, False)):
         policy = replace(DEFAULT, bias_moves=share * moves)

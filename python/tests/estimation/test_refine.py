@@ -31,12 +31,12 @@ def drive(seed: int, late_s: float = 0.0, count: float = 2.0 * np.pi / 4096.0) -
     return Run.from_arrays(time_s, None, force, position_m=counted, name=f"seed_{seed}")
 
 
-TRUE = {"F_c_n": COULOMB, "F_v_n_s_m": VISCOUS, "inertia_leak.m_e_kg": INERTIA}
+TRUE = {"F_c": COULOMB, "F_v": VISCOUS, "inertia.m_e": INERTIA}
 
 
 def errors_of(runs: list[Run]) -> dict[str, float]:
     """Errors of the fitted parameters, in standard errors."""
-    found = fit(Rig(), runs, ["inertia_leak"], law="coulomb")
+    found = fit(Rig(), runs, ["inertia"], law="coulomb")
     parameters = {name: found.parameters[name] for name in TRUE}
     return {n: (p.value - TRUE[n]) / (p.stderr or np.nan) for n, p in parameters.items()}
 
@@ -51,7 +51,7 @@ def test_parameters_of_a_drive_with_a_coarse_encoder_are_within_their_errors() -
 def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) -> None:
     """Unit: samples."""
     runs = [drive(seed, delay * STEP_S) for seed in (21, 22)]
-    found = fit(Rig(), runs, ["inertia_leak"], law="coulomb")
+    found = fit(Rig(), runs, ["inertia"], law="coulomb")
     late = [finding for finding in found.findings if finding.kind == "late_channel"]
     assert [f.size for f in late] == [pytest.approx(delay * STEP_S, abs=0.05 * STEP_S)]
     assert late[0].run == "seed_21, seed_22"
@@ -60,7 +60,7 @@ def test_delay_of_the_force_in_all_runs_is_corrected_and_reported(delay: float) 
 
 
 def test_force_without_a_delay_has_no_finding_of_a_delay() -> None:
-    found = fit(Rig(), [drive(31), drive(32)], ["inertia_leak"], law="coulomb")
+    found = fit(Rig(), [drive(31), drive(32)], ["inertia"], law="coulomb")
     assert "late_channel" not in {finding.kind for finding in found.findings}
 
 

@@ -56,7 +56,7 @@ def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed
     for p, offset in zip(problem.campaign.prepared, (2.0, -1.5, 1.0, -2.0), strict=True):
         wild = np.where(random.random(len(p.run)) < 0.02, 3.0, 0.0)
         added = wild if changed == "outliers" else offset
-        prepared.append(replace(p, friction_n=p.friction_n + added))
+        prepared.append(replace(p, friction=p.friction + added))
     if changed == "offsets":
         directions = tuple(np.full((len(p.run), 1), 50.0) for p in prepared)
         samples = replace(samples, between=BetweenRuns(("offset",), directions, 0.03))
@@ -113,7 +113,7 @@ def regression(
         width = int(np.ceil(LINEAR_S / p.step_s))
         far = ~ndimage.binary_dilation(~p.motion.sign_known, iterations=width)
         keep = solution.samples.counted[i] & far
-        v = p.motion.velocity_m_s
+        v = p.motion.velocity
         delays = np.zeros((len(v), len(columns) if by_run else 1))
         delays[:, i if by_run else 0] = column
         weight = solution.samples.weight[i][:, None]
@@ -159,7 +159,7 @@ def test_runs_without_information_on_the_delay_do_not_change_its_significance() 
 def test_delay_step_of_unidirectional_runs_solves_the_normal_equations() -> None:
     problem, solution = fitted(one_way_campaign((2e-3, -1e-3, 3e-3)))
     step = white(problem, solution)
-    viscous = value(problem, solution, "F_v_n_s_m")
+    viscous = value(problem, solution, "F_v")
     t = [p.run.time_s for p in problem.campaign.prepared]
     columns = [-viscous * one_way_acceleration(i, t[i]) for i in range(3)]
     delays, covariance = regression(problem, solution, columns)
@@ -171,11 +171,11 @@ def test_delay_step_of_unidirectional_runs_solves_the_normal_equations() -> None
 
 def test_samples_next_to_reversals_are_excluded_from_the_delay_step() -> None:
     delays_s = (2e-3, -1e-3, 3e-3, 0.0)
-    problem, solution = fitted(reversing_campaign(delays_s, noise_n=0.1, speed_noise_m_s=1e-3))
+    problem, solution = fitted(reversing_campaign(delays_s, noise_rms=0.1, speed_noise_m_s=1e-3))
     assert all(np.any(~p.motion.sign_known) for p in problem.campaign.prepared)
     step = white(problem, solution)
-    viscous = value(problem, solution, "F_v_n_s_m")
-    columns = [-viscous * p.motion.acceleration_m_s2 for p in problem.campaign.prepared]
+    viscous = value(problem, solution, "F_v")
+    columns = [-viscous * p.motion.acceleration for p in problem.campaign.prepared]
     delays, covariance = regression(problem, solution, columns)
     sd = np.sqrt(np.diag(covariance))
     assert np.all(np.abs(step.late_s - delays) < 0.15 * sd)
@@ -206,7 +206,7 @@ def test_delay_or_drift_is_undetermined_beyond_the_linear_range(ratio: float, kn
 
 
 def test_no_delay_is_determined_if_all_residuals_are_zero() -> None:
-    problem, solution = fitted(one_way_campaign((0.0,) * 3, noise_n=0.0))
+    problem, solution = fitted(one_way_campaign((0.0,) * 3, noise_rms=0.0))
     step = lateness_step(problem, solution)
     assert np.all(np.isfinite(step.late_s))
     exact = replace(solution, residuals=[np.zeros(len(r)) for r in solution.residuals], noise=WHITE)
@@ -227,7 +227,7 @@ def test_drift_step_of_unidirectional_runs_solves_the_normal_equations() -> None
     drift = 1.2e-4
     campaign = one_way_campaign((0.0, 0.0), drift, durations_s=(20.0, 10.0))
     problem, solution = fitted(campaign)
-    viscous = value(problem, solution, "F_v_n_s_m")
+    viscous = value(problem, solution, "F_v")
     times = [p.run.time_s for p in campaign.prepared]
     columns = [-viscous * one_way_acceleration(i, t) * t for i, t in enumerate(times)]
     (expected,), covariance = regression(problem, solution, columns, by_run=False)

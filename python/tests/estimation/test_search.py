@@ -21,22 +21,22 @@ from scipy import optimize
 
 @cache
 def linear() -> Problem:
-    return coulomb_problem(four_runs(coulomb, noise_n=0.1), ["sensor_offset"])
+    return coulomb_problem(four_runs(coulomb, noise_rms=0.1), ["sensor_offset"])
 
 
 @pytest.mark.parametrize("method", ["dogbox", "trf"])
 def test_search_for_a_linear_law_ends_at_its_linear_regression(method: str) -> None:
     problem = linear()
-    start = values_of(problem, F_c_n=8.0, F_v_n_s_m=5.0)
+    start = values_of(problem, F_c=8.0, F_v=5.0)
     samples = problem.campaign.samples
     end = search(problem, samples, start, WHITE, 60, method)  # type: ignore[arg-type]
     assert end.converged
-    v = np.concatenate([p.motion.velocity_m_s for p in problem.campaign.prepared])
-    f = np.concatenate([p.friction_n for p in problem.campaign.prepared])
+    v = np.concatenate([p.motion.velocity for p in problem.campaign.prepared])
+    f = np.concatenate([p.friction for p in problem.campaign.prepared])
     x = np.column_stack([np.sign(v), v, np.ones(len(v))])
     wanted = np.linalg.lstsq(x, f, rcond=None)[0]
     np.testing.assert_allclose(end.values[problem.open], wanted, rtol=1e-4, atol=1e-4)
-    assert end.values[problem.names.index("F_s_n")] == 6.0
+    assert end.values[problem.names.index("F_s")] == 6.0
     assert not search(problem, samples, start, WHITE, 1).converged
     # The best mean square of innovations is stored in case of an interruption.
     square = problem.square(problem.best.values)
@@ -46,7 +46,7 @@ def test_search_for_a_linear_law_ends_at_its_linear_regression(method: str) -> N
 def test_second_search_stops_early_if_it_reaches_values_of_an_earlier_search() -> None:
     problem, visited = linear(), Visited()
     samples = problem.campaign.samples
-    start = values_of(problem, F_c_n=8.0, F_v_n_s_m=5.0)
+    start = values_of(problem, F_c=8.0, F_v=5.0)
     ends = [search(problem, samples, s, WHITE, 20, visited=visited) for s in (start, 1.7 * start)]
     assert [end.converged for end in ends] == [True, False]
     squares = [problem.square(end.values) for end in ends]
@@ -56,7 +56,7 @@ def test_second_search_stops_early_if_it_reaches_values_of_an_earlier_search() -
 
 @cache
 def with_mass() -> Campaign:
-    return Campaign.prepare(Rig(), four_runs(mass(0.2), noise_n=0.1))
+    return Campaign.prepare(Rig(), four_runs(mass(0.2), noise_rms=0.1))
 
 
 def bare_solution(campaign: Campaign, noise: Noise = WHITE) -> Solution:
@@ -66,20 +66,20 @@ def bare_solution(campaign: Campaign, noise: Noise = WHITE) -> Solution:
 
 
 def test_approach_orders_starts_by_their_sum_of_squares() -> None:
-    problem = Problem(with_mass(), "coulomb", "journal", ("inertia_leak",))
-    seeds = [{"F_c_n": 5.0}, {"F_c_n": 50.0}]
+    problem = Problem(with_mass(), "coulomb", "journal", ("inertia",))
+    seeds = [{"F_c": 5.0}, {"F_c": 50.0}]
     every = Approach(problem, seeds).starts
     squares = [problem.square(start) for start in every]
     assert squares == sorted(squares)
     assert len(every) == sum(len(problem.starts(seed)) for seed in seeds)
-    step = problem.starts({"F_c_n": 7.0})[0]
+    step = problem.starts({"F_c": 7.0})[0]
     some = Approach(problem, seeds, each=True, stepped=step).starts
-    assert sorted(s[problem.names.index("F_c_n")] for s in some) == [5.0, 7.0, 50.0]
+    assert sorted(s[problem.names.index("F_c")] for s in some) == [5.0, 7.0, 50.0]
 
 
 def test_many_starts_are_first_reduced_by_their_error_in_one_run() -> None:
     rig, runs, _ = simulated(11)
-    effects = ("sensor_offset", "inertia_leak", "gravity")
+    effects = ("sensor_offset", "inertia", "gravity")
     problem = Problem(Campaign.prepare(rig, runs[:3]), "stribeck", "journal", effects)
     every = problem.starts({})
     kept = Approach(problem, [{}]).starts
@@ -95,7 +95,7 @@ def test_many_starts_are_first_reduced_by_their_error_in_one_run() -> None:
 
 def test_expected_gain_of_a_linear_effect_is_the_gain_of_its_fit() -> None:
     near = bare_solution(with_mass())
-    path = Approach(Problem(with_mass(), "coulomb", "journal", ("inertia_leak",)), [{}])
+    path = Approach(Problem(with_mass(), "coulomb", "journal", ("inertia",)), [{}])
     look = path.look(near)
     seen, found = path.solution_of(look, near), path.follow(8)
     samples = near.samples
@@ -108,7 +108,7 @@ def test_expected_gain_of_a_linear_effect_is_the_gain_of_its_fit() -> None:
 
 def test_expected_gain_exceeds_the_gain_of_the_first_steps_if_the_law_is_nonlinear() -> None:
     near, samples = bare_solution(with_mass()), with_mass().samples
-    path = Approach(Problem(with_mass(), "stribeck", "journal", ()), [{"v_s_m_s": 0.02}])
+    path = Approach(Problem(with_mass(), "stribeck", "journal", ()), [{"v_s": 0.02}])
     look = path.look(near)
     seen = samples.square(path.solution_of(look, near).residuals)
     gain = samples.count * np.log(samples.square(near.residuals) / seen)
@@ -119,9 +119,9 @@ def test_expected_gain_exceeds_the_gain_of_the_first_steps_if_the_law_is_nonline
 def test_expected_gain_in_coloured_noise_is_that_of_the_innovations() -> None:
     """A slow wave masks the mass in the squares of residuals, but not in those of innovations."""
     heavy = mass(0.3)
-    runs = four_runs(lambda t, v, a: heavy(t, v, a) + 2.0 * np.sin(0.5 * t), noise_n=0.1)
+    runs = four_runs(lambda t, v, a: heavy(t, v, a) + 2.0 * np.sin(0.5 * t), noise_rms=0.1)
     slow = Campaign.prepare(Rig(), runs)
-    problem = Problem(slow, "coulomb", "journal", ("inertia_leak",))
+    problem = Problem(slow, "coulomb", "journal", ("inertia",))
     near = (bare_solution(slow, noise) for noise in (WHITE, Noise(0.6, 0.95)))
     plain, coloured = (Approach(problem, [{}]).look(solution) for solution in near)
     assert coloured.gain > 3.0 * max(plain.gain, 1.0)
@@ -129,7 +129,7 @@ def test_expected_gain_in_coloured_noise_is_that_of_the_innovations() -> None:
 
 
 def test_search_stops_unconverged_if_it_cannot_reach_the_given_sum_of_squares() -> None:
-    problem = Problem(with_mass(), "stribeck", "journal", ("inertia_leak",))
+    problem = Problem(with_mass(), "stribeck", "journal", ("inertia",))
     best = Approach(problem, [{}]).follow(60)
     least = problem.square(best.values)
     stopped = Approach(problem, [{}]).follow(60, least=0.9 * least)
@@ -146,7 +146,7 @@ def test_approach_reaches_the_minimum_of_a_nonlinear_curve() -> None:
     force = 6.0 + 5.0 * np.exp(-((v / 0.02) ** 2)) + 30.0 * v + noise
     campaign = Campaign.prepare(Rig(), [Run.from_arrays(t, v, force, name="curve")])
     problem = Problem(campaign, "stribeck", "journal", (), {"delta": 2.0})
-    speed, friction = campaign.prepared[0].motion.velocity_m_s, campaign.prepared[0].friction_n
+    speed, friction = campaign.prepared[0].motion.velocity, campaign.prepared[0].friction
 
     def residual(x: Array) -> Array:
         f_c, f_s, v_s, f_v = np.exp(x)
@@ -159,10 +159,10 @@ def test_approach_reaches_the_minimum_of_a_nonlinear_curve() -> None:
 
 def test_rms_of_a_fit_with_an_effect_does_not_exceed_that_of_the_base_law() -> None:
     campaign = with_mass()
-    problem = Problem(campaign, "coulomb", "journal", ("inertia_leak",))
+    problem = Problem(campaign, "coulomb", "journal", ("inertia",))
     law = bare_solution(campaign)
-    bad = problem.starts({"F_c_n": 500.0, "inertia_leak.m_e_kg": 80.0})[0]
+    bad = problem.starts({"F_c": 500.0, "inertia.m_e": 80.0})[0]
     stuck = problem.solution(bad, campaign.samples, WHITE)
     found = not_above_nested(problem, stuck)
-    assert found.rms_n <= law.rms_n
+    assert found.rms <= law.rms
     assert not_above_nested(problem, found) is found

@@ -13,9 +13,9 @@ from point_to_point import BREAKAWAY_N, COULOMB_N, TRUTH, point_to_point
 @pytest.mark.parametrize(
     ("effects", "options"),
     [
-        (["inertia_leak"], {}),
-        (["inertia_leak", "sensor_offset"], {"bias_n": 5.0}),
-        (["inertia_leak"], {"integral_1_s": 8.0}),
+        (["inertia"], {}),
+        (["inertia", "sensor_offset"], {"bias_n": 5.0}),
+        (["inertia"], {"integral_1_s": 8.0}),
     ],
     ids=["held", "held against a load", "creeping under an integral controller"],
 )
@@ -30,26 +30,26 @@ def test_sliding_parameters_are_recovered_if_a_controller_holds_between_moves(
         assert abs(parameter.value - true) < 3.0 * parameter.stderr, name
         assert parameter.stderr < 0.01 * true, name
     # The expected residual is white noise of 0.3 N.
-    assert found.rms_n == pytest.approx(0.3, rel=0.05)
+    assert found.rms == pytest.approx(0.3, rel=0.05)
 
 
 def held_with(run: Run, force_n: float) -> Run:
     """The run with a different holding force at rest."""
-    assert run.friction_n is not None
+    assert run.friction is not None
     resting = impose(run, None).resting
     assert 0.2 < np.mean(resting) < 0.8
-    return replace(run, friction_n=np.where(resting, force_n, 0.0) + run.friction_n)
+    return replace(run, friction=np.where(resting, force_n, 0.0) + run.friction)
 
 
 @pytest.mark.parametrize("force_n", [-2.0, 0.5])
 def test_holding_force_changes_neither_the_fit_nor_the_residual(force_n: float) -> None:
     runs = point_to_point([4, 5], duration_s=10.0)
     others = [held_with(run, force_n) for run in runs]
-    one, other = (fit(Rig(), each, ["inertia_leak"], law="coulomb") for each in (runs, others))
+    one, other = (fit(Rig(), each, ["inertia"], law="coulomb") for each in (runs, others))
     for name, parameter in one.parameters.items():
         assert other.parameters[name].value == pytest.approx(parameter.value, rel=1e-6), name
-    model = Model(Rig(), "coulomb", ["inertia_leak"], {**TRUTH, "F_s_n": BREAKAWAY_N})
+    model = Model(Rig(), "coulomb", ["inertia"], {**TRUTH, "F_s": BREAKAWAY_N})
     left, again = compare(model, runs), compare(model, others)
-    assert again.rms_n == pytest.approx(left.rms_n) == pytest.approx(0.3, rel=0.05)
-    assert left.rms_n < 0.1 * COULOMB_N
+    assert again.rms == pytest.approx(left.rms) == pytest.approx(0.3, rel=0.05)
+    assert left.rms < 0.1 * COULOMB_N
     assert not again.failures

@@ -110,7 +110,7 @@ def test_law_that_scales_with_the_load_takes_its_starting_values_from_the_catalo
     found = with_starts(pages, data, in_newtons=False)
     assert {n: p.starts for n, p in found.items()} == {n: p.starts for n, p in pages.items()}
     # Only the transition speed is bounded by the fastest recorded speed.
-    top = max(float(np.max(np.abs(p.motion.velocity_m_s))) for p in data.prepared)
+    top = max(float(np.max(np.abs(p.motion.velocity))) for p in data.prepared)
     wanted = max(5.0 * top, 2.0 * max(pages["U_tr_m_s"].starts))
     assert found["U_tr_m_s"].upper == pytest.approx(min(wanted, pages["U_tr_m_s"].upper))
 
@@ -125,7 +125,7 @@ def test_upper_bound_of_the_transition_speed_is_five_times_the_fastest_speed(
     assert started(one, in_newtons=False).upper == pytest.approx(bound, rel=0.01)
 
 
-@pytest.mark.parametrize("name", ["drive_compliance.k_n_m_rad", "backlash.gap_rad"])
+@pytest.mark.parametrize("name", ["drive_compliance.k", "backlash.gap"])
 def test_drive_effect_starts_follow_from_the_data_only_on_a_linear_axis(name: str) -> None:
     pages = parameters_of("coulomb", (name.partition(".")[0],))
     shaft, axis_ = (with_starts(pages, c, in_newtons=True)[name] for c in (on_bearing(), slide()))
@@ -267,8 +267,8 @@ def test_rest_and_speeds_below_two_percent_of_the_top_do_not_count_as_motion() -
 
 def test_one_force_outlier_does_not_change_any_size_of_a_campaign() -> None:
     run = swinging()
-    force = np.where(np.arange(len(run)) == 777, 1e5, run.friction_n)
-    plain, found = sizes_of(run), sizes_of(replace(run, friction_n=force))
+    force = np.where(np.arange(len(run)) == 777, 1e5, run.friction)
+    plain, found = sizes_of(run), sizes_of(replace(run, friction=force))
     for name, value in vars(plain).items():
         assert getattr(found, name) == pytest.approx(value, rel=0.02), name
 

@@ -21,11 +21,11 @@ from jbf.estimation.spread import spread
 
 NOISE_N = 0.2
 TERMS: dict[str, Friction] = {
-    "F_c_n": lambda t, v, a: np.sign(v),
-    "F_v_n_s_m": lambda t, v, a: v,
-    "sensor_offset.b_n": lambda t, v, a: np.ones_like(v),
-    "sensor_drift.d_n_s": lambda t, v, a: t,
-    "inertia_leak.m_e_kg": lambda t, v, a: a,
+    "F_c": lambda t, v, a: np.sign(v),
+    "F_v": lambda t, v, a: v,
+    "sensor_offset.b": lambda t, v, a: np.ones_like(v),
+    "sensor_drift.d": lambda t, v, a: t,
+    "inertia.m_e": lambda t, v, a: a,
 }
 """Regressor of each parameter as a function of time, speed and acceleration."""
 LinearFit = tuple[list[Run], Fit]
@@ -42,18 +42,18 @@ def regression(runs: list[Run]) -> tuple[Array, Array, Array]:
     rows = []
     for run, rate, way in zip(runs, (2.0, 3.0), (1.0, -1.0), strict=True):
         a = way * 0.05 * rate * np.cos(rate * run.time_s)
-        rows.append(np.stack([f(run.time_s, run.velocity_m_s, a) for f in TERMS.values()], 1))
+        rows.append(np.stack([f(run.time_s, run.velocity, a) for f in TERMS.values()], 1))
     x = np.concatenate(rows)
-    y = np.concatenate([run.friction_n for run in runs if run.friction_n is not None])
+    y = np.concatenate([run.friction for run in runs if run.friction is not None])
     values, *_ = np.linalg.lstsq(x, y, rcond=None)
     return values, *errors_and_correlations(x, y - x @ values)
 
 
 @pytest.fixture(scope="module")
 def fitted() -> LinearFit:
-    effects = ["sensor_offset", "sensor_drift", "inertia_leak"]
+    effects = ["sensor_offset", "sensor_drift", "inertia"]
     runs = there_and_back(
-        lambda t, v, a: coulomb(t, v, a) - 0.5 + 0.04 * t + 3.0 * a, noise_n=NOISE_N, seed=3
+        lambda t, v, a: coulomb(t, v, a) - 0.5 + 0.04 * t + 3.0 * a, noise_rms=NOISE_N, seed=3
     )
     return runs, fit(Rig(), runs, effects, law="coulomb", fixed={"F_s": 6.0})
 
@@ -68,34 +68,34 @@ def test_values_errors_and_correlations_are_those_of_linear_regression(fitted: L
     free = [n for n, p in found.parameters.items() if not p.held]
     order = [list(TERMS).index(name) for name in free]
     np.testing.assert_allclose(found.correlations, table[np.ix_(order, order)], atol=0.005)
-    assert found.rms_n == pytest.approx(NOISE_N, rel=0.07)
+    assert found.rms == pytest.approx(NOISE_N, rel=0.07)
     assert found.samples == 1002
     assert found.doubtful == ()
 
 
 def test_parameters_of_a_fit_are_accessible_by_full_or_short_name(fitted: LinearFit) -> None:
     found = fitted[1]
-    assert found["F_c"] is found["F_c_n"] is found.parameters["F_c_n"]
-    assert [name in found for name in ("F_c_n", "F_c", "zz", 3)] == [True, True, False, False]
-    assert (found.values["F_s_n"], found.stderr["F_s_n"]) == (6.0, None)
+    assert found["F_c"] is found["F_c"] is found.parameters["F_c"]
+    assert [name in found for name in ("F_c", "F_c", "zz", 3)] == [True, True, False, False]
+    assert (found.values["F_s"], found.stderr["F_s"]) == (6.0, None)
     with pytest.raises(jbf.InputError, match="zz"):
         found["zz"]
 
 
 def test_error_of_a_logarithmic_parameter_is_in_the_unit_of_the_parameter() -> None:
-    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1))
-    fixed = {"delta": 2.0, "F_v_n_s_m": 20.0}
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1))
+    fixed = {"delta": 2.0, "F_v": 20.0}
     problem = Problem(campaign, "stribeck", "journal", (), fixed)
-    values = problem.starts({"F_c_n": 5.0, "F_s_n": 7.0, "v_s_m_s": 0.1, **fixed})[0]
+    values = problem.starts({"F_c": 5.0, "F_s": 7.0, "v_s": 0.1, **fixed})[0]
     solution = problem.solution(values, campaign.samples, WHITE)
-    v = np.concatenate([p.motion.velocity_m_s for p in campaign.prepared])
+    v = np.concatenate([p.motion.velocity for p in campaign.prepared])
     bell = np.exp(-((v / 0.1) ** 2))
     slopes = {
-        "F_c_n": np.sign(v) * (1.0 - bell),
-        "F_s_n": np.sign(v) * bell,
-        "v_s_m_s": np.sign(v) * 2.0 * bell * 2.0 * v**2 / 0.1**3,
+        "F_c": np.sign(v) * (1.0 - bell),
+        "F_s": np.sign(v) * bell,
+        "v_s": np.sign(v) * 2.0 * bell * 2.0 * v**2 / 0.1**3,
     }
-    assert problem.log[problem.names.index("v_s_m_s")]
+    assert problem.log[problem.names.index("v_s")]
     x = np.column_stack([slopes[problem.names[i]] for i in problem.open])
     sd, table = errors_and_correlations(x, np.concatenate(solution.residuals))
     found = spread(problem, solution)
@@ -106,27 +106,27 @@ def test_error_of_a_logarithmic_parameter_is_in_the_unit_of_the_parameter() -> N
 
 def test_parameters_without_influence_and_confounded_parameters_are_marked() -> None:
     """Without reversals dry friction and an offset are equivalent, and breakaway is irrelevant."""
-    runs = four_runs(coulomb, noise_n=0.1)
+    runs = four_runs(coulomb, noise_rms=0.1)
     campaign = Campaign.prepare(Rig(), [runs[0], runs[2]])
     problem = Problem(campaign, "coulomb", "journal", ("sensor_offset",))
     found = spread(problem, solution_at(problem, values_of(problem)))
     names = [problem.names[i] for i in problem.open]
     moved, separate = (dict(zip(names, x, strict=True)) for x in (found.moved, found.separate))
-    assert moved == {n: n != "F_s_n" for n in names}
-    assert {n for n in names if not separate[n]} == {"F_c_n", "sensor_offset.b_n"}
-    assert np.isnan(found.error(names.index("F_s_n")))
-    assert np.isfinite(found.error(names.index("F_v_n_s_m")))
+    assert moved == {n: n != "F_s" for n in names}
+    assert {n for n in names if not separate[n]} == {"F_c", "sensor_offset.b"}
+    assert np.isnan(found.error(names.index("F_s")))
+    assert np.isfinite(found.error(names.index("F_v")))
 
 
 def dry_level(runs: list[Run]) -> Problem:
     """Only the dry friction is fitted, which is a mean in the direction of motion."""
-    fixed = {"F_s_n": 6.0, "F_v_n_s_m": 20.0}
+    fixed = {"F_s": 6.0, "F_v": 20.0}
     return Problem(Campaign.prepare(Rig(), runs), "coulomb", "journal", (), fixed)
 
 
 def test_error_is_inflated_by_the_long_run_variance_of_slow_noise() -> None:
     """Noise of constant sign over ten samples multiplies the variance of a mean by ten."""
-    problem = dry_level(four_runs(coulomb, noise_n=0.0))
+    problem = dry_level(four_runs(coulomb, noise_rms=0.0))
     solution = solution_at(problem, values_of(problem))
     random = np.random.default_rng(4)
     slow = [np.repeat(random.choice([-1.0, 1.0], 51), 10)[:501] for _ in range(4)]
@@ -140,7 +140,7 @@ def test_error_is_inflated_by_the_long_run_variance_of_slow_noise() -> None:
 def test_error_is_inflated_by_the_scatter_of_offsets_between_runs() -> None:
     """Offsets in the direction of motion: the scatter of eight runs determines the error."""
     offsets = np.array([0.5, -0.4, 0.3, -0.5, 0.2, -0.3, 0.45, -0.25])
-    some = (four_runs(along(z), noise_n=0.1, seed=k)[k % 4] for k, z in enumerate(offsets))
+    some = (four_runs(along(z), noise_rms=0.1, seed=k)[k % 4] for k, z in enumerate(offsets))
     problem = dry_level([replace(run, name=f"{k}") for k, run in enumerate(some)])
     error = spread(problem, solution_at(problem, values_of(problem))).error(0)
     assert error == pytest.approx(np.std(offsets, ddof=1) / np.sqrt(8.0), rel=0.15)
@@ -158,7 +158,7 @@ KINDS: dict[str, Callable[[Array, Array], Array]] = {
 @pytest.mark.extended
 @pytest.mark.parametrize("kind", KINDS)
 def test_deviations_from_the_truth_are_as_large_as_the_standard_errors(kind: str) -> None:
-    truth = {**LAW, "sensor_offset.b_n": 0.0}
+    truth = {**LAW, "sensor_offset.b": 0.0}
     t = np.arange(0.0, 24.0, 0.02)
     off = []
     for seed in range(12):
@@ -169,7 +169,7 @@ def test_deviations_from_the_truth_are_as_large_as_the_standard_errors(kind: str
             f = coulomb(t, v, v)
             noise = KINDS[kind](f, random.standard_normal(len(t)))
             runs.append(Run.from_arrays(t, v, f + noise, name=f"run {i}"))
-        found = fit(Rig(), runs, ["sensor_offset"], law="coulomb", fixed={"F_s_n": 6.0})
+        found = fit(Rig(), runs, ["sensor_offset"], law="coulomb", fixed={"F_s": 6.0})
         off.append([(found[n].value - x) / (found[n].stderr or np.inf) for n, x in truth.items()])
     size = np.sqrt(np.mean(np.array(off) ** 2, axis=0))
     # The standard deviation of a mean of 12 squares is about a fifth.
@@ -191,9 +191,9 @@ def bent() -> Bent:
     def doubtful(
         bend: float, bounds: tuple[float, float] = (-1e9, 1e9), held: bool = False
     ) -> tuple[str, ...]:
-        def bent_law(velocity_m_s, p, q):  # type: ignore[no-untyped-def]
+        def bent_law(velocity, p, q):  # type: ignore[no-untyped-def]
             u = (p - 5.0) / sd
-            centred = np.where(np.arange(len(velocity_m_s)) < N, 1.0, -1.0)
+            centred = np.where(np.arange(len(velocity)) < N, 1.0, -1.0)
             return 5.0 + sd * (u + bend * u**2) + q * centred
 
         pages = [
@@ -239,9 +239,9 @@ def test_no_error_is_doubtful_for_held_parameters_or_beyond_a_bound(bent: Bent) 
 
 def test_errors_of_an_effect_with_many_likelihood_peaks_are_doubtful() -> None:
     """The likelihood of a drive with a resonance has many narrow maxima in its parameters."""
-    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_n=0.1)[:2])
+    campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1)[:2])
     problem = Problem(campaign, "coulomb", "journal", ("drive_compliance",))
-    values = problem.starts({**LAW, "F_s_n": 6.0})[0]
+    values = problem.starts({**LAW, "F_s": 6.0})[0]
     solution = problem.solution(values, campaign.samples, WHITE)
     found = doubtful_errors(problem, solution, dict.fromkeys(problem.names, ParameterValue(1.0)))
     assert {n for n in problem.names if n.startswith("drive_compliance.")} <= set(found)

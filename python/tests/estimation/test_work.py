@@ -55,7 +55,7 @@ def test_prediction_costs_its_inner_steps_and_derivatives_twice_as_many() -> Non
 
 
 def test_search_beyond_the_limit_raises_unfinished_and_stores_the_best_values() -> None:
-    problem = coulomb_problem(four_runs(coulomb, noise_n=0.1))
+    problem = coulomb_problem(four_runs(coulomb, noise_rms=0.1))
     once = problem.chain.inner_steps(values_of(problem), problem.campaign.motions)
     problem.campaign.work.renew(12.0 * once)
     with pytest.raises(Unfinished) as ended:
@@ -70,26 +70,26 @@ def interrupting() -> Iterator[str]:
     """A law that simulates Ctrl-C at its 60th evaluation."""
     calls: list[int] = []
 
-    def interrupting_law(velocity_m_s, F_c_n, F_v_n_s_m, v_0_m_s):  # type: ignore[no-untyped-def]
+    def interrupting_law(velocity, F_c, F_v, v_0):  # type: ignore[no-untyped-def]
         calls.append(1)
         if len(calls) == 60:
             raise KeyboardInterrupt
-        return F_c_n * np.tanh(velocity_m_s / v_0_m_s) + F_v_n_s_m * velocity_m_s
+        return F_c * np.tanh(velocity / v_0) + F_v * velocity
 
     pages = [
-        Parameter("F_c_n", "N", lower=0.0, upper=1e3, starts=(1.0,)),
-        Parameter("F_v_n_s_m", "N s/m", lower=0.0, upper=1e4, starts=(10.0,)),
-        Parameter("v_0_m_s", "m/s", lower=1e-5, upper=1.0, starts=(0.3,), log=True),
+        Parameter("F_c", "N", lower=0.0, upper=1e3, starts=(1.0,)),
+        Parameter("F_v", "N s/m", lower=0.0, upper=1e4, starts=(10.0,)),
+        Parameter("v_0", "m/s", lower=1e-5, upper=1.0, starts=(0.3,), log=True),
     ]
     yield jbf.register_law(interrupting_law, parameters=pages).name
     jbf.forget_law("interrupting_law")
 
 
 def test_interrupted_fit_returns_the_best_values_so_far(interrupting: str) -> None:
-    runs = four_runs(coulomb, noise_n=0.1)
+    runs = four_runs(coulomb, noise_rms=0.1)
     with pytest.raises(Stopped) as stopped:
         fit(Rig(), runs, law=interrupting)
     best = stopped.value.fit
     assert not best.converged
     assert np.all(np.isfinite(list(best.values.values())))
-    assert best.rms_n < jbf.compare(jbf.Model(Rig(), interrupting), runs).rms_n
+    assert best.rms < jbf.compare(jbf.Model(Rig(), interrupting), runs).rms

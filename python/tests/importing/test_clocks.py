@@ -71,7 +71,7 @@ def test_run_with_two_clocks_keeps_every_sample(samples: int, slow: Any, tmp_pat
     # In the case with a gap each sample of the force coincides with one of the position.
     position = run.read.get("position_m", np.ones(len(run), dtype=bool))
     np.testing.assert_array_equal(run.time_s[force], slow)
-    np.testing.assert_array_equal(run.friction_n[force], np.cos(slow))
+    np.testing.assert_array_equal(run.friction[force], np.cos(slow))
     np.testing.assert_array_equal(run.position_m[position], np.sin(fast))
 
 

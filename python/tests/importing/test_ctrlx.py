@@ -57,7 +57,7 @@ def test_columns_named_by_data_layer_paths_are_guessed_without_open_questions(
     (run,) = jbf.import_files(tmp_path / "recording.csv", whole=True).runs
     np.testing.assert_allclose(run.time_s, TIME_MS / 1e3, rtol=1e-15)
     np.testing.assert_allclose(run.position_m, POSITION / 1e3, rtol=1e-15)
-    np.testing.assert_array_equal(run.friction_n, FORCE)
+    np.testing.assert_array_equal(run.friction, FORCE)
 
 
 @pytest.mark.parametrize("share", [0.003, 0.4, 0.8])

@@ -137,7 +137,7 @@ def test_recording_is_cut_where_its_time_restarts(tmp_path: Path) -> None:
     result = imported(tmp_path, "", columns)
     assert [run.time_s[0] for run in result.runs] == [0.0] * 4
     for run, part in zip(result.runs, parts, strict=True):
-        np.testing.assert_array_equal(run.friction_n, part["friction_n"])
+        np.testing.assert_array_equal(run.friction, part["friction_n"])
 
 
 def test_import_with_an_unchanged_cut_file_reproduces_its_pieces(tmp_path: Path) -> None:

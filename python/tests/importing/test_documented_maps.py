@@ -26,7 +26,7 @@ def test_map_with_units_and_run_numbers_imports_two_runs_in_si_units(tmp_path: P
     _, (first, second) = jbf.read_recording(tmp_path / "log.csv", tmp_path / "map.toml")
     for run in (first, second):
         np.testing.assert_allclose(run.position_m, 0.06 * np.sin(time), atol=1e-7)
-        np.testing.assert_allclose(run.velocity_m_s, 0.06 * np.cos(time), atol=1e-7)
+        np.testing.assert_allclose(run.velocity, 0.06 * np.cos(time), atol=1e-7)
         np.testing.assert_array_equal(run.load_n, 80.0)
 
 
@@ -66,7 +66,7 @@ def test_fit_of_imported_strokes_recovers_the_friction_per_pressure(tmp_path: Pa
     imported = jbf.import_files(files, tmp_path / "map.toml")
     assert [run.name for run in imported.runs] == ["s_1", "s_3", "s_5"]
     for one, other in zip(jbf.import_files(files).runs, imported.runs, strict=True):
-        np.testing.assert_array_equal(one.friction_n, other.friction_n)
+        np.testing.assert_array_equal(one.friction, other.friction)
     fit = jbf.fit(imported.rig, imported.runs, ["dry_load_dependence"], law="coulomb")
     assert fit["F_c"].value == pytest.approx(2.0, abs=0.1)
     assert fit["dry_load_dependence.mu"].value == pytest.approx(1.5, abs=0.05)

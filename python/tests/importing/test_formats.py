@@ -159,4 +159,4 @@ def test_matlab_timetable_is_imported_with_its_row_times(version: str, tmp_path:
     matio.save_to_mat(str(tmp_path / "t.mat"), {"log": frame}, version=version)
     (run,) = jbf.import_files(tmp_path / "t.mat").runs
     np.testing.assert_array_equal(run.time_s, np.arange(400) / 50.0)
-    np.testing.assert_array_equal(run.friction_n, columns["friction_n"])
+    np.testing.assert_array_equal(run.friction, columns["friction_n"])

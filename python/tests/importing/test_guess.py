@@ -85,7 +85,7 @@ def test_columns_with_unambiguous_headers_are_imported(case: str, tmp_path: Path
     assert expressions.items() >= {key: text.strip("`") for key, text in expected.items()}.items()
     (run,) = import_files(path).runs
     np.testing.assert_allclose(run.time_s - run.time_s[0], [s[0] for s in samples()], atol=1e-9)
-    np.testing.assert_allclose(run.friction_n, [s[3] for s in samples()], atol=1e-4)
+    np.testing.assert_allclose(run.friction, [s[3] for s in samples()], atol=1e-4)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "cp1252", "utf-16", "latin-1"])
@@ -182,7 +182,7 @@ def test_each_joint_of_a_recording_is_imported_as_a_separate_campaign(
     with pytest.raises(InputError, match=f"holds the joints {joints[0]}, {joints[1]}"):
         look(path)
     torques = [
-        import_files(path, joint=joint, out=tmp_path / joint).runs[0].friction_n for joint in joints
+        import_files(path, joint=joint, out=tmp_path / joint).runs[0].friction for joint in joints
     ]
     assert torques[0] is not None
     assert torques[1] is not None
@@ -222,7 +222,7 @@ def test_number_is_read_in_each_sign_and_decimal_notation(cell: str, tmp_path: P
     mark = "," if "," in cell and '"' not in cell else "."
     rows = [sep.join((f"{0.5 * i + 0.25:.2f}".replace(".", mark), cell, str(i))) for i in range(30)]
     path = written(tmp_path, sep.join(("t [s]", "F [N]", "x [mm]")) + "\n" + "\n".join(rows) + "\n")
-    assert set(import_files(path).runs[0].friction_n.tolist()) == {number}
+    assert set(import_files(path).runs[0].friction.tolist()) == {number}
 
 
 @pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])

@@ -72,7 +72,7 @@ def test_missing_columns_and_rate_of_halsampler_output_become_questions(
     names = {"position": f"column {first}", "force": f"column {first + 1}"}
     (tmp_path / "map.toml").write_text(MAP.format(**names))
     (run,) = jbf.import_files(path, tmp_path / "map.toml", whole=True).runs
-    np.testing.assert_array_equal(run.friction_n, TORQUE)
+    np.testing.assert_array_equal(run.friction, TORQUE)
     np.testing.assert_array_equal(run.position_m, POSITION)
     np.testing.assert_allclose(run.time_s, np.arange(N) / 1000.0, rtol=1e-15)
 

@@ -136,14 +136,14 @@ def test_import_with_the_plot_option_writes_a_png_and_reports_the_runs(capsys: C
 def test_fit_and_compare_give_equal_results_for_a_map_and_its_import(capsys: Capture) -> None:
     Path("map.toml").write_text(RESTS)
     printed(capsys, IMPORT)
-    options = "--law coulomb --effects inertia_leak --out"
+    options = "--law coulomb --effects inertia --out"
     by_folder = printed(capsys, f"fit runs {options} a.toml")
     assert printed(capsys, f"fit map.toml log.csv {options} b.toml") == by_folder
     assert Path("a.toml").read_bytes() == Path("b.toml").read_bytes()
     compared = printed(capsys, "compare a.toml runs")
     assert printed(capsys, "compare a.toml log.csv --map map.toml") == compared
     model = jbf.Model.load("a.toml")
-    assert model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(12.0, abs=0.2)
+    assert model.parameters["inertia.m_e"].value == pytest.approx(12.0, abs=0.2)
 
 
 def set_cell(text: str, row: int, column: int, new: str) -> str:
@@ -304,5 +304,5 @@ def test_read_recording_returns_the_same_runs_as_import_files() -> None:
     assert rig.drive is not None
     assert len(runs) == 3
     result = jbf.import_files(["log.csv"], jbf.read_map("map.toml"), "runs")
-    np.testing.assert_array_equal(result.runs[0].friction_n, runs[0].friction_n)
+    np.testing.assert_array_equal(result.runs[0].friction, runs[0].friction)
     assert result.to_dict() == json.loads(Path("runs/import.json").read_text())

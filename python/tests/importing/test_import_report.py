@@ -65,7 +65,7 @@ def test_import_report_lists_each_channel_once_with_its_conversion(imported: jbf
     assert position[2] == "mm -> m"
     assert friction[2].startswith("kN")
     assert friction[2].endswith("-> N")
-    np.testing.assert_allclose(imported.runs[0].friction_n, 1e3, rtol=1e-12)
+    np.testing.assert_allclose(imported.runs[0].friction, 1e3, rtol=1e-12)
 
 
 def test_dropped_rows_are_reported_only_for_the_file_with_gaps(imported: jbf.Import) -> None:

@@ -90,7 +90,7 @@ def test_simulink_structure_with_time_is_imported_by_labels_and_seconds(
     (run,) = jbf.import_files(tmp_path / "out.mat", whole=True).runs
     np.testing.assert_array_equal(run.time_s, TIME)
     np.testing.assert_array_equal(run.position_m, POSITION)
-    np.testing.assert_array_equal(run.friction_n, FORCE)
+    np.testing.assert_array_equal(run.friction, FORCE)
 
 
 @writers

@@ -97,7 +97,7 @@ def test_twincat_export_is_imported_without_a_map(tmp_path: Path) -> None:
     (run,) = jbf.import_files(tmp_path / "a.csv", whole=True).runs
     np.testing.assert_allclose(run.time_s, TIME_MS["Position"] / 1e3, rtol=1e-15)
     np.testing.assert_allclose(run.position_m, VALUES["Position"] / 1e3, rtol=1e-15)
-    np.testing.assert_array_equal(run.friction_n[::5], VALUES["Force"])
+    np.testing.assert_array_equal(run.friction[::5], VALUES["Force"])
 
 
 def test_twincat_export_with_full_timestamps_counts_from_its_first_sample(tmp_path: Path) -> None:

@@ -84,7 +84,7 @@ def test_wpilog_with_units_is_imported_without_a_map(tmp_path: Path) -> None:
     assert jbf.look(path).sure
     (run,) = jbf.import_files(path, whole=True).runs
     np.testing.assert_array_equal(run.position_m, POSITION)
-    np.testing.assert_array_equal(run.friction_n, FORCE)
+    np.testing.assert_array_equal(run.friction, FORCE)
 
 
 def test_wpilog_array_has_a_column_for_each_element(tmp_path: Path) -> None:

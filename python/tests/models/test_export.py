@@ -119,7 +119,7 @@ int main(int argc, char **argv) {
   for (size_t i = 0; i < n; i++) {
     jbf_motion_f64 m = {column[0][i], column[1][i], column[2][i],
                         column[3][i], column[4][i], column[5][i]};
-    jbf_motion_f32 s = {(float)m.time_s, (float)m.velocity_m_s, (float)m.acceleration_m_s2,
+    jbf_motion_f32 s = {(float)m.time_s, (float)m.velocity, (float)m.acceleration,
                         (float)m.angle_rad, (float)m.load_n, (float)m.temperature_c};
     double f = i ? model_f64_step(&model, &state, &m, 0.01) : model_f64_start(&model, &state, &m);
     float g = i ? model_f32_step(&small, &small_state, &s, (float)0.01)
@@ -199,7 +199,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
         load = np.full(len(record), 104.0 if model.rig.load else 1.0)
         missing = np.full(len(record), np.nan)
         celsius = missing if record.temperature_c is None else record.temperature_c
-        columns = (record.time_s, m.velocity_m_s, m.acceleration_m_s2, m.angle_rad, load, celsius)
+        columns = (record.time_s, m.velocity, m.acceleration, m.angle_rad, load, celsius)
         rows = zip(*(c.tolist() for c in columns), strict=True)
         text = "\n".join(" ".join(map(repr, row)) for row in rows)
         (folder / f"{name}.txt").write_text(text + "\n")

@@ -16,19 +16,21 @@ EXTENDED = pytest.mark.extended
 
 @shared
 def runs_of(
-    law: str, amplitude_m: float, noise_n: float, count_m: float = 1e-7, **p: float
+    law: str, amplitude_m: float, noise_rms: float, count_m: float = 1e-7, **p: float
 ) -> list[jbf.Run]:
     """A slow and a fast run, with position counts of `count_m`."""
     result = []
     for seed, omega in enumerate((0.8, 4.0)):
         speed = independent.stroke_speed(amplitude_m, omega)
         friction = getattr(independent, law)(speed, T, **p)
-        result.append(independent.record(speed, T, friction, noise_n, seed, f"run{seed}", count_m))
+        result.append(
+            independent.record(speed, T, friction, noise_rms, seed, f"run{seed}", count_m)
+        )
     return result
 
 
-def check_recovery(fit: jbf.Fit, truth: dict[str, float], noise_n: float, within: float) -> None:
-    assert fit.rms_n < 1.05 * noise_n, fit.report()
+def check_recovery(fit: jbf.Fit, truth: dict[str, float], noise_rms: float, within: float) -> None:
+    assert fit.rms < 1.05 * noise_rms, fit.report()
     for name, value in truth.items():
         assert fit.parameters[name].value == pytest.approx(value, rel=within), fit.report()
 
@@ -37,7 +39,7 @@ def check_recovery(fit: jbf.Fit, truth: dict[str, float], noise_n: float, within
 def test_stribeck_parameters_are_recovered_at_each_force_scale(size: float) -> None:
     p = {"fc": 6.0 * size, "fs": 9.0 * size, "vs": 0.004, "delta": 1.6, "fv": 40.0 * size}
     fit = jbf.fit(jbf.Rig(), runs_of("stribeck", 0.01, 0.05 * size, **p), law="stribeck")
-    truth = {"F_c_n": p["fc"], "F_s_n": p["fs"], "v_s_m_s": 0.004, "F_v_n_s_m": p["fv"]}
+    truth = {"F_c": p["fc"], "F_s": p["fs"], "v_s": 0.004, "F_v": p["fv"]}
     check_recovery(fit, truth, 0.05 * size, 0.04)
 
 
@@ -45,15 +47,15 @@ def test_stribeck_parameters_are_recovered_at_each_force_scale(size: float) -> N
 def test_coulomb_parameters_are_recovered_from_a_flat_stribeck_curve(size: float) -> None:
     p = {"fc": 6.0 * size, "fs": 6.0 * size, "vs": 0.004, "delta": 1.0, "fv": 40.0 * size}
     fit = jbf.fit(jbf.Rig(), runs_of("stribeck", 0.01, 0.05 * size, **p), law="coulomb")
-    check_recovery(fit, {"F_c_n": p["fc"], "F_v_n_s_m": p["fv"]}, 0.05 * size, 0.01)
-    assert "never moved" in str(fit.parameters["F_s_n"].note)
+    check_recovery(fit, {"F_c": p["fc"], "F_v": p["fv"]}, 0.05 * size, 0.01)
+    assert "never moved" in str(fit.parameters["F_s"].note)
 
 
 @pytest.mark.parametrize("exponent", [1.0, *(pytest.param(e, marks=EXTENDED) for e in (0.6, 1.8))])
 def test_dahl_parameters_are_recovered_within_three_percent(exponent: float) -> None:
     p = {"fc": 2.3, "s0": 5e4, "exponent": exponent, "fv": 20.0}
     fit = jbf.fit(jbf.Rig(), runs_of("dahl", 2e-4, 0.02, **p), law="dahl")
-    check_recovery(fit, {"F_c_n": 2.3, "sigma_0_n_m": 5e4, "exponent": exponent}, 0.02, 0.03)
+    check_recovery(fit, {"F_c": 2.3, "sigma_0": 5e4, "exponent": exponent}, 0.02, 0.03)
 
 
 LUGRE = {"fc": 6.0, "fs": 9.0, "vs": 0.003, "s0": 6e4, "s1": 150.0, "vd": 0.02, "fv": 40.0}
@@ -61,7 +63,7 @@ LUGRE = {"fc": 6.0, "fs": 9.0, "vs": 0.003, "s0": 6e4, "s1": 150.0, "vd": 0.02, 
 
 def test_lugre_parameters_are_recovered_within_five_percent() -> None:
     fit = jbf.fit(jbf.Rig(), runs_of("lugre", 1e-3, 0.03, **LUGRE), law="lugre")
-    truth = {"F_c_n": 6.0, "F_s_n": 9.0, "v_s_m_s": 0.003, "sigma_0_n_m": 6e4, "F_v_n_s_m": 40.0}
+    truth = {"F_c": 6.0, "F_s": 9.0, "v_s": 0.003, "sigma_0": 6e4, "F_v": 40.0}
     check_recovery(fit, truth, 0.03, 0.05)
 
 
@@ -90,8 +92,8 @@ def test_presliding_law_parameters_are_recovered_within_ten_percent(
     amplitude_m: float, fc: float, law: str, name: str, value: float
 ) -> None:
     fit = jbf.fit(jbf.Rig(), presliding_runs(law, amplitude_m, fc, **{name: value}), law=law)
-    check_recovery(fit, {"F_c_n": fc, "sigma_0_n_m": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
-    check_recovery(fit, {name: value, "F_v_n_s_m": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1)
+    check_recovery(fit, {"F_c": fc, "sigma_0": fc / (0.2 * amplitude_m)}, 0.02 * fc, 0.02)
+    check_recovery(fit, {name: value, "F_v": 0.02 * fc / amplitude_m}, 0.02 * fc, 0.1)
 
 
 @pytest.mark.extended
@@ -123,8 +125,8 @@ def test_diagnosis_identifies_stribeck_excess_in_generalised_maxwell_slip_data(
     assert diagnosis.effects == ("stribeck_excess",), diagnosis.summary()
     result = diagnosis.model.parameters
     assert result["stribeck_excess.a"].value == pytest.approx(0.4 * fc, rel=0.05)
-    assert result["stribeck_excess.v_s_m_s"].value == pytest.approx(vs, rel=0.1)
-    assert result["F_c_n"].value == pytest.approx(fc, rel=0.02)
+    assert result["stribeck_excess.v_s"].value == pytest.approx(vs, rel=0.1)
+    assert result["F_c"].value == pytest.approx(fc, rel=0.02)
 
 
 def test_nanometre_vibration_at_rest_causes_no_presliding_force() -> None:
@@ -163,14 +165,14 @@ def test_runs_that_start_deflected_are_adequate_with_an_unsettled_start_finding(
     diagnosis = jbf.diagnose(jbf.Rig(), runs, law="maxwell_slip")
     assert diagnosis.verdict == "adequate", diagnosis.summary()
     assert {f.kind for f in diagnosis.findings} == {"unsettled_start"}
-    assert diagnosis.model.parameters["F_c_n"].value == pytest.approx(2.3, rel=0.01)
+    assert diagnosis.model.parameters["F_c"].value == pytest.approx(2.3, rel=0.01)
 
 
 @pytest.mark.extended
 def test_parameters_of_the_seven_parameter_law_are_recovered_within_six_percent() -> None:
     p = {"kt": 1e5, "fc": 6.0, "fv": 40.0, "fs": 3.0, "vs": 0.003, "tau": 0.03, "gamma": 0.8}
     fit = jbf.fit(jbf.Rig(), runs_of("seven", 2e-3, 0.03, **p), law="seven_parameter")
-    truth = {"k_t_n_m": 1e5, "F_c_n": 6.0, "F_v_n_s_m": 40.0, "tau_L_s": 0.03}
+    truth = {"k_t": 1e5, "F_c": 6.0, "F_v": 40.0, "tau_L_s": 0.03}
     check_recovery(fit, truth, 0.03, 0.06)
 
 
@@ -178,7 +180,7 @@ def test_settled_lugre_prediction_agrees_with_a_scipy_integration() -> None:
     speed = independent.stroke_speed(1e-3, 3.0)
     t = np.arange(0.0, 8.0, 1e-3)
     v = np.array([speed(x) for x in t])
-    names = ["F_c_n", "F_s_n", "v_s_m_s", "sigma_0_n_m", "sigma_1_n_s_m", "v_d_m_s", "F_v_n_s_m"]
+    names = ["F_c", "F_s", "v_s", "sigma_0", "sigma_1", "v_d", "F_v"]
     values = dict(zip(names, LUGRE.values(), strict=True))
     prediction = jbf.Model(jbf.Rig(), "lugre", parameters=values).predict(jbf.Run.from_arrays(t, v))
     # The initial states differ: deflected in the direction of motion, and zero.
@@ -208,11 +210,11 @@ def test_effect_on_a_linear_axis_is_refused_if_its_angle_or_position_is_missing(
     with pytest.raises(jbf.InputError, match="position_ripple"):
         jbf.Model(jbf.Rig(), "coulomb", ["position_ripple"]).predict(run)
     drive = {"drive_compliance.k": 1e4, "drive_compliance.c": 20.0, "drive_compliance.J": 1.0}
-    values = {"F_c_n": 6.0, "F_s_n": 7.0, **drive}
+    values = {"F_c": 6.0, "F_s": 7.0, **drive}
     soft = jbf.Model(jbf.Rig(), "coulomb", ["drive_compliance"], values)
     assert np.all(np.isfinite(soft.predict(run)))
     with pytest.raises(jbf.InputError, match="position_m"):
-        soft.predict(jbf.Run.from_arrays(run.time_s, run.velocity_m_s, run.friction_n))
+        soft.predict(jbf.Run.from_arrays(run.time_s, run.velocity, run.friction))
 
 
 @pytest.mark.extended

@@ -107,7 +107,7 @@ def simulated(
     )
     run = Run.from_arrays(
         record.time_s,
-        record.velocity_m_s,
+        record.velocity,
         angle_rad=record.angle_rad,
         load_n=record.load_n,
         temperature_c=record.temperature_c,
@@ -151,7 +151,7 @@ def test_prediction_of_a_memoryless_effect_is_independent_of_earlier_samples(eff
     t = np.arange(0.0, 4.0, 0.01)
     angle, speed = 0.4 * np.sin(2.0 * t), 0.8 * np.cos(2.0 * t)
     values = {f"{effect}.{p.name}": p.starts[0] for p in jbf.effects()[effect].parameters}
-    model = Model(Rig(), "coulomb", [effect], {"F_c_n": 5.0, "F_v_n_s_m": 8.0} | values)
+    model = Model(Rig(), "coulomb", [effect], {"F_c": 5.0, "F_v": 8.0} | values)
     path = {"position_m": angle} if effect == "stroke_dependence" else {"angle_rad": angle}
     # The smoothed speed at the ends of a run differs by about 1e-6.
     whole = model.predict(Run.from_arrays(t, speed, **path))

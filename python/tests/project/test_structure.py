@@ -5,15 +5,13 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from statistics import median
 
 import jbf
 import pytest
 
 PACKAGE = Path(jbf.__file__).parent
 ROOT = PACKAGE.parents[1]
-MAX_LINES, MAX_MEDIAN_LINES = 400, 150
-"""Maximum number of lines of a file, and the limit of the median."""
+MAX_LINES = 400
 
 
 def modules() -> list[Path]:
@@ -42,7 +40,6 @@ def test_modules_import_only_the_extension_from_the_top_package() -> None:
             assert {alias.name for node in imports for alias in node.names} <= {"_core"}, path
 
 
-def test_no_module_exceeds_400_lines_and_the_median_is_below_150() -> None:
+def test_no_module_exceeds_400_lines() -> None:
     lengths = {path: path.read_text().count("\n") for path in modules()}
     assert not {path.name: n for path, n in lengths.items() if n > MAX_LINES}
-    assert median(lengths.values()) < MAX_MEDIAN_LINES

@@ -10,6 +10,7 @@ import pytest
 from input_errors import input_error
 from jbf import Rig, Run
 from jbf.records import arguments
+from jbf.records.checks import attribute
 from jbf.records.toml_file import number, positive, read_toml, refuse_unknown, table
 
 TIME_S = np.linspace(0.0, 1.0, 20)
@@ -64,7 +65,7 @@ def test_list_of_runs_accepts_any_iterable_and_checks_each_run() -> None:
         assert arguments.list_of_runs(iterable) == given
     assert arguments.list_of_runs(given) is not given
     wrong: Any = [1.0]
-    error = input_error(arguments.list_of_runs, [RUN, replace(RUN, friction_n=wrong)])
+    error = input_error(arguments.list_of_runs, [RUN, replace(RUN, friction=wrong)])
     assert error.column == "friction_n"
 
 
@@ -82,7 +83,7 @@ def test_list_of_runs_accepts_any_iterable_and_checks_each_run() -> None:
 def test_invalid_column_of_a_directly_created_run_is_reported(column: str, values: Any) -> None:
     arguments.check_run(RUN)
     for speed_recorded in (True, False):
-        wrong = replace(RUN, **{column: values}, speed_recorded=speed_recorded)
+        wrong = replace(RUN, **{attribute(column): values}, speed_recorded=speed_recorded)
         error = input_error(arguments.check_run, wrong)
         assert (error.file, error.column) == ("sine", column)
 

@@ -13,7 +13,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.records.channels import recorded_samples, side_by_side
 from jbf.records.findings.own_clock import own_clock
 
-LAW = {"F_c_n": 4.0, "F_v_n_s_m": 20.0}
+LAW = {"F_c": 4.0, "F_v": 20.0}
 NOISE_N = 0.05
 FAST_S, SLOW_S = np.arange(0.0, 3.0, 0.1), np.arange(-0.35, 2.1, 0.2)
 
@@ -102,7 +102,7 @@ def slide(force_hz: float = 90.0, motion_hz: float = 400.0, seed: int = 1) -> di
 
     place = -0.1 / 1.7 * np.cos(1.7 * motion_s) - 0.05 / 4.1 * np.cos(4.1 * motion_s + 1.0)
     v = speed(force_s)
-    friction = LAW["F_c_n"] * np.sign(v) + LAW["F_v_n_s_m"] * v
+    friction = LAW["F_c"] * np.sign(v) + LAW["F_v"] * v
     return {
         "position_m": (motion_s, np.round(place, 6)),
         "velocity_m_s": (motion_s, speed(motion_s) + 1e-4 * random.standard_normal(len(motion_s))),
@@ -115,7 +115,7 @@ def test_run_with_a_separate_force_clock_is_prepared_at_the_force_readings() -> 
     prepared = Prepared.of(jbf.Rig(), Run.from_channels(channels))
     force_s, force_n = channels["friction_n"]
     np.testing.assert_array_equal(prepared.run.time_s, force_s)
-    np.testing.assert_array_equal(prepared.friction_n, force_n)
+    np.testing.assert_array_equal(prepared.friction, force_n)
     assert "own_clock" in {finding.kind for finding in prepared.examined.findings}
 
 
@@ -124,7 +124,7 @@ def test_fit_to_a_force_with_a_separate_clock_recovers_law_and_noise() -> None:
     for name, value in LAW.items():
         estimate: Any = fit.parameters[name]
         assert abs(estimate.value - value) < 4.0 * estimate.stderr + 1e-3 * value
-    assert fit.rms_n == pytest.approx(NOISE_N, rel=0.06)
+    assert fit.rms == pytest.approx(NOISE_N, rel=0.06)
 
 
 def test_prediction_at_the_motion_instants_does_not_depend_on_the_force_clock() -> None:
@@ -144,7 +144,7 @@ def test_diagnosis_of_channels_with_two_clocks_and_no_hidden_effect_is_adequate(
     runs = [Run.from_channels(slide(70.0 + k, seed=k), name=f"r{k}") for k in (1, 2, 3)]
     result = jbf.diagnose(jbf.Rig(), runs, law="coulomb")
     assert (result.verdict, result.effects) == ("adequate", ())
-    assert result.steps[-1].holdout_rms_n == pytest.approx(NOISE_N, rel=0.1)
+    assert result.steps[-1].held_out_rms == pytest.approx(NOISE_N, rel=0.1)
 
 
 def test_csv_round_trip_preserves_the_clock_of_each_channel(tmp_path: Path) -> None:

@@ -38,7 +38,7 @@ def test_run_read_from_csv_has_columns_file_stem_and_path(write: Write) -> None:
     run: Any = read_run(path)
     assert (run.name, len(run), run.path) == ("sweep", 12, path)
     assert list(run.columns()) == HEADER.split(",")
-    assert (run.friction_n[11], run.columns()["angle_rad"][3]) == (-0.6, 0.3)
+    assert (run.friction[11], run.columns()["angle_rad"][3]) == (-0.6, 0.3)
 
 
 def test_csv_separators_quotes_comments_and_line_ends_do_not_change_the_run(write: Write) -> None:
@@ -148,7 +148,7 @@ def test_unreadable_run_file_is_reported_with_its_cause(write: Write, tmp_path: 
 
 def test_missing_friction_column_is_accepted_only_if_not_required(write: Write) -> None:
     path = write("time_s,velocity_m_s", *(f"{i},0.1" for i in range(10)))
-    assert read_run(path, need_friction=False).friction_n is None
+    assert read_run(path, need_friction=False).friction is None
     assert input_error(read_run, path).column == "friction_n"
 
 
@@ -173,7 +173,7 @@ def test_csv_column_with_ten_cells_and_five_percent_empty_has_a_separate_clock(
     assert input_error(read_run, path_with(empty - 1)).column == "friction_n"
     run: Any = read_run(path_with(empty))
     assert run.read["friction_n"].tolist() == [False] * empty + [True] * (samples - empty)
-    assert set(run.friction_n.tolist()) == {2.5}
+    assert set(run.friction.tolist()) == {2.5}
 
 
 def test_empty_speed_cells_are_accepted_only_in_rows_with_a_force_reading(write: Write) -> None:

@@ -203,7 +203,7 @@ def test_friction_column_of_a_joint_is_converted_to_torque_at_the_joint(
     rig = Rig(drive=drive)
     columns = {"time_s": TIME_S, "angle_rad": ANGLE, column: TORQUE_N_M / factor}
     run: Any = jbf.read_run(record(tmp_path, columns), rig)
-    np.testing.assert_allclose(run.friction_n, TORQUE_N_M, rtol=1e-12)
+    np.testing.assert_allclose(run.friction, TORQUE_N_M, rtol=1e-12)
     assert run.quantities == rig.quantities
     sizes = [finding.size for finding in run.reading]
     assert sizes == ([] if factor == 1.0 else [pytest.approx(factor)])
@@ -214,7 +214,7 @@ def test_motor_columns_of_a_slide_are_converted_without_loss_of_power(tmp_path: 
     columns = {"time_s": TIME_S, "motor_angle_rad": 40.0 * ANGLE, "motor_torque_n_m": TORQUE_N_M}
     columns["motor_speed_rpm"] = motor_rad_s * 60.0 / (2.0 * pi)
     run: Any = jbf.read_run(record(tmp_path, columns), Rig(drive=SCREW))
-    power = run.friction_n * run.velocity_m_s
+    power = run.friction * run.velocity
     np.testing.assert_allclose(power, TORQUE_N_M * motor_rad_s, rtol=1e-9)
     np.testing.assert_allclose(run.position_m, 40.0 * ANGLE / (2.0 * pi) / 3.0 * 0.02)
 

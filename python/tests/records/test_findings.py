@@ -54,9 +54,9 @@ def kinds(result: Examined) -> list[str]:
 
 
 @pytest.mark.parametrize("omega", [0.02, 3.0])
-@pytest.mark.parametrize("noise_n", [0.0, 1e-3, 0.3])
-def test_stribeck_friction_with_white_noise_has_no_findings(omega: float, noise_n: float) -> None:
-    result = examined(stribeck(sine(omega)) + white(3000, 1, noise_n), sine(omega))
+@pytest.mark.parametrize("noise_rms", [0.0, 1e-3, 0.3])
+def test_stribeck_friction_with_white_noise_has_no_findings(omega: float, noise_rms: float) -> None:
+    result = examined(stribeck(sine(omega)) + white(3000, 1, noise_rms), sine(omega))
     assert kinds(result) == []
     assert result.usable.all()
     assert result.native is None
@@ -222,18 +222,18 @@ def test_fit_reports_position_glitches_and_hardly_changes_with_them(corrupt_runs
 def test_resampled_record_has_the_same_motion_fault_as_the_original(fault: str) -> None:
     """A bootstrap must not use a column that the fit excluded."""
     run: Any = make_runs(kinds=("sine_w0.5",))[0]
-    speed, angle = run.velocity_m_s, run.angle_rad
+    speed, angle = run.velocity, run.angle_rad
     speed, angle = {
         "late speed": (np.interp(run.time_s - 0.05, run.time_s, speed), angle),
         "mm/s": (1e3 * speed, angle),
         "degrees": (speed / 10.0, np.degrees(angle / 10.0)),
         "wrong sign": (speed, -angle),
     }[fault]
-    wrong = Run.from_arrays(run.time_s, speed, run.friction_n, angle_rad=angle, name="a")
+    wrong = Run.from_arrays(run.time_s, speed, run.friction, angle_rad=angle, name="a")
     prepared = Prepared.of(Rig.thesis(), wrong)
     (finding,) = prepared.examined.findings
     assert finding.channel in prepared.motion.aside
-    again = simulated_recording(prepared, run.friction_n, WHITE, 0.3, np.random.default_rng(1))
+    again = simulated_recording(prepared, run.friction, WHITE, 0.3, np.random.default_rng(1))
     (same,) = Prepared.of(Rig.thesis(), again).examined.findings
     assert (same.kind, same.channel) == (finding.kind, finding.channel)
     assert same.size == pytest.approx(finding.size, rel=0.1)

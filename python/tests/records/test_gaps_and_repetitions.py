@@ -70,14 +70,14 @@ def test_shifted_copy_is_recognised_if_it_deviates_by_a_millionth_of_its_span() 
 
 
 def test_runs_that_differ_in_a_digit_a_column_or_length_are_not_copies() -> None:
-    digit = RUN.friction_n + np.where(TIME_S == 5.0, 1e-9, 0.0)
-    assert not same_recording(RUN, replace(RUN, friction_n=digit))
+    digit = RUN.friction + np.where(TIME_S == 5.0, 1e-9, 0.0)
+    assert not same_recording(RUN, replace(RUN, friction=digit))
     assert not same_recording(RUN, replace(RUN, angle_rad=None))
     assert not same_recording(RUN, RUN.select(TIME_S > 0.0))
 
 
 def test_runs_without_friction_are_not_copies() -> None:
-    without_friction = replace(RUN, friction_n=None)
+    without_friction = replace(RUN, friction=None)
     assert not same_recording(without_friction, without_friction)
 
 
@@ -87,7 +87,7 @@ def test_runs_with_equal_missing_samples_are_copies() -> None:
 
 
 def test_copies_are_mapped_to_the_first_run_that_each_of_them_repeats() -> None:
-    other = replace(RUN, friction_n=2.0 * RUN.friction_n)
+    other = replace(RUN, friction=2.0 * RUN.friction)
     assert copies([RUN, other, RUN, RUN, other]) == {2: 0, 3: 0, 4: 1}
     assert copies([RUN, other]) == {}
 
@@ -121,7 +121,7 @@ def test_repeated_rows_are_detected_from_40_rows_and_2_percent_on() -> None:
 
 def test_row_is_repeated_only_if_all_channels_but_the_temperature_repeat() -> None:
     run: Any = polled(5)
-    changing = replace(run, friction_n=run.friction_n + 1e-3 * np.arange(800))
+    changing = replace(run, friction=run.friction + 1e-3 * np.arange(800))
     assert repeated_rows(changing) is None
     assert as_read(changing) is changing
     assert repeated_rows(replace(run, temperature_c=20.0 + 0.1 * TIME_S)) is not None
@@ -139,7 +139,7 @@ def logged(seed: int) -> tuple[list[Run], list[Run], dict[str, Any]]:
         begins = np.concatenate(([0], np.cumsum(random.integers(2, 9, len(index)))))
         last = begins[np.searchsorted(begins, index, side="right") - 1]
         for runs, at in ((clean, slice(None)), (stale, last)):
-            v, force, path = r.velocity_m_s[at], r.force_n[at], r.path[at]
+            v, force, path = r.velocity[at], r.force_n[at], r.path[at]
             runs.append(Run.from_arrays(r.time_s, v, force, position_m=path, name=r.name))
     return clean, stale, truth
 
@@ -149,8 +149,8 @@ def test_fit_recovers_law_and_noise_if_four_of_five_rows_are_repeated() -> None:
     fitted = fit(Rig(), stale, law="coulomb")
     sizes = {finding.kind: finding.size for finding in fitted.findings}
     assert sizes["repeated_rows"] == pytest.approx(80.0, abs=3.0)
-    assert fitted.rms_n == pytest.approx(truth["noise_n"], rel=0.05)
-    for name in ("F_c_n", "F_v_n_s_m"):
+    assert fitted.rms == pytest.approx(truth["noise_n"], rel=0.05)
+    for name in ("F_c", "F_v"):
         estimate: Any = fitted[name]
         true = truth["law"][name]
         assert abs(estimate.value - true) < 4.0 * estimate.stderr + 0.005 * true
@@ -161,22 +161,22 @@ def test_imposed_speed_has_a_tenth_of_the_error_of_a_speed_with_repeated_rows() 
     for true, run in zip(clean, stale, strict=True):
         assert as_read(true) is true
         motion = imposed(Rig(), run)
-        assert len(motion.velocity_m_s) == len(run)
-        error_m_s = np.linalg.norm(motion.velocity_m_s - true.velocity_m_s)
-        assert error_m_s < 0.1 * np.linalg.norm(run.velocity_m_s - true.velocity_m_s)
+        assert len(motion.velocity) == len(run)
+        error_m_s = np.linalg.norm(motion.velocity - true.velocity)
+        assert error_m_s < 0.1 * np.linalg.norm(run.velocity - true.velocity)
 
 
 def test_imposed_motion_with_repeated_rows_does_not_depend_on_the_force() -> None:
     run = logged(42)[1][0]
-    bare = Run.from_arrays(run.time_s, run.velocity_m_s, position_m=run.position_m)
-    speeds = [imposed(Rig(), r).velocity_m_s for r in (run, bare)]
+    bare = Run.from_arrays(run.time_s, run.velocity, position_m=run.position_m)
+    speeds = [imposed(Rig(), r).velocity for r in (run, bare)]
     np.testing.assert_array_equal(*speeds)
 
 
 def test_constant_rows_of_a_long_rest_are_not_repeated_rows() -> None:
     # The rest is longer than twice the longest series of repeated rows.
     run, rest = logged(45)[1][0], 300
-    columns: Any = (run.velocity_m_s, run.friction_n, run.position_m)
+    columns: Any = (run.velocity, run.friction, run.position_m)
     time_s = np.concatenate([run.time_s, run.time_s[-1] + 0.01 * np.arange(1, rest + 1)])
     speed, force, place = (np.pad(column, (0, rest), "edge") for column in columns)
     speed[-rest:] = 0.0

@@ -112,7 +112,7 @@ def test_saturated_readings_of_a_linearly_interpolated_force_are_not_usable() ->
     prepared = Prepared.of(Rig(), slow_run(np.round(np.interp(TIME_S, ticks_s, read), 4)))
     sizes = {f.kind: f.size for f in prepared.examined.findings}
     assert sizes == {"interpolated": pytest.approx(25.35, rel=1e-4), "saturation": 28.0}
-    at_end = np.abs(prepared.friction_n) == 28.0
+    at_end = np.abs(prepared.friction) == 28.0
     assert np.mean(at_end) == pytest.approx(np.mean(np.abs(read) == 28.0), abs=0.005)
     assert not np.any(prepared.examined.usable[at_end])
 
@@ -132,7 +132,7 @@ def test_interpolated_readings_are_recovered_if_parts_of_the_force_are_held(rate
     at_s = prepared.run.time_s
     which = np.round((at_s - ticks_s[0]) * rate_hz).astype(int)
     np.testing.assert_allclose(at_s, ticks_s[which], atol=1e-3 / rate_hz)
-    assert np.quantile(np.abs(prepared.friction_n - read[which]), 0.95) < 2e-3
+    assert np.quantile(np.abs(prepared.friction - read[which]), 0.95) < 2e-3
     # A held segment contains no reading.
     assert not ((at_s > 12.5 + 1.0 / rate_hz) & (at_s < 13.06 - 1.0 / rate_hz)).any()
 
@@ -156,9 +156,9 @@ def test_interpolated_force_and_motion_are_taken_at_the_reading_instants() -> No
     assert (finding.kind, finding.unit) == ("interpolated", "Hz")
     assert finding.size == pytest.approx(25.0, rel=1e-4)
     assert prepared.step_s == pytest.approx(0.04, rel=1e-4)
-    assert len(prepared.friction_n) == len(prepared.motion.velocity_m_s) == len(prepared.run)
+    assert len(prepared.friction) == len(prepared.motion.velocity) == len(prepared.run)
     expected = 0.1 * np.sin(0.3 * prepared.run.time_s)
-    np.testing.assert_allclose(prepared.motion.velocity_m_s, expected, atol=1e-5)
+    np.testing.assert_allclose(prepared.motion.velocity, expected, atol=1e-5)
 
 
 def test_model_of_an_interpolated_force_is_driven_by_all_samples_of_the_motion() -> None:
@@ -280,7 +280,7 @@ def test_share_of_single_interpolated_samples_is_reported_in_percent() -> None:
     prepared = Prepared.of(Rig(), slow_run(force))
     (finding,) = prepared.examined.findings
     assert (finding.kind, finding.unit, finding.size) == ("interpolated", "%", pytest.approx(20.0))
-    assert len(prepared.friction_n) == 2400
+    assert len(prepared.friction) == 2400
 
 
 @pytest.mark.parametrize("step_n", [0.0, 1e-4, 0.0137, 0.1, 0.31, 1.7])

@@ -10,8 +10,8 @@ def test_planned_motion_is_the_planned_speed_with_its_slope() -> None:
     run = Run.from_arrays(TIME_S, speed_of(TIME_S), angle_rad=path_of(TIME_S) / 0.05)
     motion = known_motion(run, 0.05)
     slope = (speed_of(TIME_S + 1e-6) - speed_of(TIME_S - 1e-6)) / 2e-6
-    np.testing.assert_array_equal(motion.velocity_m_s, speed_of(TIME_S))
-    np.testing.assert_allclose(motion.acceleration_m_s2[1:-1], slope[1:-1], atol=2.0 * STEP_S**2)
+    np.testing.assert_array_equal(motion.velocity, speed_of(TIME_S))
+    np.testing.assert_allclose(motion.acceleration[1:-1], slope[1:-1], atol=2.0 * STEP_S**2)
     np.testing.assert_allclose(motion.angle_rad, path_of(TIME_S) / 0.05)
     assert not motion.resting.any()
     assert motion.sign_known.all()

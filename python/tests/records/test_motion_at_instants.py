@@ -25,9 +25,9 @@ def test_speed_is_interpolated_by_cubics_that_match_speed_and_acceleration() -> 
     at_s, cubic = np.array([0.0, 0.25, 1.0, 1.7, 3.0, 3.9, 5.0]), Polynomial([1.0, 0.5, -0.3, 0.1])
     a = cubic.deriv()(INSTANTS_S)
     found = motion(cubic(INSTANTS_S), a).at(INSTANTS_S, at_s)
-    np.testing.assert_allclose(found.velocity_m_s, cubic(at_s))
+    np.testing.assert_allclose(found.velocity, cubic(at_s))
     np.testing.assert_allclose(found.angle_rad, 3.0 * at_s)
-    np.testing.assert_allclose(found.acceleration_m_s2, np.interp(at_s, INSTANTS_S, a))
+    np.testing.assert_allclose(found.acceleration, np.interp(at_s, INSTANTS_S, a))
     # The error is the larger one of the two neighbours.
     assert found.velocity_error_m_s.tolist() == [2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 1.0]
     assert (found.sign_known & ~found.resting).all()
@@ -38,15 +38,15 @@ def test_start_and_stop_next_to_a_rest_are_extrapolated_with_acceleration() -> N
     at_s = np.array([0.5, 1.25, 1.5, 1.75, 2.0, 4.1, 4.25, 4.5])
     v, rest = [0.0, 0.0, 0.5, 0.5, 0.0], "11001"
     found = motion(v, [0.0, 0.0, 1.0, -2.0, 0.0], rest).at(INSTANTS_S, at_s)
-    np.testing.assert_allclose(found.velocity_m_s, [0, 0, 0, 0.25, 0.5, 0.3, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(found.velocity, [0, 0, 0, 0.25, 0.5, 0.3, 0, 0], atol=1e-12)
     assert found.resting.tolist() == [True, True, True, False, False, False, True, True]
-    np.testing.assert_allclose(found.acceleration_m_s2, [0, 0, 0, 1.0, 1.0, -2.0, 0.0, 0.0])
+    np.testing.assert_allclose(found.acceleration, [0, 0, 0, 1.0, 1.0, -2.0, 0.0, 0.0])
     # If the acceleration is too small for the interval or has the wrong sign, the speed is
     # interpolated linearly.
     for a in ([0.0, 0.0, 0.1, -0.1, 0.0], [0.0, 0.0, -1.0, 1.0, 0.0]):
         linear = motion(v, a, rest).at(INSTANTS_S, at_s)
         expected = [0.0, 0.125, 0.25, 0.375, 0.5, 0.45, 0.375, 0.25]
-        np.testing.assert_allclose(linear.velocity_m_s, expected)
+        np.testing.assert_allclose(linear.velocity, expected)
 
 
 @pytest.mark.parametrize(
@@ -87,19 +87,19 @@ def test_delayed_force_is_compared_with_the_motion_at_earlier_instants(
     inside = (at_s >= time_s[0]) & (at_s <= time_s[-1])
     assert 1 <= np.sum(~inside) <= 3
     found = prepared.shifted(delay_s, drift)
-    np.testing.assert_array_equal(found.friction_n, prepared.friction_n[inside])
+    np.testing.assert_array_equal(found.friction, prepared.friction[inside])
     np.testing.assert_allclose(found.run.time_s, at_s[inside], atol=1e-12)
     expected = speed(at_s[inside])
-    np.testing.assert_allclose(found.motion.velocity_m_s[3:-3], expected[3:-3], atol=5e-6)
+    np.testing.assert_allclose(found.motion.velocity[3:-3], expected[3:-3], atol=5e-6)
     known = found.motion.sign_known
-    assert (found.motion.velocity_m_s * expected)[known].min() > 0.0
+    assert (found.motion.velocity * expected)[known].min() > 0.0
     assert np.sum(~known) <= 8 * np.count_nonzero(np.diff(np.sign(expected))) + 4
 
 
 def test_zero_delay_and_drift_change_neither_force_nor_motion(prepared: Prepared) -> None:
     same = prepared.shifted(0.0, 0.0)
-    np.testing.assert_array_equal(same.friction_n, prepared.friction_n)
-    unchanged = prepared.motion.velocity_m_s
-    np.testing.assert_allclose(same.motion.velocity_m_s, unchanged, rtol=0.0, atol=1e-15)
+    np.testing.assert_array_equal(same.friction, prepared.friction)
+    unchanged = prepared.motion.velocity
+    np.testing.assert_allclose(same.motion.velocity, unchanged, rtol=0.0, atol=1e-15)
     assert not prepared.motion.sign_known.all()
     np.testing.assert_array_equal(same.motion.sign_known, prepared.motion.sign_known)

@@ -129,7 +129,7 @@ def test_speed_that_contradicts_the_path_for_six_samples_is_not_used() -> None:
         speed = SPEED_M_S + white(SAMPLES, 6, 1e-4)
         speed[500:506] = factor * speed[500:506] + offset
         motion = impose(Run.from_arrays(TIME_S, speed, position_m=COUNTED_M), None)
-        assert np.max(np.abs(motion.velocity_m_s - SPEED_M_S)[490:516]) < 1e-3
+        assert np.max(np.abs(motion.velocity - SPEED_M_S)[490:516]) < 1e-3
 
 
 @pytest.mark.parametrize("end", [0, SAMPLES - 1])

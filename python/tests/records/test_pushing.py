@@ -30,7 +30,7 @@ def exact_motion(speed: Array, sign_known: Any = True) -> ImposedMotion:
 def findings_of(push: float, v: Any = SPEED_M_S, sign_known: Any = True, usable: Any = True) -> Any:
     """Findings of a force that opposes the motion by `push`, with offset, mass and spring."""
     motion = exact_motion(v, sign_known)
-    force = push * np.sign(v) + 3.0 + 0.2 * motion.acceleration_m_s2 - 5.0 * motion.angle_rad
+    force = push * np.sign(v) + 3.0 + 0.2 * motion.acceleration - 5.0 * motion.angle_rad
     run = Run.from_arrays(TIME_S, v, force + 0.1 * NOISE)
     return find_pushing(run, motion, np.broadcast_to(usable, SAMPLES).copy())
 
@@ -55,7 +55,7 @@ def test_driving_force_is_reported_beyond_8_standard_errors_and_0_3_of_spread(
     speed = SPEED_M_S[:samples]
     motion = exact_motion(speed)
     moving = np.abs(speed) > 0.02 * np.max(np.abs(speed))
-    terms = (np.sign(speed), np.ones(samples), motion.acceleration_m_s2, motion.angle_rad)
+    terms = (np.sign(speed), np.ones(samples), motion.acceleration, motion.angle_rad)
     design = np.stack(terms, axis=1)[moving]
     force = NOISE[:samples][moving]
     if samples == 2000:

@@ -30,12 +30,12 @@ def test_run_from_arrays_copies_columns_to_read_only_float64() -> None:
     given = np.zeros(10, np.float32)
     run = Run.from_arrays(range(10), given, load_n=[1] * 10, extra={"i_a": list(range(10))})
     given[0] = 5.0
-    assert run.friction_n is None
+    assert run.friction is None
     assert list(run.columns()) == ["time_s", "velocity_m_s", "load_n", "i_a"]
     for values in run.columns().values():
         assert values.dtype == np.float64
         assert not values.flags.writeable
-    assert run.velocity_m_s[0] == 0.0
+    assert run.velocity[0] == 0.0
     assert (len(run), run.duration_s) == (10, 9.0)
 
 
@@ -83,9 +83,9 @@ def test_speed_is_the_central_difference_of_the_position_if_not_recorded() -> No
     run = Run.from_arrays(TIME_S, position_m=TIME_S**2)
     assert not run.speed_recorded
     assert "velocity_m_s" not in run.columns()
-    np.testing.assert_allclose(run.velocity_m_s[1:-1], 2.0 * TIME_S[1:-1])
+    np.testing.assert_allclose(run.velocity[1:-1], 2.0 * TIME_S[1:-1])
     # The speed from an angle is unknown until the radius is known.
-    assert np.isnan(Run.from_arrays(TIME_S, angle_rad=TIME_S).velocity_m_s).all()
+    assert np.isnan(Run.from_arrays(TIME_S, angle_rad=TIME_S).velocity).all()
 
 
 def test_temperature_gaps_are_interpolated_and_the_longest_is_reported() -> None:
@@ -114,7 +114,7 @@ def test_numeric_frame_columns_become_run_columns_and_missing_time_is_reported()
     run: Any = Run.from_frame(frame, name="d", path=Path("f.csv"))
     assert (run.name, run.path, run.read) == ("d", Path("f.csv"), {})
     assert list(run.extra) == ["own"]
-    assert run.friction_n[-1] == 3.0
+    assert run.friction[-1] == 3.0
     frame["own"] = np.where(np.arange(SAMPLES) < 10, np.nan, TIME_S)
     assert set(Run.from_frame(frame).read) == {"own"}
     error = input_error(Run.from_frame, {"velocity_m_s": TIME_S, "v": TIME_S}, name="f")
@@ -137,7 +137,7 @@ def test_run_is_read_from_an_arrow_table_and_an_arrow_stream() -> None:
     for frame in (table, ExportedByArrow(table)):
         run = Run.from_frame(frame)
         assert list(run.columns()) == ["time_s", "velocity_m_s"]
-        np.testing.assert_array_equal(run.velocity_m_s, TIME_S + 1.0)
+        np.testing.assert_array_equal(run.velocity, TIME_S + 1.0)
 
 
 def test_object_without_named_columns_is_rejected_as_a_frame() -> None:
@@ -172,9 +172,9 @@ def test_run_at_other_instants_has_interpolated_columns_and_the_given_friction()
     instants = np.array([0.05, 0.33, 1.9])
     run = replace(RUN, read={"own": np.arange(SAMPLES) > 5})
     moved: Any = run.at(instants, np.array([7.0, 8.0, 9.0]))
-    assert (moved.friction_n.tolist(), moved.read) == ([7.0, 8.0, 9.0], {})
+    assert (moved.friction.tolist(), moved.read) == ([7.0, 8.0, 9.0], {})
     np.testing.assert_array_equal(moved.time_s, instants)
-    np.testing.assert_allclose(moved.velocity_m_s, instants + 1.0)
+    np.testing.assert_allclose(moved.velocity, instants + 1.0)
     np.testing.assert_allclose(moved.angle_rad, 3.0 * instants)
     np.testing.assert_allclose(moved.extra["own"], 4.0 * instants)
 
@@ -222,7 +222,7 @@ def test_run_assigned_to_a_rig_has_its_units_and_column_names() -> None:
     assert joint.to_csv().startswith("time_s,angle_rad,velocity_rad_s,torque_n_m,own\n")
     other = Rig(drive=Drive("rotary", "current", torque_constant_n_m_a=1.0))
     assert run_on(other, joint).quantities == other.quantities
-    assert ROTARY.to_dict() == {"force": "N m", "velocity": "rad/s", "length": "rad"}
+    assert ROTARY.to_dict() == {"force": "N m", "motion": "rad", "velocity": "rad/s"}
 
 
 def test_run_is_rejected_by_a_rig_of_another_kind() -> None:

@@ -27,7 +27,7 @@ def test_runs_are_read_in_order_from_files_folders_and_patterns(tmp_path: Path) 
     assert [run.name for run in read_runs(str(tmp_path / "x" / "b*"))] == ["b"]
     assert [run.name for run in read_runs(str(bracket))] == ["s[1]"]
     bare = write(tmp_path / "n" / "m.csv", "time_s,velocity_m_s")
-    assert read_runs(bare, need_friction=False)[0].friction_n is None
+    assert read_runs(bare, need_friction=False)[0].friction is None
 
 
 def test_runs_of_equal_file_names_are_named_with_parent_folder_or_suffix(tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ def test_delay_of_up_to_one_and_a_half_samples_is_corrected_in_the_motion(
     sizes = [f.size for f in motion.findings if f.kind == "late_speed"]
     assert len(sizes) == (delay_steps != 0.0)
     assert sizes == [pytest.approx(delay_steps * STEP_S, rel=0.1)] * len(sizes)
-    np.testing.assert_allclose(motion.velocity_m_s[5:-5], speed_of(TIME_S)[5:-5], atol=1e-2)
+    np.testing.assert_allclose(motion.velocity[5:-5], speed_of(TIME_S)[5:-5], atol=1e-2)
 
 
 def estimated_delay(speed: Array) -> tuple[float, float]:

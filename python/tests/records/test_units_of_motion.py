@@ -166,7 +166,7 @@ def test_motion_is_recovered_from_speed_and_angle_if_the_radius_is_unknown(radiu
     speed = SPEED_M_S + white(len(TIME_S), 0, 1e-4)
     motion = impose(Run.from_arrays(TIME_S, speed, angle_rad=angle), None)
     assert motion.findings == ()
-    assert np.std(motion.velocity_m_s - SPEED_M_S) < 0.5e-4
+    assert np.std(motion.velocity - SPEED_M_S) < 0.5e-4
     assert np.max(np.abs(np.diff(motion.angle_rad - angle))) < 1e-4
 
 
@@ -174,4 +174,4 @@ def test_angle_unrelated_to_the_speed_is_unwrapped_but_not_used_for_speed() -> N
     angle = np.mod(np.cumsum(np.random.default_rng(3).uniform(0.0, 1.0, len(TIME_S))), TURN)
     motion = impose(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=angle), None)
     np.testing.assert_allclose(motion.angle_rad, np.unwrap(angle))
-    np.testing.assert_allclose(motion.velocity_m_s, SPEED_M_S, atol=1e-4)
+    np.testing.assert_allclose(motion.velocity, SPEED_M_S, atol=1e-4)

@@ -70,27 +70,27 @@ def test_descriptions_of_drive_effects_mention_neither_load_cell_nor_journal() -
 
 def model_of(rig: Rig, stderr: float | None = 0.25) -> Model:
     """A model with a mass and an offset."""
-    values: Any = {"F_c_n": 5.0, "F_v_n_s_m": 20.0, "sensor_offset.b_n": 0.5}
-    values["inertia_leak.m_e_kg"] = ParameterValue(11.0, stderr)
-    return Model(rig, "coulomb", ["inertia_leak", "sensor_offset"], values)
+    values: Any = {"F_c": 5.0, "F_v": 20.0, "sensor_offset.b": 0.5}
+    values["inertia.m_e"] = ParameterValue(11.0, stderr)
+    return Model(rig, "coulomb", ["inertia", "sensor_offset"], values)
 
 
 def test_estimated_mass_or_inertia_is_printed_with_the_known_one_of_the_drive() -> None:
-    slide = known_mass(model_of(SLIDE), "inertia_leak")
+    slide = known_mass(model_of(SLIDE), "inertia")
     assert "11.00 +/- 0.25 kg" in slide
     assert "12.50" in slide
-    joint = known_mass(model_of(JOINT, None), "inertia_leak")
+    joint = known_mass(model_of(JOINT, None), "inertia")
     assert "11.000 kg m^2" in joint
     assert "4.000" in joint
     assert known_mass(model_of(SLIDE), "sensor_offset") == ""
     for without_mass in (Rig(), Rig(drive=Drive("linear", "force"))):
-        assert known_mass(model_of(without_mass), "inertia_leak") == ""
+        assert known_mass(model_of(without_mass), "inertia") == ""
 
 
 def test_effects_are_described_below_the_parameters_only_if_the_rig_has_a_drive() -> None:
     model = model_of(SLIDE)
     text = " ".join(" ".join(effect_lines(model)).split())
-    assert f"inertia_leak: {summary_of(find_effect('inertia_leak'), LINEAR)}" in text
-    assert known_mass(model, "inertia_leak") in text
+    assert f"inertia: {summary_of(find_effect('inertia'), LINEAR)}" in text
+    assert known_mass(model, "inertia") in text
     assert f"sensor_offset: {summary_of(OFFSET, LINEAR)}" in text
     assert effect_lines(model_of(Rig())) == []

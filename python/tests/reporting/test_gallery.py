@@ -29,9 +29,9 @@ def diagnosis_of(offset_n: float, drift_n_s: float, found_offset_n: float) -> Di
     """
     runs = there_and_back(lambda t, v, a: coulomb(t, v, a) + offset_n + drift_n_s * t)
     fixed: dict[str, ParameterValue | float] = {
-        n: ParameterValue(x, None, held=True) for n, x in {**LAW, "F_s_n": 5.0}.items()
+        n: ParameterValue(x, None, held=True) for n, x in {**LAW, "F_s": 5.0}.items()
     }
-    values = {"sensor_offset.b_n": found_offset_n, "sensor_drift.d_n_s": drift_n_s}
+    values = {"sensor_offset.b": found_offset_n, "sensor_drift.d": drift_n_s}
     before = compare(Model(Rig(), "coulomb", (), fixed), runs)
     final = Model(Rig(), "coulomb", ["sensor_offset", "sensor_drift"], {**fixed, **values})
     found, failures = diagnosis_by_hand("missing"), before.failures
@@ -109,7 +109,7 @@ def test_simulated_pattern_is_attributed_to_the_hidden_effect_that_removes_it() 
 )
 def test_structure_card_has_plot_and_advice(axis: str, where: str, kind: str, label: str) -> None:
     remains = (Remainder(axis, where, 0.126),)
-    (card,) = remainder_cards(replace(diagnosis_by_hand("unexplained"), unexplained=remains))
+    (card,) = remainder_cards(replace(diagnosis_by_hand("unexplained"), residual_structure=remains))
     assert f">{label}</text>" in str(card.picture)
     assert card.share == "13 % of the mean square"
     assert card.looks.lower() == f"{where}.".lower()

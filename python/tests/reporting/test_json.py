@@ -71,8 +71,8 @@ def test_result_schema_allows_new_keys_but_no_unknown_verdict_or_missing_key() -
     assert violations("diagnosis", content | {"later": 1}, SCHEMA) == []
     assert any("'later'" in v for v in violations("diagnosis", content | {"later": 1}))
     assert any("'maybe'" in v for v in violations("diagnosis", content | {"verdict": "maybe"}))
-    del content["steps"][0]["noise_n"]
-    assert any("noise_n" in v for v in violations("diagnosis", content, SCHEMA))
+    del content["steps"][0]["noise_rms"]
+    assert any("noise_rms" in v for v in violations("diagnosis", content, SCHEMA))
 
 
 @pytest.mark.parametrize("verdict", ["adequate", "missing", "ambiguous", "unexplained"])
@@ -96,7 +96,7 @@ def test_json_of_a_comparison_has_units_of_the_drive_and_agrees_with_the_schema(
     linear = comparison_by_hand(1.25, (1.0, 1.5))
     content = as_written(replace(linear, model=replace(linear.model, rig=rig)).to_dict())
     assert violations("comparison", content) == []
-    assert content["units"] == {"force": "N m", "velocity": "rad/s", "length": "rad"}
+    assert content["units"] == {"force": "N m", "motion": "rad", "velocity": "rad/s"}
 
 
 def test_json_of_robustness_and_thesis_tables_agrees_with_the_schema() -> None:
@@ -114,7 +114,7 @@ def test_json_of_robustness_and_thesis_tables_agrees_with_the_schema() -> None:
 def test_json_of_each_command_agrees_with_the_schema() -> None:
     rig = jbf.Rig.thesis()
     rig.write("rig.toml")
-    model = jbf.Model(rig, effects=["coulomb_drag"], parameters={"coulomb_drag.F_d_n": 2.0})
+    model = jbf.Model(rig, effects=["coulomb_drag"], parameters={"coulomb_drag.F_d": 2.0})
     model.save("model.toml")
     for folder in ("rigs/a", "rigs/b"):
         Path(folder).mkdir(parents=True)
@@ -123,11 +123,11 @@ def test_json_of_each_command_agrees_with_the_schema() -> None:
     for run in make_runs():
         run.write_csv(f"{run.name}.csv")
         run.write_csv(f"rigs/a/{run.name}.csv")
-    noise = ["--noise-n", "0.3"]
+    noise = ["--noise", "0.3"]
     commands = {
         "comparison": ["compare", "model.toml", "*.csv"],
         "planned": ["power", "model.toml", "*.csv", *noise],
-        "plan": ["plan", "rig.toml", "--minutes", "3", "--max-velocity-m-s", "0.1", *noise],
+        "plan": ["plan", "rig.toml", "--minutes", "3", "--max-velocity", "0.1", *noise],
         "check": ["check", "model.toml", "*.csv", "-n", "1", "--jobs", "1"],
         "effects": ["effects"],
         "many": ["diagnose", "--many", "rigs", "--jobs", "1"],

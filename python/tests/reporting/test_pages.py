@@ -69,9 +69,11 @@ def diagnosis_of(verdict: str) -> jbf.Diagnosis:
     """A diagnosis of each verdict: `missing` with power, `unexplained` of a rotary drive."""
     found = diagnosis_by_hand(verdict)
     if verdict == "missing":
-        power = (Power("backlash", "gap_rad", "rad", 0.1, 0.13, False, 0.02, 0.1, ()),)
+        power = (Power("backlash", "gap", "rad", 0.1, 0.13, False, 0.02, 0.1, ()),)
         second = replace(found.steps[1], trials=TRIALS[2:])
-        return replace(found, power=power, steps=(found.steps[0], second), unseen=("wear_in",))
+        return replace(
+            found, power=power, steps=(found.steps[0], second), not_detectable=("running_in",)
+        )
     if verdict == "unexplained":
         joint = jbf.Rig(drive=jbf.Drive("rotary", "current", torque_constant_n_m_a=0.5))
         model = replace(found.fit.model, rig=joint)
@@ -136,7 +138,7 @@ def test_diagnosis_page_tabulates_candidates_with_a_gain_and_names_the_others() 
     assert [row[:4] for row in rows] == [
         ["sensor_offset", "0.525", "+812", "added"],
         ["sensor_drift", "1.50", "+55", "ties"],
-        ["inertia_leak", "2.00", "+7", "rejected"],
+        ["inertia", "2.00", "+7", "rejected"],
     ]
     assert re.search(r"no more than chance would: sensor_lag\.", page("missing").text)
 
@@ -144,21 +146,21 @@ def test_diagnosis_page_tabulates_candidates_with_a_gain_and_names_the_others() 
 def test_diagnosis_page_lists_candidates_under_each_step_that_tried_them() -> None:
     headings = re.findall(r"<h3>Beside the (.*?)</h3>", html_of("missing"))
     assert headings == ["bare law", "bare law + sensor_offset"]
-    assert len(re.findall("inertia_leak</td>", html_of("missing"))) == 2
+    assert len(re.findall("inertia</td>", html_of("missing"))) == 2
 
 
 def test_diagnosis_page_has_parameters_correlations_and_the_added_effect() -> None:
     found = page("missing")
     assert found.below("parameter", "value", "standard error", "", "unit", "note") == [
-        ["F_c_n", "4.988", "0.012", "0.25 %", "N", ""],
-        ["F_s_n", "held at 6.0000", "", "", "N", "held fixed"],
-        ["F_v_n_s_m", "20.44", "0.52", "2.5 %", "N s/m", ""],
-        ["sensor_offset.b_n", "-0.250", "0.025", "10 %", "N", ""],
+        ["F_c", "4.988", "0.012", "0.25 %", "N", ""],
+        ["F_s", "held at 6.0000", "", "", "N", "held fixed"],
+        ["F_v", "20.44", "0.52", "2.5 %", "N s/m", ""],
+        ["sensor_offset.b", "-0.250", "0.025", "10 %", "N", ""],
     ]
-    assert "F_c_n with F_v_n_s_m -0.90; F_c_n with sensor_offset.b_n +0.45" in found.text
+    assert "F_c with F_v -0.90; F_c with sensor_offset.b +0.45" in found.text
     assert "the zero of the force sensor is off" in found.text
     held = re.findall(r'<tr class="held"><td class="name">(.*?)</td>', html_of("missing"))
-    assert held == ["F_s_n"]
+    assert held == ["F_s"]
 
 
 def test_diagnosis_page_has_failures_with_their_share_and_description() -> None:
@@ -171,7 +173,7 @@ def test_diagnosis_page_has_detection_limits_undetectable_and_untried_effects() 
     found = page("missing")
     head = ("effect", "found from", "of friction", "alone from", "else it could be")
     assert found.below(*head) == [["backlash", "gap 0.100 m", "2 %", "same", ""]]
-    assert "hide in these runs: wear_in." in found.text
+    assert "Not detectable in these runs at a usual strength: running_in." in found.text
     assert found.below("effect", "why")[0][0] == "position_ripple"
     assert "structure stands above it" in page("unexplained").text
 

@@ -24,7 +24,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from scipy.special import ndtr
 
-POWER = Power("backlash", "gap_rad", "rad", 0.1, 0.13, False, 0.02, 0.1, ())
+POWER = Power("backlash", "gap", "rad", 0.1, 0.13, False, 0.02, 0.1, ())
 
 
 def line(ax: Axes, label: str) -> tuple[np.ndarray, np.ndarray]:
@@ -103,8 +103,8 @@ def test_friction_loop_plot_has_record_and_model_over_speed(comparison: Comparis
     ax = jbf.plot.loops(comparison, "there")
     p = comparison.campaign.prepared[0]
     v, measured = line(ax, "measured")
-    assert np.array_equal(v, p.motion.velocity_m_s)
-    assert np.array_equal(measured, p.friction_n)
+    assert np.array_equal(v, p.motion.velocity)
+    assert np.array_equal(measured, p.friction)
     v, modelled = line(ax, "model")
     known = np.isfinite(modelled)
     assert modelled[known] == pytest.approx(5.0 + 20.0 * v[known], rel=1e-3)
@@ -112,7 +112,7 @@ def test_friction_loop_plot_has_record_and_model_over_speed(comparison: Comparis
 
 def test_friction_loop_plot_of_isolated_friction_excludes_the_sensor_offset() -> None:
     runs = by_hand.there_and_back(lambda t, v, a: coulomb(t, v, a) + 2.0)
-    model = Model(Rig(), "coulomb", ["sensor_offset"], {**LAW, "sensor_offset.b_n": 2.0})
+    model = Model(Rig(), "coulomb", ["sensor_offset"], {**LAW, "sensor_offset.b": 2.0})
     v, measured = line(jbf.plot.loops(compare(model, runs), 0, alone=True), "measured")
     assert measured == pytest.approx(5.0 + 20.0 * v, rel=1e-4)
 
@@ -120,7 +120,7 @@ def test_friction_loop_plot_of_isolated_friction_excludes_the_sensor_offset() ->
 def test_record_and_model_are_drawn_over_time(comparison: Comparison) -> None:
     ax = jbf.plot.record_and_model(comparison, 1)
     p = comparison.campaign.prepared[1]
-    for label, values in (("measured", p.friction_n), ("model", comparison.predictions[1])):
+    for label, values in (("measured", p.friction), ("model", comparison.predictions[1])):
         time_s, drawn = line(ax, label)
         assert np.array_equal(time_s, p.run.time_s)
         assert np.array_equal(drawn, values)
@@ -186,7 +186,7 @@ def test_residual_plot_of_a_fit_has_all_runs_in_order(diagnosis: Diagnosis) -> N
 def test_spectrum_has_the_level_of_white_noise_and_a_peak_at_a_tone() -> None:
     """White noise of standard deviation s has the density s sqrt(2 dt)."""
     model = Model(Rig(), "coulomb", parameters=LAW)
-    runs = by_hand.there_and_back(coulomb, noise_n=0.2)
+    runs = by_hand.there_and_back(coulomb, noise_rms=0.2)
     quiet = jbf.plot.spectrum(compare(model, runs), 0)
     _, density = line(quiet, "record minus model")
     assert np.sqrt(np.mean(density**2)) == pytest.approx(0.2 * np.sqrt(2.0 * 0.02), rel=0.15)
@@ -194,7 +194,7 @@ def test_spectrum_has_the_level_of_white_noise_and_a_peak_at_a_tone() -> None:
     assert floor[0] == pytest.approx(0.2 * np.sqrt(2.0 * 0.02), rel=0.1)
 
     tone_n = 0.5 * np.sin(2.0 * np.pi * 7.0 * runs[0].time_s)
-    with_tone = replace(runs[0], friction_n=runs[0].friction_n + tone_n)
+    with_tone = replace(runs[0], friction=runs[0].friction + tone_n)
     frequency, density = line(jbf.plot.spectrum(compare(model, [with_tone])), "record minus model")
     assert frequency[np.argmax(density)] == pytest.approx(7.0, abs=0.5)
 
@@ -211,7 +211,7 @@ def test_default_run_of_a_plot_is_that_with_the_largest_difference_between_two_m
     runs = [one_way("slow", coulomb), one_way("fast", coulomb, way=2.0)]
     first, second = (
         compare(Model(Rig(), "coulomb", parameters=values), runs)
-        for values in (LAW, {"F_c_n": 1.0, "F_s_n": 1.0, "F_v_n_s_m": 40.0})
+        for values in (LAW, {"F_c": 1.0, "F_s": 1.0, "F_v": 40.0})
     )
     assert largest_error_run(first, second) == 0
     assert largest_error_run(first, first) == largest_error_run(first)
@@ -229,7 +229,7 @@ def test_parameter_intervals_are_standard_errors_in_percent_of_the_value() -> No
     assert widths == pytest.approx(expected)
     labels = [tick.get_text() for tick in ax.get_yticklabels()]
     # A held parameter is drawn without an interval.
-    assert labels[:2] == ["F_c_n\n4.988 ± 0.012", "F_s_n\nheld at 6.0000"]
+    assert labels[:2] == ["F_c\n4.988 ± 0.012 N", "F_s\nheld at 6.0000 N"]
     assert len(ax.containers) == 3
 
 
@@ -259,7 +259,7 @@ def test_ranking_plot_has_descending_gains_and_rejects_unknown_step(diagnosis: D
     ax = jbf.plot.ranking(diagnosis)
     assert [cast(Any, bar).get_width() for bar in ax.patches] == [812.4, 55.0, 7.4]
     names = [t.get_text() for t in ax.get_yticklabels()]
-    assert names == ["sensor_offset", "sensor_drift", "inertia_leak"]
+    assert names == ["sensor_offset", "sensor_drift", "inertia"]
     with pytest.raises(InputError, match="nothing was tried at step 1"):
         jbf.plot.ranking(diagnosis, 1)
     with pytest.raises(InputError, match="there is no step 7"):
@@ -273,7 +273,7 @@ def test_power_curve_passes_through_eighty_and_ninety_five_percent(diagnosis: Di
     x, y = line(jbf.plot.power(diagnosis), "backlash")
     assert np.interp(2.0, x, y) == pytest.approx(80.0, abs=0.2)
     assert np.interp(2.6, x, y) == pytest.approx(95.0, abs=0.2)
-    unknown = replace(diagnosis, power=(replace(POWER, found_80=None),))
+    unknown = replace(diagnosis, power=(replace(POWER, detectable_80=None),))
     with pytest.raises(InputError, match="no power is known"):
         jbf.plot.power(unknown)
 

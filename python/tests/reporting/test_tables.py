@@ -17,16 +17,16 @@ from jbf.reporting.text_parts import finding_lines, parameter_lines
 from jbf.reporting.words import step_name
 
 VALUES = {
-    "F_c_n": ParameterValue(4.9876, 0.0123),
-    "F_v_n_s_m": ParameterValue(20.0),
+    "F_c": ParameterValue(4.9876, 0.0123),
+    "F_v": ParameterValue(20.0),
     "own": ParameterValue(0.0, 0.5, "at its bound"),
 }
 
 
 def test_parameter_row_has_value_error_share_unit_and_note() -> None:
     assert tables.parameter_rows("coulomb", (), VALUES) == [
-        ("F_c_n", "4.988", "0.012", "0.25 %", "N", ""),
-        ("F_v_n_s_m", "20.000", "", "", "N s/m", "no error known"),
+        ("F_c", "4.988", "0.012", "0.25 %", "N", ""),
+        ("F_v", "20.000", "", "", "N s/m", "no error known"),
         ("own", "0.00", "0.50", "", "", "at its bound"),
     ]
 
@@ -38,9 +38,9 @@ def test_parameter_rows_of_a_rotary_drive_have_its_units_but_not_in_the_name() -
 
 def test_parameter_lines_are_aligned_and_omit_missing_parts() -> None:
     assert parameter_lines("coulomb", (), VALUES) == [
-        "    F_c_n       4.988  +/- 0.012  (0.25 %)  N",
-        "    F_v_n_s_m  20.000                       N s/m  (no error known)",
-        "    own          0.00   +/- 0.50                   (at its bound)",
+        "    F_c   4.988  +/- 0.012  (0.25 %)  N",
+        "    F_v  20.000                       N s/m  (no error known)",
+        "    own    0.00   +/- 0.50                   (at its bound)",
     ]
 
 
@@ -48,11 +48,11 @@ def test_correlations_above_three_tenths_are_listed_strongest_first() -> None:
     """The table of correlations excludes held parameters."""
     fit = fit_by_hand(["sensor_offset"])
     strongest, weakest = tables.correlation_pairs(fit)
-    assert strongest == ("F_c_n", "F_v_n_s_m", -0.9)
-    assert weakest == ("F_c_n", "sensor_offset.b_n", 0.45)
+    assert strongest == ("F_c", "F_v", -0.9)
+    assert weakest == ("F_c", "sensor_offset.b", 0.45)
     table = np.array([[1.0, 0.3, np.nan], [0.3, 1.0, -0.301], [np.nan, -0.301, 1.0]])
     weak = replace(fit, correlations=table)
-    assert tables.correlation_pairs(weak) == [("F_v_n_s_m", "sensor_offset.b_n", -0.301)]
+    assert tables.correlation_pairs(weak) == [("F_v", "sensor_offset.b", -0.301)]
 
 
 def test_ratio_to_the_noise_is_an_empty_text_if_the_noise_is_zero() -> None:
@@ -108,18 +108,21 @@ def test_findings_have_one_row_for_each_kind_and_an_empty_list_has_no_heading() 
 
 def power_of(**changes: Any) -> Power:
     """An offset that is detectable from 2 N and distinguishable from 3 N on."""
-    return replace(Power("sensor_offset", "b_n", "N", 2.0, 3.0, False, 0.0123, 3.0, ()), **changes)
+    return replace(Power("sensor_offset", "b", "N", 2.0, 3.0, False, 0.0123, 3.0, ()), **changes)
 
 
 @pytest.mark.parametrize(
     ("changes", "cells"),
     [
-        ({}, ("b_n 2.00 N", "1.2 %", "3.00", "")),
-        ({"alone_80": 2.0004}, ("b_n 2.00 N", "1.2 %", "same", "")),
-        ({"alone_80": None}, ("b_n 2.00 N", "1.2 %", "never", "")),
-        ({"found_80": None, "share_80": None, "alone_80": None}, ("never", "", "", "")),
+        ({}, ("b 2.00 N", "1.2 %", "3.00", "")),
+        ({"distinguishable_80": 2.0004}, ("b 2.00 N", "1.2 %", "same", "")),
+        ({"distinguishable_80": None}, ("b 2.00 N", "1.2 %", "never", "")),
+        (
+            {"detectable_80": None, "share_80": None, "distinguishable_80": None},
+            ("never", "", "", ""),
+        ),
         ({"always": True}, ("any", "", "3.00", "")),
-        ({"like": ("a", "b", "c", "d")}, ("b_n 2.00 N", "1.2 %", "3.00", "a, b, c")),
+        ({"confounded_with": ("a", "b", "c", "d")}, ("b 2.00 N", "1.2 %", "3.00", "a, b, c")),
     ],
 )
 def test_power_row_has_detectable_and_distinguishable_size(changes: Any, cells: Any) -> None:

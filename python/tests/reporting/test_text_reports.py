@@ -49,18 +49,18 @@ def test_fit_report_has_statistics_parameters_and_correlations() -> None:
     expected["noise in the residual"] = "coloured, share 0.25, memory 0.15 s"
     assert statistics == {name: f"= {value}" for name, value in expected.items()}
     assert section(report, "[[Parameters]]") == [
-        ["F_c_n", "4.988", "+/- 0.012", "(0.25 %)", "N"],
-        ["F_s_n", "held at 6.0000", "N", "(held fixed)"],
-        ["F_v_n_s_m", "20.44", "+/- 0.52", "(2.5 %)", "N s/m"],
-        ["sensor_offset.b_n", "-0.250", "+/- 0.025", "(10 %)", "N"],
+        ["F_c", "4.988", "+/- 0.012", "(0.25 %)", "N"],
+        ["F_s", "held at 6.0000", "N", "(held fixed)"],
+        ["F_v", "20.44", "+/- 0.52", "(2.5 %)", "N s/m"],
+        ["sensor_offset.b", "-0.250", "+/- 0.025", "(10 %)", "N"],
     ]
     strong, weak = section(report, "[[Correlations]]")
-    assert strong == ["C(F_c_n, F_v_n_s_m)", "= -0.900"]
-    assert weak == ["C(F_c_n, sensor_offset.b_n)", "= +0.450"]
+    assert strong == ["C(F_c, F_v)", "= -0.900"]
+    assert weak == ["C(F_c, sensor_offset.b)", "= +0.450"]
 
 
 @pytest.mark.parametrize(
-    ("noise_n", "words", "larger"),
+    ("noise_rms", "words", "larger"),
     [
         (0.5, "= 0.500 N (the residual is 1.05 times that)", False),
         (0.105, "= 0.105 N (the residual is 5.00 times that)", True),
@@ -68,16 +68,16 @@ def test_fit_report_has_statistics_parameters_and_correlations() -> None:
     ],
 )
 def test_fit_report_compares_the_residual_with_the_noise_of_the_records(
-    noise_n: float | None, words: str, larger: bool
+    noise_rms: float | None, words: str, larger: bool
 ) -> None:
-    report = replace(fit_by_hand(), noise_floor_n=noise_n).summary()
+    report = replace(fit_by_hand(), noise_floor=noise_rms).summary()
     statistics = {row[0]: row[1] for row in section(report, "[[Fit]]")}
     assert statistics["noise of the records"] == words
     assert ("larger than the noise of the records" in " ".join(report.split())) == larger
 
 
 def test_fit_report_names_doubtful_errors_and_a_failed_search() -> None:
-    assert "note: of F_c_n" in fit_by_hand(doubtful=("F_c_n",)).summary()
+    assert "note: of F_c" in fit_by_hand(doubtful=("F_c",)).summary()
     failed = replace(fit_by_hand(), converged=False, message="too many steps")
     assert "not converged: too many steps" in failed.summary()
     assert ["effects", "= none"] in section(failed.summary(), "[[Fit]]")
@@ -150,7 +150,7 @@ def test_diagnosis_report_has_measurement_candidates_steps_and_parameters() -> N
         ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"],
     ]
     parameters = section(report, "Parameters of the final model")
-    assert parameters[3][:2] == ["sensor_offset.b_n", "-0.250"]
+    assert parameters[3][:2] == ["sensor_offset.b", "-0.250"]
 
 
 def test_optional_sections_of_a_diagnosis_report_appear_only_with_content() -> None:
@@ -183,7 +183,7 @@ def test_diagnosis_report_has_all_steps_in_lines_of_up_to_100_characters() -> No
     assert max(map(len, report.splitlines())) <= 100
     rows = section(report, "The error falling")[1:]
     steps = [(float(row[1]), float(row[2])) for row in rows]
-    expected = [(step.rms_n, step.holdout_rms_n) for step in diagnosis.steps]
+    expected = [(step.rms, step.held_out_rms) for step in diagnosis.steps]
     assert steps == [pytest.approx(errors, rel=5e-3) for errors in expected]
     parameters = section(report, "Parameters of the final model")
     assert [row[0] for row in parameters] == list(diagnosis.model.parameters)
@@ -192,17 +192,17 @@ def test_diagnosis_report_has_all_steps_in_lines_of_up_to_100_characters() -> No
 def test_check_report_has_counts_shares_and_exact_intervals() -> None:
     """Clopper and Pearson: the lower limit of ten of ten is 0.025^(1/10)."""
     right = [Answer((), k, "adequate", (), {}) for k in range(10)]
-    wrong = [Answer(("wear_in",), k, "adequate", (), {}) for k in range(4)]
+    wrong = [Answer(("running_in",), k, "adequate", (), {}) for k in range(4)]
     check = Check(Model(Rig.thesis()), (*right, *wrong))
     rows = [re.split(r"  +", line) for line in check.summary().splitlines()]
     adequate = next(row for row in rows if row[0] == "nothing hidden: adequate")
     assert adequate[1:] == ["10 of 10", "100 %", f"{100 * 0.025**0.1:.1f} to 100 %"]
-    named = next(row for row in rows if row[0] == "wear_in hidden: named")
+    named = next(row for row in rows if row[0] == "running_in hidden: named")
     assert named[1:] == ["0 of 4", "0 %", f"0 to {100 * (1 - 0.025**0.25):.1f} %"]
     assert "10 of 14" in repr(check)
 
 
-LEVEL = Level(0.025, 20, 0.00125, imperfection=0.0, worth=0.0)
+LEVEL = Level(0.025, 20, 0.00125, artefact_margin=0.0, min_gain=0.0)
 
 
 def test_level_text_has_false_alarm_rate_candidates_and_threshold() -> None:
@@ -217,8 +217,8 @@ def test_level_text_has_false_alarm_rate_candidates_and_threshold() -> None:
     ("changes", "fragment"),
     [
         ({"blocks": 40}, "40 blocks"),
-        ({"imperfection": 100.0}, f"at least {LEVEL.white + 100.0:.0f}"),
-        ({"worth": 1234.0}, "gain 1234"),
+        ({"artefact_margin": 100.0}, f"at least {LEVEL.white_noise_threshold + 100.0:.0f}"),
+        ({"min_gain": 1234.0}, "gain 1234"),
         ({"decoys": 50, "decoys_named": 3}, f"below {100.0 * rate_below(3, 50):.2g} %"),
         ({"decoys": 2, "decoys_named": 2}, "below 100 %"),
     ],
@@ -230,19 +230,19 @@ def test_level_text_has_further_thresholds_only_if_they_apply(changes: Any, frag
 
 def planned_power() -> PlannedPower:
     power = (
-        Power("sensor_offset", "b_n", "N", 2.0, 3.0, False, 0.0123, 2.0, ("wear_in",)),
+        Power("sensor_offset", "b", "N", 2.0, 3.0, False, 0.0123, 2.0, ("running_in",)),
         Power("sensor_lag", "tau_s", "s", None, None, False, None, None, ()),
     )
-    model = Model(Rig(), "coulomb", ["inertia_leak"])
+    model = Model(Rig(), "coulomb", ["inertia"])
     return PlannedPower(model, 0.1, power, {"backlash": "no path"}, ("a", "b"), LEVEL)
 
 
 def test_planned_power_report_lists_noise_detection_limits_and_untried_effects() -> None:
     planned = planned_power()
     report = planned.summary()
-    assert report.startswith("2 runs beside coulomb + inertia_leak, noise of 0.100 N")
+    assert report.startswith("2 runs beside coulomb + inertia, noise of 0.100 N")
     _, offset, lag = section(report, "What such runs show")[:3]
-    assert offset == ["sensor_offset", "b_n 2.00 N", "1.2 %", "same", "wear_in"]
+    assert offset == ["sensor_offset", "b 2.00 N", "1.2 %", "same", "running_in"]
     assert lag == ["sensor_lag", "never"]
     assert section(report, "Not asked for")[0] == ["backlash: no path"]
     assert "2 runs show 1 of 2 effects" in repr(planned)

@@ -46,11 +46,11 @@ def test_list_is_joined_by_commas_and_a_conjunction_before_the_last_item() -> No
 
 
 def test_film_clock_is_printed_only_for_a_law_with_a_film() -> None:
-    coulomb = Model(Rig(), "coulomb", ["sensor_offset", "wear_in"])
+    coulomb = Model(Rig(), "coulomb", ["sensor_offset", "running_in"])
     assert words.law_words(Model(Rig.thesis())) == "journal (clock journal)"
     assert words.law_words(Model(Rig.thesis()), ", ") == "journal, clock journal"
     assert words.law_words(coulomb) == words.law_words(coulomb, ", ") == "coulomb"
-    assert words.law_and_effects(coulomb) == "coulomb + wear_in + sensor_offset"
+    assert words.law_and_effects(coulomb) == "coulomb + running_in + sensor_offset"
 
 
 @pytest.mark.parametrize(
@@ -93,8 +93,8 @@ def test_headline_has_the_verdict_with_posterior_weights_but_without_errors() ->
 
 
 def test_unexplained_verdict_names_the_identified_effects_and_the_residual_structure() -> None:
-    remains = diagnosis_by_hand("unexplained").unexplained
-    both = replace(diagnosis_by_hand("missing"), verdict="unexplained", unexplained=remains)
+    remains = diagnosis_by_hand("unexplained").residual_structure
+    both = replace(diagnosis_by_hand("missing"), verdict="unexplained", residual_structure=remains)
     sentence = words.verdict_sentence(both)
     assert sentence.startswith("Missing: sensor_offset.")
     assert numbers_in(sentence) == [*FALL, 3.0]
@@ -104,7 +104,7 @@ def test_unexplained_verdict_names_the_identified_effects_and_the_residual_struc
 
 
 def test_ambiguous_verdict_lists_alternatives_by_effect_with_known_weights() -> None:
-    effects = ("sensor_offset", "wear_in", "backlash")
+    effects = ("sensor_offset", "running_in", "backlash")
     ties = (("sensor_drift",), (), ("presliding", "time_delay"))
     diagnosis = replace(
         diagnosis_by_hand("ambiguous"),
@@ -130,7 +130,7 @@ def test_ambiguous_verdict_lists_alternatives_by_effect_with_known_weights() -> 
 )
 def test_verdict_names_largest_residual_structure(shares: tuple[float, ...], expected: str) -> None:
     remains = tuple(Remainder("time", f"place {i}", share) for i, share in enumerate(shares))
-    diagnosis = replace(diagnosis_by_hand("unexplained"), unexplained=remains)
+    diagnosis = replace(diagnosis_by_hand("unexplained"), residual_structure=remains)
     sentence = words.verdict_sentence(diagnosis, ", see there")
     assert f"explains{expected}." in sentence
 
@@ -158,11 +158,11 @@ def with_last_trials(verdict: str, *trials: Trial) -> Diagnosis:
 def test_rejected_gain_is_named_if_nothing_is_added(verdict: str, trials: Any, named: bool) -> None:
     """A gain is named if the last step added nothing and the verdict is missing or adequate."""
     sentence = words.verdict_sentence(with_last_trials(verdict, *trials))
-    assert sentence.endswith("not named: inertia_leak.") == named
+    assert sentence.endswith("not named: inertia.") == named
 
 
 def test_confounders_of_the_model_are_stated_not_to_be_part_of_the_verdict() -> None:
-    for names in (("wear_in",), ("wear_in", "backlash")):
+    for names in (("running_in",), ("running_in", "backlash")):
         diagnosis = replace(diagnosis_by_hand("unexplained"), confounders=names)
         without = words.verdict_sentence(diagnosis_by_hand("unexplained"))
         addition = words.verdict_sentence(diagnosis).removeprefix(without)

@@ -21,7 +21,7 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("bench")
     rig = files("jbf") / "data" / "demo" / "plain" / "rig.toml"
     (folder / "rig.toml").write_text(rig.read_text())
-    for run in make_runs({"coulomb_drag": {"F_d_n": 2.0}}):
+    for run in make_runs({"coulomb_drag": {"F_d": 2.0}}):
         (folder / f"{run.name}.csv").write_text(run.to_csv())
     return folder
 

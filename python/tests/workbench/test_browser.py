@@ -237,8 +237,8 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
         click(page, "fit-law")
         await_models(page, 1)
         first = page.locator("[data-key^=add-]").first
-        assert first.get_attribute("data-key") == "add-inertia_leak"
-        click(page, "add-inertia_leak")
+        assert first.get_attribute("data-key") == "add-inertia"
+        click(page, "add-inertia")
         await_models(page, 2)
         assert models(page)[1]["left_out"] < 0.33
         open_tab(page, 4)
@@ -246,5 +246,5 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
         page.wait_for_selector("text=/^Written: model.toml/")
         assert messages.complaints == messages.outside == []
     model = jbf.Model.load(folder / "model.toml")
-    assert model.parameters["F_c_n"].value == pytest.approx(12.0, abs=0.2)
-    assert model.parameters["inertia_leak.m_e_kg"].value == pytest.approx(3.0, abs=0.3)
+    assert model.parameters["F_c"].value == pytest.approx(12.0, abs=0.2)
+    assert model.parameters["inertia.m_e"].value == pytest.approx(3.0, abs=0.3)

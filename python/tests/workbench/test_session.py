@@ -46,16 +46,16 @@ def test_adding_missing_effect_reduces_held_out_rms_to_the_noise(fitted: Session
     first, second = fitted.models.ledger()
     assert first["effects"] == []
     assert second["effects"] == ["coulomb_drag"]
-    assert first["holdout_rms_n"] > 1.25 * NOISE_N
-    assert second["rms_n"] == pytest.approx(NOISE_N, rel=0.05)
-    assert second["holdout_rms_n"] == pytest.approx(NOISE_N, rel=0.05)
+    assert first["held_out_rms"] > 1.25 * NOISE_N
+    assert second["rms"] == pytest.approx(NOISE_N, rel=0.05)
+    assert second["held_out_rms"] == pytest.approx(NOISE_N, rel=0.05)
 
 
 def test_missing_effect_is_ranked_first_among_the_candidates(fitted: Session) -> None:
     trials = fitted.models.node(1)["trials"]
     assert trials[0]["effect"] == "coulomb_drag"
     assert trials[0]["outcome"] == "added"
-    assert trials[0]["rms_n"] == pytest.approx(fitted.models.node(2)["rms_n"], rel=0.02)
+    assert trials[0]["rms"] == pytest.approx(fitted.models.node(2)["rms"], rel=0.02)
 
 
 def test_detectable_strength_falls_when_missing_effect_is_added(fitted: Session) -> None:
@@ -63,7 +63,7 @@ def test_detectable_strength_falls_when_missing_effect_is_added(fitted: Session)
     first, last = ({p["effect"]: p["found"] for p in power} for power in powers)
     assert set(first) == {t["effect"] for t in fitted.models.node(1)["trials"]}
     before, after = (found["sensor_offset"].split() for found in (first, last))
-    assert before[::2] == after[::2] == ["b_n", "N"]
+    assert before[::2] == after[::2] == ["b", "N"]
     # The missing effect increases the residual; without it, weaker effects are detectable.
     assert float(after[1]) < 0.7 * float(before[1])
 
@@ -74,7 +74,7 @@ def test_fitted_model_is_kept_if_trying_candidates_is_cancelled(loaded: Session)
     wait_until(lambda: loaded.models.nodes)
     assert loaded.jobs.job is not None
     assert loaded.models.node()["trials"] is None
-    assert loaded.models.node()["rms_n"] > NOISE_N
+    assert loaded.models.node()["rms"] > NOISE_N
     loaded.jobs.cancel()
     wait_until_idle(loaded)
     assert loaded.models.node()["trials"] == []
@@ -105,9 +105,9 @@ def test_model_is_not_saved_through_a_link_out_of_the_folder(fitted: Session) ->
 def test_session_and_jbf_fit_give_same_parameter_and_standard_error(fitted: Session) -> None:
     bench = fitted.on_bench()
     fit = jbf.fit(bench.rig, list(bench.runs), ["coulomb_drag"])
-    shown = fitted.models.node(2)["parameters"]["coulomb_drag.F_d_n"]
-    assert shown["value"] == pytest.approx(fit.parameters["coulomb_drag.F_d_n"].value, rel=1e-3)
-    assert shown["stderr"] == pytest.approx(fit.parameters["coulomb_drag.F_d_n"].stderr, rel=0.05)
+    shown = fitted.models.node(2)["parameters"]["coulomb_drag.F_d"]
+    assert shown["value"] == pytest.approx(fit.parameters["coulomb_drag.F_d"].value, rel=1e-3)
+    assert shown["stderr"] == pytest.approx(fit.parameters["coulomb_drag.F_d"].stderr, rel=0.05)
 
 
 def test_marked_samples_of_a_failure_move_in_direction_of_worst_bin(fitted: Session) -> None:
@@ -120,7 +120,7 @@ def test_marked_samples_of_a_failure_move_in_direction_of_worst_bin(fitted: Sess
         for first, last in stretches:
             inside |= (run.time_s >= first) & (run.time_s <= last)
         # Noise changes the sign of the speed in a few samples.
-        assert np.mean(np.sign(run.velocity_m_s[inside]) == np.sign(centre)) > 0.9
+        assert np.mean(np.sign(run.velocity[inside]) == np.sign(centre)) > 0.9
 
 
 def test_showing_the_parent_of_a_model_keeps_the_model(fitted: Session) -> None:
@@ -152,8 +152,8 @@ def test_command_line_shown_for_a_model_reproduces_the_model(fitted: Session) ->
     assert words[0] == "jbf"
     assert main(words[1:]) == 0
     model = jbf.Model.load("model.toml")
-    shown = fitted.models.node(2)["parameters"]["coulomb_drag.F_d_n"]["value"]
-    assert model.parameters["coulomb_drag.F_d_n"].value == pytest.approx(shown, rel=1e-3)
+    shown = fitted.models.node(2)["parameters"]["coulomb_drag.F_d"]["value"]
+    assert model.parameters["coulomb_drag.F_d"].value == pytest.approx(shown, rel=1e-3)
 
 
 @pytest.mark.usefixtures("inside_folder")

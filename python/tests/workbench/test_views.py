@@ -97,9 +97,9 @@ def test_samples_outside_the_frame_or_nan_are_not_counted_in_the_density() -> No
 def test_box_in_the_plane_selects_samples_of_every_shown_run(loaded: Session) -> None:
     runs = loaded.on_bench().runs
     result = views.brushed(loaded, None, {"box": BOX}, [r.name for r in runs], SIZE)
-    inside = [within(r.velocity_m_s, r.friction_n, BOX) for r in runs if r.friction_n is not None]
+    inside = [within(r.velocity, r.friction, BOX) for r in runs if r.friction is not None]
     assert result["samples"] == sum(int(mask.sum()) for mask in inside)
-    assert result["rms_n"] is None
+    assert result["rms"] is None
     for run, mask in zip(runs, inside, strict=True):
         for first, last in result["by_run"].get(run.name, {}).get("stretches_s", []):
             assert mask[np.searchsorted(run.time_s, first)]
@@ -108,12 +108,12 @@ def test_box_in_the_plane_selects_samples_of_every_shown_run(loaded: Session) ->
 
 def test_density_of_a_selection_counts_only_the_selected_samples(loaded: Session) -> None:
     run = loaded.on_bench().run("stopgo")
-    assert run.friction_n is not None
+    assert run.friction is not None
     complete = views.plane(loaded, None, ["stopgo"], SIZE)
     result = views.brushed(loaded, None, {"box": BOX}, ["stopgo"], SIZE)
-    mask = within(run.velocity_m_s, run.friction_n, BOX)
+    mask = within(run.velocity, run.friction, BOX)
     frame = Frame(**complete["frame"])
-    places = frame.places(run.velocity_m_s[mask], run.friction_n[mask])
+    places = frame.places(run.velocity[mask], run.friction[mask])
     assert result["selected"] == frame.picture([places])
     assert result["selected"] != complete["measured"]
 
@@ -130,10 +130,10 @@ def test_box_with_only_a_lower_speed_limit_selects_all_faster_samples(loaded: Se
     result = views.brushed(loaded, None, selection, ["stopgo"], SIZE)
     run = loaded.on_bench().run("stopgo")
     assert list(result["by_run"]) == ["stopgo"]
-    assert result["samples"] == int((run.velocity_m_s >= 0.01).sum())
+    assert result["samples"] == int((run.velocity >= 0.01).sum())
     low, high = result["speeds_m_s"]
     assert low >= 0.01
-    assert high == run.velocity_m_s.max()
+    assert high == run.velocity.max()
     # The cells lie in the row of the run, at positive speeds.
     row = [r.name for r in loaded.on_bench().runs].index("stopgo")
     assert {cell[0] for cell in result["cells"]} == {row}
@@ -149,7 +149,7 @@ def test_series_and_plane_contain_only_records_without_a_model(loaded: Session) 
     result = views.series(loaded, None, "stopgo", (None, None), 1000)
     assert "model_n" not in result
     run = loaded.on_bench().run("stopgo")
-    assert result["friction_n"] == pytest.approx(run.friction_n, abs=1e-4)
+    assert result["friction_n"] == pytest.approx(run.friction, abs=1e-4)
     picture = views.plane(loaded, None, ["stopgo"], SIZE)
     assert "model" not in picture
 

@@ -86,7 +86,7 @@ impl<T: Real> Effect<T> for Backlash<T> {
                  stands; on a linear axis the gap is in m",
         )
         .parameters(&[Parameter::new(
-            "gap_rad",
+            "gap",
             "rad",
             "angle between the flanks",
             [0.0, 1.0],

@@ -8,11 +8,11 @@ use super::registry::{signal_chain, Shelf};
 use super::{
     backlash, cogging, cogging_2, coulomb_drag, direction_asymmetry, drive_compliance,
     dry_asymmetry, dry_load_dependence, dry_temperature_dependence, dwell_stiction, film_memory,
-    gravity, inertia_leak, load_dependence, pitch_ripple, pitch_ripple_2, position_ripple,
+    gravity, inertia, load_dependence, pitch_ripple, pitch_ripple_2, position_ripple,
     presliding, quadratic_drag, sensor_drift, sensor_hysteresis, sensor_lag, sensor_nonlinearity,
     sensor_offset, shear_thinning, stribeck_asymmetry, stribeck_excess, stroke_dependence,
     thermal_thinning, time_delay, torque_proportional, viscous_asymmetry, viscous_load_dependence,
-    viscous_temperature_dependence, viscous_thinning, vogel_viscosity, warm_up, wear_in,
+    viscous_temperature_dependence, viscous_thinning, vogel_viscosity, warm_up, running_in,
     zero_load_dependence,
 };
 use super::{Effect, EffectSet, Info, Resistance, Rig, Signal};
@@ -34,7 +34,7 @@ signal_chain! {
     load: UnderLoad [load_dependence::LoadDependence],
     film: InFilm [film_memory::FilmMemory],
     contact: InContact [
-        wear_in::WearIn,
+        running_in::RunningIn,
         dwell_stiction::DwellStiction,
         stribeck_excess::StribeckExcess,
         dry_load_dependence::DryLoadDependence,
@@ -57,7 +57,7 @@ signal_chain! {
     other: Beside [
         coulomb_drag::CoulombDrag,
         quadratic_drag::QuadraticDrag,
-        inertia_leak::InertiaLeak,
+        inertia::Inertia,
         zero_load_dependence::ZeroLoadDependence,
         gravity::Gravity,
         cogging::Cogging,

@@ -27,7 +27,7 @@ pub struct Cogging<T> {
 
 /// Descriptions of the parameters.
 pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::new("A_n", "N", "amplitude", [0.0, 1e7], &[1.0])
+    Parameter::new("A", "N", "amplitude", [0.0, 1e7], &[1.0])
         .null(0.0)
         .start(Start::Drag),
     PITCH,

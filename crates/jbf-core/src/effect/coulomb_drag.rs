@@ -24,7 +24,7 @@ impl<T: Real> Effect<T> for CoulombDrag<T> {
             "seals stiffen with speed and pressure; a drag that grows with speed is not this one",
         )
         .parameters(&[Parameter::new(
-            "F_d_n",
+            "F_d",
             "N",
             "drag force of one bearing's share",
             [0.0, 1e4],

@@ -68,13 +68,13 @@ impl<T: Real> State<T> {
 impl<T: Real> Effect<T> for DriveCompliance<T> {
     const INFO: Info = Info::new("drive_compliance", Stage::Drive).summary("belt, coupling or shaft twist between encoder and journal").equation("J th_j'' = k (th_m - th_j) + c (th_m' - th_j') - n R F(th_j')").source("Cohn 1998, section 5.1; Harnoy et al. 1994").limits("one spring, one inertia; above the first torsional mode the drive is a chain of them; \
              on a linear axis k is in N/m, c in N s/m, J in kg").parameters(&[
-            Parameter::new("k_n_m_rad", "N m/rad", "torsional stiffness between encoder and journal", [0.1, 1e7], &[60.0, 600.0]).log().null(f64::INFINITY).start(Start::DriveStiffness),
-            Parameter::new("c_n_m_s_rad", "N m s/rad", "damping beside the spring", [1e-5, 1e3], &[0.1]).log().start(Start::DriveDamping),
-            Parameter::new("J_kg_m2", "kg m^2", "inertia of the journal side", [1e-6, 1e2], &[2e-3]).log().start(Start::DriveInertia),
+            Parameter::new("k", "N m/rad", "torsional stiffness between encoder and journal", [0.1, 1e7], &[60.0, 600.0]).log().null(f64::INFINITY).start(Start::DriveStiffness),
+            Parameter::new("c", "N m s/rad", "damping beside the spring", [1e-5, 1e3], &[0.1]).log().start(Start::DriveDamping),
+            Parameter::new("J", "kg m^2", "inertia of the journal side", [1e-6, 1e2], &[2e-3]).log().start(Start::DriveInertia),
         ]).needs(&[Need::Path, Need::NoBristle]).longest_step_s(0.005);
     // The drive rings, often faster than half the sampling rate. Frequencies that the samples
     // cannot distinguish each give a peak of the likelihood.
-    const PEAKS: Option<&'static str> = Some("J_kg_m2");
+    const PEAKS: Option<&'static str> = Some("J");
     type State = State<T>;
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

@@ -53,7 +53,7 @@ impl<T: Real> Effect<T> for DwellStiction<T> {
             .log(),
             Parameter::new("m", "-", "exponent of the growth", [0.05, 5.0], &[0.7]).log(),
             Parameter::new(
-                "s_0_m",
+                "s_0",
                 "m",
                 "distance in which sliding takes it off",
                 [1e-6, 1e2],

@@ -31,7 +31,7 @@ impl<T: Real> Effect<T> for Gravity<T> {
         )
         .parameters(&[
             Parameter::new(
-                "G_n",
+                "G",
                 "N",
                 "weight where the link lies level, as a force at the radius",
                 [0.0, 1e7],

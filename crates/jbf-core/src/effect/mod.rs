@@ -21,7 +21,7 @@ pub mod dry_temperature_dependence;
 pub mod dwell_stiction;
 pub mod film_memory;
 pub mod gravity;
-pub mod inertia_leak;
+pub mod inertia;
 pub mod load_dependence;
 pub mod pitch_ripple;
 pub mod pitch_ripple_2;
@@ -46,7 +46,7 @@ pub mod viscous_temperature_dependence;
 pub mod viscous_thinning;
 pub mod vogel_viscosity;
 pub mod warm_up;
-pub mod wear_in;
+pub mod running_in;
 pub mod zero_load_dependence;
 
 mod catalogue;

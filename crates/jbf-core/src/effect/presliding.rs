@@ -37,7 +37,7 @@ impl<T: Real> Effect<T> for Presliding<T> {
                  elasto-plastic forms do better below the break-away distance",
         )
         .parameters(&[Parameter::new(
-            "sigma_1_m",
+            "sigma",
             "1/m",
             "contact stiffness over load",
             [1.0, 1e12],

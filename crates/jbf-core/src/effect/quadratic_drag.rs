@@ -22,7 +22,7 @@ impl<T: Real> Effect<T> for QuadraticDrag<T> {
         .source("Rayleigh 1876; Cohn 1998, section 4.1")
         .limits("the same both ways; slow flow drags in proportion to speed, which gamma takes up")
         .parameters(&[Parameter::new(
-            "c_n_s2_m2",
+            "c",
             "N s^2/m^2",
             "drag at 1 m/s",
             [0.0, 1e7],

@@ -20,7 +20,7 @@ impl<T: Real> Effect<T> for SensorDrift<T> {
         .source("Gautschi 2002 (charge leak of piezo cells)")
         .limits("a straight line from zero in each run; a leak levels off after its time constant")
         .parameters(&[Parameter::new(
-            "d_n_s",
+            "d",
             "N/s",
             "change of the reading per second",
             [-1e4, 1e4],

@@ -80,7 +80,7 @@ impl<T: Real> Effect<T> for SensorHysteresis<T> {
         )
         .unknown_start()
         .parameters(&[Parameter::new(
-            "w_n",
+            "w",
             "N",
             "half the way between the branches",
             [0.0, 1e5],

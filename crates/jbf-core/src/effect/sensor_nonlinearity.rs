@@ -49,7 +49,7 @@ impl<T: Real> Effect<T> for SensorNonlinearity<T> {
                  is off is the law's",
         )
         .parameters(&[Parameter::new(
-            "c_1_n2",
+            "c",
             "1/N^2",
             "error of the reading over the cube of the force",
             [-1e6, 1e6],

@@ -26,7 +26,7 @@ impl<T: Real> Effect<T> for SensorOffset<T> {
              drive the offset is a constant load as well, which `torque_proportional` counts",
         )
         .parameters(&[
-            Parameter::new("b_n", "N", "reading without force", [-1e5, 1e5], &[0.3])
+            Parameter::new("b", "N", "reading without force", [-1e5, 1e5], &[0.3])
                 .null(0.0)
                 .signed(),
         ]);

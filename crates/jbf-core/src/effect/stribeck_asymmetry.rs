@@ -30,7 +30,7 @@ impl<T: Real> Effect<T> for StribeckAsymmetry<T> {
         .limits("no memory, no dwell; the dry level of either way never below zero")
         .parameters(&[
             Parameter::new(
-                "c_n",
+                "c",
                 "N",
                 "half of what the peak is higher by in positive motion",
                 [-1e7, 1e7],
@@ -40,7 +40,7 @@ impl<T: Real> Effect<T> for StribeckAsymmetry<T> {
             .signed()
             .start(Start::BreakawayExcess),
             Parameter::new(
-                "v_s_m_s",
+                "v_s",
                 "m/s",
                 "speed at which it has fallen to 1/e",
                 [1e-7, 1e2],

@@ -35,7 +35,7 @@ impl<T: Real> Effect<T> for StribeckExcess<T> {
             .null(0.0)
             .start(Start::BreakawayExcess),
             Parameter::new(
-                "v_s_m_s",
+                "v_s",
                 "m/s",
                 "speed at which it has fallen to 1/e",
                 [1e-7, 1e2],

@@ -57,11 +57,11 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
             wave("a_4", "two waves: the middle and the ends above what is between"),
             wave("a_5", "two waves and a half").signed(),
             wave("a_6", "three waves"),
-            Parameter::new("x_0_m", "m", "middle of the stroke", [-1e6, 1e6], &[0.1])
+            Parameter::new("x_0", "m", "middle of the stroke", [-1e6, 1e6], &[0.1])
                 .signed()
                 .start(Start::StrokeMiddle)
                 .stated(),
-            Parameter::new("h_m", "m", "half of the stroke", [1e-9, 1e6], &[0.4])
+            Parameter::new("h", "m", "half of the stroke", [1e-9, 1e6], &[0.4])
                 .log()
                 .start(Start::StrokeHalf)
                 .stated(),

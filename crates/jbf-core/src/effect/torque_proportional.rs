@@ -1,7 +1,7 @@
 //! Friction proportional to the transmitted force: `+ mu |F_t| sgn(v)`.
 //!
 //! `F_t` is the force of other effects of the chain that the transmission carries: a weight
-//! (`gravity`), a mass (`inertia_leak`), a constant load (`sensor_offset`). A recorded load is the
+//! (`gravity`), a mass (`inertia`), a constant load (`sensor_offset`). A recorded load is the
 //! subject of `dry_load_dependence`; that effect already contains the friction of a push `k L`.
 //! This effect is for a load that is not recorded and that the model estimates as well.
 //!

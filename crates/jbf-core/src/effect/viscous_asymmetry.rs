@@ -27,7 +27,7 @@ impl<T: Real> Effect<T> for ViscousAsymmetry<T> {
         .source("Janot, Gautier & Brunot 2019; Armstrong-Helouvry et al. 1994")
         .limits("straight lines over the speed, one each way; beside b = 0 they are one")
         .parameters(&[Parameter::new(
-            "b_n_s_m",
+            "b",
             "N s/m",
             "half of what the slope is larger by in positive motion",
             [-1e7, 1e7],

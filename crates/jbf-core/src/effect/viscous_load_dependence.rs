@@ -23,7 +23,7 @@ impl<T: Real> Effect<T> for ViscousLoadDependence<T> {
         .source("Hamon, Gautier & Garrec 2010; Wolf & Iskandar 2018")
         .limits("a straight line over load and over speed")
         .parameters(&[Parameter::new(
-            "c_s_m",
+            "c",
             "s/m",
             "viscous slope over load",
             [-1e4, 1e4],

@@ -28,7 +28,7 @@ impl<T: Real> Effect<T> for ViscousThinning<T> {
         .source("Cross 1965; Grotjahn, Daemi & Heimann 2001; Bona & Indri 2005")
         .limits("one shape: it levels off at F_v/w; a lubricant that warms up flattens, too")
         .parameters(&[Parameter::new(
-            "w_s_m",
+            "w",
             "s/m",
             "one over the speed at which the viscous friction is half of what it would be",
             [0.0, 1e6],

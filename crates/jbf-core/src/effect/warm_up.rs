@@ -3,7 +3,7 @@
 //! The grease and oil of a gearbox are warmed by the motor, the bearings or the sun. All its
 //! friction falls with time, whether it slides or not. Related effects:
 //!
-//! - `wear_in` depends on the sliding distance and changes only the dry level.
+//! - `running_in` depends on the sliding distance and changes only the dry level.
 //! - `thermal_thinning` is that of a film, warmed only by its own friction.
 //! - `sensor_drift` is a force in one direction.
 //! - `dry_temperature_dependence` and `viscous_temperature_dependence` are more informative where a

@@ -87,7 +87,7 @@ impl<T: Real> Named<T> for Dahl<T> {
         .limits("no Stribeck fall, no static friction above F_c; inner loops drift")
         .parameters(&[
             F_C,
-            stiffness("sigma_0_n_m", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
+            stiffness("sigma_0", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
             number(
                 "exponent",
                 "shape of the bend: below 1 ductile, above 1 brittle",

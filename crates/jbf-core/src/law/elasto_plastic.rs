@@ -77,7 +77,7 @@ impl<T: Real> Named<T> for ElastoPlastic<T> {
         .limits("no Stribeck fall of its own; inner loops that reach beyond the breakaway drift")
         .parameters(&[
             F_C,
-            stiffness("sigma_0_n_m", "stiffness up to breakaway", &[1e5, 1e6, 1e4]),
+            stiffness("sigma_0", "stiffness up to breakaway", &[1e5, 1e6, 1e4]),
             Parameter::new(
                 "breakaway",
                 "-",

@@ -71,9 +71,9 @@ impl<T: Real> Named<T> for LuGre<T> {
             F_C,
             F_S,
             V_S,
-            stiffness("sigma_0_n_m", "stiffness of the bristles", &[1e5, 1e6, 1e4]),
-            damping("sigma_1_n_s_m", "damping of the bristles", &[100.0]).start(Start::Damping),
-            speed("v_d_m_s", "speed at which the damping has died", &[0.1])
+            stiffness("sigma_0", "stiffness of the bristles", &[1e5, 1e6, 1e4]),
+            damping("sigma_1", "damping of the bristles", &[100.0]).start(Start::Damping),
+            speed("v_d", "speed at which the damping has died", &[0.1])
                 .start(Start::UsualSpeed),
             F_V,
         ]);

@@ -129,7 +129,7 @@ impl<T: Real> Named<T> for MaxwellSlip<T> {
         .limits("no Stribeck fall of its own; in sliding it is at its level, without a lag")
         .parameters(&[
             F_C,
-            stiffness("sigma_0_n_m", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
+            stiffness("sigma_0", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
             number(
                 "exponent",
                 "shape of the bend: near 0 all slip at once, 1/3 a sphere, 1 an exponential",

@@ -69,16 +69,16 @@ pub(super) const fn number(
 
 /// Coulomb friction.
 pub(super) const F_C: Parameter =
-    force("F_c_n", "Coulomb (kinetic) friction", &[10.0]).start(Start::Kinetic);
+    force("F_c", "Coulomb (kinetic) friction", &[10.0]).start(Start::Kinetic);
 /// Static friction.
 pub(super) const F_S: Parameter =
-    force("F_s_n", "static (breakaway) friction", &[12.0]).start(Start::Breakaway);
+    force("F_s", "static (breakaway) friction", &[12.0]).start(Start::Breakaway);
 /// Viscous friction.
 pub(super) const F_V: Parameter =
-    damping("F_v_n_s_m", "viscous friction", &[10.0]).start(Start::Viscous);
+    damping("F_v", "viscous friction", &[10.0]).start(Start::Viscous);
 /// Stribeck speed.
 pub(super) const V_S: Parameter = speed(
-    "v_s_m_s",
+    "v_s",
     "Stribeck speed: friction falls over it",
     &[0.01, 0.1],
 )

@@ -109,14 +109,14 @@ impl<T: Real> Named<T> for SevenParameter<T> {
         .limits("switches between stuck and sliding; rising static friction needs tau_L > 0")
         .parameters(&[
             stiffness(
-                "k_t_n_m",
+                "k_t",
                 "stiffness of the stuck contact",
                 &[1e5, 1e6, 1e4],
             ),
             F_C,
             F_V,
             force(
-                "F_s_inf_n",
+                "F_s_inf",
                 "Stribeck friction after a long rest; breakaway is at F_c + F_s",
                 &[3.0],
             )

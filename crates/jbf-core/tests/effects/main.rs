@@ -17,7 +17,7 @@ mod dwell_stiction;
 mod film_memory;
 mod finite;
 mod gravity;
-mod inertia_leak;
+mod inertia;
 mod load_dependence;
 mod null;
 mod pitch_ripple;
@@ -45,7 +45,7 @@ mod viscous_temperature_dependence;
 mod viscous_thinning;
 mod vogel_viscosity;
 mod warm_up;
-mod wear_in;
+mod running_in;
 mod zero_load_dependence;
 
 /// Every effect has a closed form: a file with its name here, named above, that contains a test.

@@ -21,7 +21,7 @@ fn loses_one_share_of_what_it_carries_both_ways() {
         newtons(F_C_N, 0.0),
         &[
             ("gravity", &WEIGHT),
-            ("inertia_leak", &[MASS_KG]),
+            ("inertia", &[MASS_KG]),
             ("torque_proportional", &[SHARE]),
         ],
     );
@@ -80,7 +80,7 @@ fn includes_a_constant_weight() {
     let chain = chain_round(
         newtons(F_C_N, 0.0),
         &[
-            ("inertia_leak", &[MASS_KG]),
+            ("inertia", &[MASS_KG]),
             ("sensor_offset", &[weight]),
             ("torque_proportional", &[SHARE]),
         ],

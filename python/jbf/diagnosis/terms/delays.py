@@ -50,7 +50,7 @@ def delays(model: Model) -> Proposal | None:
     proposals, estimates = [], _estimates(model)
     if not estimates:
         return None
-    best = min((found.solution for found in estimates), key=lambda s: s.rms_n)
+    best = min((found.solution for found in estimates), key=lambda s: s.rms)
     counted = zip(best.residuals, best.samples.counted, strict=True)
     share = min(independent_share([r * c for r, c in counted], best.samples.steps_s), 1.0)
     for found in estimates:
@@ -135,7 +135,7 @@ def _gain(found: Shifted, other: Solution, share: float) -> float:
     """
     here = found.solution
     prepared = found.campaign.prepared
-    forces = [p.friction_n - r for p, r in zip(prepared, here.residuals, strict=True)]
+    forces = [p.friction - r for p, r in zip(prepared, here.residuals, strict=True)]
     # Samples that the other model excludes next to jumps are excluded here as well.
     samples = samples_near_jumps(here.samples, prepared, forces, other.effects)
     after = samples.without_deviations(here.residuals, here.noise)

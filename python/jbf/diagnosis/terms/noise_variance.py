@@ -100,7 +100,7 @@ def heavy_tails(model: Model) -> Proposal | None:
     )
     if any(f.kind == "heavy_tails" for f in campaign.more_findings):
         return None
-    if campaign.step_n >= policy.coarse_steps * solution.rms_n:
+    if campaign.step_n >= policy.coarse_steps * solution.rms:
         return None
     found = robust_weights(solution, policy)
     if found is None:

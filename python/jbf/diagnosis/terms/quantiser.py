@@ -81,9 +81,7 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
     if not steps:
         return None
     # Mean readings by the model: the correction so far is part of the residual.
-    expected = [
-        p.friction_n - e for p, e in zip(campaign.prepared, solution.residuals, strict=True)
-    ]
+    expected = [p.friction - e for p, e in zip(campaign.prepared, solution.residuals, strict=True)]
     raw = [p.readings_n for p in campaign.prepared]
     flat = solution.samples.flat
     left = flat([r - f for r, f in zip(raw, expected, strict=True)])
@@ -102,12 +100,12 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
 
     noise = float(optimize.minimize_scalar(square, bounds=(0.0, NO_BIAS), method="bounded").x)
     corrected = [r - b for r, b in zip(raw, bias(noise), strict=True)]
-    moved = [p.friction_n - c for p, c in zip(campaign.prepared, corrected, strict=True)]
+    moved = [p.friction - c for p, c in zip(campaign.prepared, corrected, strict=True)]
     if solution.samples.rms(moved) < policy.bias_moves * campaign.step_n:
         return None
     return replace(
         campaign,
         prepared=tuple(
-            replace(p, friction_n=c) for p, c in zip(campaign.prepared, corrected, strict=True)
+            replace(p, friction=c) for p, c in zip(campaign.prepared, corrected, strict=True)
         ),
     )

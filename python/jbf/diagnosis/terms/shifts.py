@@ -154,7 +154,7 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
         now = Shifted(problem, solution, late_s, start.drift)
     if white:
         now = _coloured(now)
-    return now if now.solution.rms_n < start.solution.rms_n else start
+    return now if now.solution.rms < start.solution.rms else start
 
 
 def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
@@ -186,7 +186,7 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
         now = Shifted(problem, solution, late_s, drift)
     if white:
         now = _coloured(now)
-    return now if now.solution.rms_n < start.solution.rms_n else start
+    return now if now.solution.rms < start.solution.rms else start
 
 
 def with_mean_delay(shifted: Shifted) -> Shifted:
@@ -260,6 +260,6 @@ def fit_common_delay(problem: Problem, found: Shifted) -> Shifted:
     campaign = moved(problem, late_s, 0.0)
     near = dict(zip(late.names, values.tolist(), strict=True))
     again, solution = refitted(problem, campaign, effects, near, found.solution)
-    if solution.rms_n >= found.solution.rms_n:
+    if solution.rms >= found.solution.rms:
         return found
     return Shifted(again, solution, late_s, 0.0)

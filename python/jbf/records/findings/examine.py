@@ -42,33 +42,33 @@ class Examined:
     native: Native | None = None
 
 
-def examine(run: Run, velocity_m_s: Array | None = None, period_s: float | None = None) -> Examined:
+def examine(run: Run, velocity: Array | None = None, period_s: float | None = None) -> Examined:
     """Detect the recording artefacts of a friction record.
 
     Parameters
     ----------
-    velocity_m_s
+    velocity
         Estimated speed, m/s, if it is more accurate than the recorded one.
     period_s
         Sampling period of the force in other runs of the same logger, s, if it is known.
     """
-    velocity = run.velocity_m_s if velocity_m_s is None else velocity_m_s
-    if run.friction_n is None:
+    velocity = run.velocity if velocity is None else velocity
+    if run.friction is None:
         return Examined((), np.ones(len(run), dtype=bool))
-    native = find_native(run.time_s, run.friction_n)
+    native = find_native(run.time_s, run.friction)
     if native is None and period_s is not None:
-        native = find_native_of(run.time_s, run.friction_n, period_s)
+        native = find_native_of(run.time_s, run.friction, period_s)
     if native is not None:
         return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
     held, still = find_held(run, np.zeros(len(run), dtype=bool))
-    native = find_native(run.time_s[~still], run.friction_n[~still]) if held else None
+    native = find_native(run.time_s[~still], run.friction[~still]) if held else None
     if native is not None:
         # An interpolated record may also contain held stretches.
         return Examined((_interpolated(run, native), *held), np.ones(len(run), dtype=bool), native)
-    native = find_repeated(run.time_s, run.friction_n)
+    native = find_repeated(run.time_s, run.friction)
     if native is not None:
         return Examined((_repeated(run, native),), np.ones(len(run), dtype=bool), native)
-    native = find_filled_in(run.time_s, run.friction_n)
+    native = find_filled_in(run.time_s, run.friction)
     if native is not None:
         return Examined((_filled_in(run, native),), np.ones(len(run), dtype=bool), native)
     of_readings = examine_readings(run, velocity)
@@ -78,9 +78,9 @@ def examine(run: Run, velocity_m_s: Array | None = None, period_s: float | None 
     return Examined(found, usable)
 
 
-def examine_readings(run: Run, velocity_m_s: Array) -> Examined:
+def examine_readings(run: Run, velocity: Array) -> Examined:
     """Detect single invalid readings of the force: outliers and saturation."""
-    glitches, off = find_glitches(run, velocity_m_s)
+    glitches, off = find_glitches(run, velocity)
     saturation, ends = find_saturation(run)
     return Examined((*glitches, *saturation), ~(off | ends))
 

@@ -57,7 +57,7 @@ def glitches(values: Array) -> Mask:
     return found
 
 
-def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
+def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
     """Find the outliers of the force; a peak at a reversal or a start from rest is not one.
 
     Returns
@@ -66,18 +66,18 @@ def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
     mask : ndarray
         True at the outliers, shape (n,).
     """
-    assert run.friction_n is not None
-    mask = glitches(run.friction_n) & ~_breakaway(velocity_m_s)
-    loose = _loose_ends(run, velocity_m_s, mask)
-    off = run.friction_n - _next_to(run, mask | loose)
+    assert run.friction is not None
+    mask = glitches(run.friction) & ~_breakaway(velocity)
+    loose = _loose_ends(run, velocity, mask)
+    off = run.friction - _next_to(run, mask | loose)
     unit = run.quantities.force
     ends = ends_finding("friction_n", "force", run.name, loose, off, unit, "set aside")
     more = [] if ends is None else [ends]
     if not mask.any():
         return more, loose
     index = np.flatnonzero(mask)
-    middle = 0.5 * (run.friction_n[index - 1] + run.friction_n[index + 1])
-    size = float(np.max(np.abs(run.friction_n[index] - middle)))
+    middle = 0.5 * (run.friction[index - 1] + run.friction[index + 1])
+    size = float(np.max(np.abs(run.friction[index] - middle)))
     first = ", ".join(f"{t:.2f} s" for t in run.time_s[index[:3]])
     singles = count_of(
         len(index), "single sample of the force is", "single samples of the force are"
@@ -87,27 +87,27 @@ def find_glitches(run: Run, velocity_m_s: Array) -> tuple[list[Finding], Mask]:
     return [single, *more], mask | loose
 
 
-def _loose_ends(run: Run, velocity_m_s: Array, mask: Mask) -> Mask:
+def _loose_ends(run: Run, velocity: Array, mask: Mask) -> Mask:
     """Detect outliers at the ends, in addition to the given ones; not at reversals or starts."""
-    assert run.friction_n is not None
+    assert run.friction is not None
     loose, good = np.zeros(len(mask), dtype=bool), ~mask
-    loose[good] = loose_ends(run.time_s[good], run.friction_n[good], 1)
-    return loose & ~_breakaway(velocity_m_s)
+    loose[good] = loose_ends(run.time_s[good], run.friction[good], 1)
+    return loose & ~_breakaway(velocity)
 
 
 def _next_to(run: Run, mask: Mask) -> Array:
     """Interpolate the force across the masked outliers."""
-    assert run.friction_n is not None
-    said: Array = np.interp(run.time_s, run.time_s[~mask], run.friction_n[~mask])
+    assert run.friction is not None
+    said: Array = np.interp(run.time_s, run.time_s[~mask], run.friction[~mask])
     return said
 
 
-def _breakaway(velocity_m_s: Array) -> Mask:
+def _breakaway(velocity: Array) -> Mask:
     """Mask of the samples next to a reversal or an end of a rest."""
-    top = float(np.max(np.abs(velocity_m_s), initial=0.0))
-    way = np.where(np.abs(velocity_m_s) > SLOW * top, np.sign(velocity_m_s), 0.0)
+    top = float(np.max(np.abs(velocity), initial=0.0))
+    way = np.where(np.abs(velocity) > SLOW * top, np.sign(velocity), 0.0)
     # In a slow reversal the sign changes far from both ends of the slow stretch.
-    turns = np.flatnonzero((np.diff(way) != 0.0) | (velocity_m_s[1:] * velocity_m_s[:-1] < 0.0))
+    turns = np.flatnonzero((np.diff(way) != 0.0) | (velocity[1:] * velocity[:-1] < 0.0))
     beside = np.zeros(len(way), dtype=bool)
     for off in range(1 - BESIDE, BESIDE + 1):
         beside[np.clip(turns + off, 0, len(way) - 1)] = True

@@ -64,8 +64,8 @@ def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
     mask : ndarray
         True at the held readings, shape (n,).
     """
-    assert run.friction_n is not None
-    force = run.friction_n
+    assert run.friction is not None
+    force = run.friction
     mask = held(force) & ~explained
     if mask.any() and is_without_noise(force[~mask]):
         # A command that stays at its limit is real output of the drive.

@@ -33,21 +33,21 @@ def find_pushing(run: Run, motion: ImposedMotion, usable: Mask) -> list[Finding]
     An offset, an inertia and a spring also act in this direction at times; their forces are fitted
     together with the friction. A record of one direction cannot separate an offset from friction.
     """
-    assert run.friction_n is not None
-    v = motion.velocity_m_s
+    assert run.friction is not None
+    v = motion.velocity
     moves = motion.sign_known & usable & (np.abs(v) > SLOW * float(np.max(np.abs(v))))
     way = np.sign(v[moves])
     if len(way) < LEAST or abs(float(np.mean(way))) > 0.5:
         return []
     path = motion.angle_rad[moves]
-    x = np.stack([way, np.ones(len(way)), motion.acceleration_m_s2[moves], path], axis=1)
+    x = np.stack([way, np.ones(len(way)), motion.acceleration[moves], path], axis=1)
     scale = np.maximum(np.std(x, axis=0), 1e-12)
     scale[1] = 1.0
     x[:, 2:] -= np.mean(x[:, 2:], axis=0)
     x /= scale
-    push, error = _reversing_force(x, run.friction_n[moves])
+    push, error = _reversing_force(x, run.friction[moves])
     push, error = push / scale[0], error / scale[0]
-    if push > -max(SURE * error, SHARE * float(np.std(run.friction_n[moves]))):
+    if push > -max(SURE * error, SHARE * float(np.std(run.friction[moves]))):
         return []
     said = run.quantities
     words = (

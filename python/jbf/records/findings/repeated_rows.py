@@ -37,7 +37,7 @@ def repeated_rows(run: Run) -> Mask | None:
         return None
     place = np.unwrap(place) if place is run.angle_rad else place
     steps, way = np.diff(run.time_s), np.abs(np.diff(place))
-    by_speed = np.abs(run.velocity_m_s[:-1]) * steps
+    by_speed = np.abs(run.velocity[:-1]) * steps
     # The ratio of the total displacements makes the result independent of the unit of the speed.
     unit = float(np.sum(way)) / max(float(np.sum(by_speed)), 1e-300)
     moving = unit * by_speed > COUNTS * step_of(place)

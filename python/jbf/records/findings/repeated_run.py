@@ -36,7 +36,7 @@ def copies(runs: Sequence[Run]) -> dict[int, int]:
 def same_recording(a: Run, b: Run) -> bool:
     """Return whether two runs are the same recording, sample by sample."""
     one, other = a.columns(), b.columns()
-    if a.friction_n is None or len(a) != len(b) or set(one) != set(other):
+    if a.friction is None or len(a) != len(b) or set(one) != set(other):
         return False
     return all(_same(name, one[name], other[name]) for name in one)
 

@@ -72,11 +72,11 @@ def find_saturation(run: Run) -> tuple[list[Finding], Mask]:
     mask : ndarray
         True at the samples to set aside, shape (n,).
     """
-    assert run.friction_n is not None
-    mask, ends = saturated(run.friction_n)
+    assert run.friction is not None
+    mask, ends = saturated(run.friction)
     if not ends:
         return [], mask
-    share = float(np.mean(np.isin(run.friction_n, ends)))
+    share = float(np.mean(np.isin(run.friction, ends)))
     unit = run.quantities.force
     said = " and ".join(f"{end:.4g} {unit}" for end in sorted(ends))
     words = (

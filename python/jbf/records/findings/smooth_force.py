@@ -44,8 +44,8 @@ def find_smooth_force(run: Run, sliding: Mask) -> list[Finding]:
     sliding
         True at the samples in motion with usable readings, shape (n,).
     """
-    assert run.friction_n is not None
-    force = run.friction_n[sliding]
+    assert run.friction is not None
+    force = run.friction[sliding]
     if not is_without_noise(force):
         return []
     said = run.quantities

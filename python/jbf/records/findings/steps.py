@@ -64,8 +64,8 @@ def find_steps(run: Run, usable: Mask, *, drawn: bool = False) -> list[Finding]:
 
     Only usable readings are examined; `drawn` as in `step_of`.
     """
-    assert run.friction_n is not None
-    force = run.friction_n[usable]
+    assert run.friction is not None
+    force = run.friction[usable]
     step = step_of(force, drawn=drawn)
     if step == 0.0 or step < MATTERS * max(noise_of(force), 1e-300):
         return []

@@ -87,7 +87,7 @@ def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) ->
     stamps_s
         The recorded time stamps, s, if the instants of the run are those of an even clock.
     """
-    name, time, speed = run.name, run.time_s, run.velocity_m_s
+    name, time, speed = run.name, run.time_s, run.velocity
     corrected = stamps_s is not None
     stamps_s = time if stamps_s is None else stamps_s
     said = run.quantities

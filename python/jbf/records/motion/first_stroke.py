@@ -16,9 +16,9 @@ HUM = 1e-3
 """Largest ratio of the first displacement to the longest one between two reversals for noise."""
 
 
-def begins_with_oscillation(time_s: Array, velocity_m_s: Array) -> bool:
+def begins_with_oscillation(time_s: Array, velocity: Array) -> bool:
     """Return True if the speed reverses before a significant displacement."""
-    v = velocity_m_s
+    v = velocity
     turns = np.flatnonzero(np.sign(v[1:]) != np.sign(v[:-1])) + 1
     if v[0] == 0.0 or not len(turns):
         return False

@@ -97,7 +97,7 @@ class ImposedMotion:
 
     Attributes
     ----------
-    velocity_m_s, acceleration_m_s2, angle_rad
+    velocity, acceleration, angle_rad
         Estimates at the samples.
     velocity_error_m_s
         Standard error of the speed.
@@ -114,8 +114,8 @@ class ImposedMotion:
         Instants of the even clock behind the stamps, s; None if the stamps are used unchanged.
     """
 
-    velocity_m_s: Array
-    acceleration_m_s2: Array
+    velocity: Array
+    acceleration: Array
     angle_rad: Array
     velocity_error_m_s: Array
     resting: Mask
@@ -149,8 +149,8 @@ class ImposedMotion:
             velocity[0] = 0.0
         return replace(
             self,
-            velocity_m_s=velocity,
-            acceleration_m_s2=np.where(self.resting, 0.0, mean[:, 2]),
+            velocity=velocity,
+            acceleration=np.where(self.resting, 0.0, mean[:, 2]),
             angle_rad=mean[:, 0] / errors.arm_m,
             errors=errors,
         )
@@ -169,8 +169,8 @@ class ImposedMotion:
         k = np.clip(np.searchsorted(time_s, instants_s) - 1, 0, len(time_s) - 2)
         h = time_s[k + 1] - time_s[k]
         u = np.clip((instants_s - time_s[k]) / h, 0.0, 1.0)
-        v0, v1 = self.velocity_m_s[k], self.velocity_m_s[k + 1]
-        a0, a1 = self.acceleration_m_s2[k], self.acceleration_m_s2[k + 1]
+        v0, v1 = self.velocity[k], self.velocity[k + 1]
+        a0, a1 = self.acceleration[k], self.acceleration[k + 1]
         rest = self.resting[k] & self.resting[k + 1]
         # Next to a rest the speed is linear from where the shaft starts, or to where it stops.
         corner = self.resting[k] | self.resting[k + 1]
@@ -204,8 +204,8 @@ class ImposedMotion:
             angle = np.where(at_samples, angle, mean[:, 0] / errors.arm_m)
         return replace(
             self,
-            velocity_m_s=np.where(rest, 0.0, velocity),
-            acceleration_m_s2=np.where(rest, 0.0, acceleration),
+            velocity=np.where(rest, 0.0, velocity),
+            acceleration=np.where(rest, 0.0, acceleration),
             angle_rad=angle,
             velocity_error_m_s=np.maximum(
                 self.velocity_error_m_s[k], self.velocity_error_m_s[k + 1]
@@ -308,8 +308,8 @@ def _steady(run: Run) -> ImposedMotion:
             problem="is missing, and steady states need a speed",
             mend="add the speed of each point",
         )
-    zeros, rest = np.zeros(len(run)), run.velocity_m_s == 0.0
-    return ImposedMotion(run.velocity_m_s, zeros, zeros, zeros, rest, ~rest)
+    zeros, rest = np.zeros(len(run)), run.velocity == 0.0
+    return ImposedMotion(run.velocity, zeros, zeros, zeros, rest, ~rest)
 
 
 def _clock(run: Run, radius_m: float | None) -> Array | None:
@@ -322,7 +322,7 @@ def _clock(run: Run, radius_m: float | None) -> Array | None:
     n, missing = len(even_s), np.full(len(even_s), np.nan)
     if position is None and not run.speed_recorded:
         return None
-    signal = run.velocity_m_s if position is None else position.path_m
+    signal = run.velocity if position is None else position.path_m
     floor = max(quantum_of(signal) ** 2 / 12.0, (EXACT * float(np.ptp(signal)) / n) ** 2, 1e-30)
     path, speed = (missing, signal) if position is None else (signal, missing)
     readings = Readings(run.time_s, path, speed, floor, floor, np.ones(n), np.ones(n))

@@ -18,7 +18,7 @@ def known_motion(run: Run, radius_m: float | None) -> ImposedMotion:
     radius_m
         Journal radius, m; None on a linear axis.
     """
-    velocity = run.velocity_m_s
+    velocity = run.velocity
     still = np.concatenate(([False], velocity == 0.0, [False]))
     # A single zero between two moving samples is a reversal or a bend, not a rest.
     resting = still[1:-1] & (still[:-2] | still[2:])
@@ -27,8 +27,8 @@ def known_motion(run: Run, radius_m: float | None) -> ImposedMotion:
         assert run.position_m is not None
         angle = run.position_m / (radius_m or 1.0)
     return ImposedMotion(
-        velocity_m_s=velocity,
-        acceleration_m_s2=np.gradient(velocity, run.time_s),
+        velocity=velocity,
+        acceleration=np.gradient(velocity, run.time_s),
         angle_rad=angle,
         velocity_error_m_s=np.zeros(len(velocity)),
         resting=resting,

@@ -44,7 +44,7 @@ def recorded_position(run: Run, radius_m: float | None) -> Position | None:
     if run.position_m is not None:
         return Position(run.position_m, "position_m", "m", 1.0)
     if run.angle_rad is not None and run.speed_recorded:
-        return _position_from_ratio(run.time_s, np.unwrap(run.angle_rad), run.velocity_m_s)
+        return _position_from_ratio(run.time_s, np.unwrap(run.angle_rad), run.velocity)
     return None
 
 

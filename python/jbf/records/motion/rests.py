@@ -28,9 +28,9 @@ LONGER = 2.0
 """Least ratio of the duration of a rest to the time for which a reversal appears at rest."""
 
 
-def resting_samples(velocity_m_s: Array) -> Mask:
+def resting_samples(velocity: Array) -> Mask:
     """Mask of the stretches of at least `REST_SAMPLES` speeds that are exactly zero."""
-    zero = velocity_m_s == 0.0
+    zero = velocity == 0.0
     edges = np.diff(np.concatenate(([0], zero.astype(np.int8), [0])))
     rest = np.zeros(len(zero), dtype=bool)
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
@@ -40,7 +40,7 @@ def resting_samples(velocity_m_s: Array) -> Mask:
 
 
 def still_samples(
-    time_s: Array, path: Array, velocity_m_s: Array, step: float, hum: float = 0.0
+    time_s: Array, path: Array, velocity: Array, step: float, hum: float = 0.0
 ) -> Mask:
     """Detect rests whose recorded speed is not exactly zero, shape (n,).
 
@@ -61,20 +61,20 @@ def still_samples(
         A speed, m/s, that is also accepted as a rest.
     """
     n = len(path)
-    top = float(np.max(np.abs(velocity_m_s), initial=0.0))
-    limit, noise = max(STILL_SHARE * top, hum), HUM_ERRORS * noise_of(velocity_m_s)
-    resting = _within_a_step(path, np.abs(velocity_m_s) <= limit, step, STILL_SAMPLES)
+    top = float(np.max(np.abs(velocity), initial=0.0))
+    limit, noise = max(STILL_SHARE * top, hum), HUM_ERRORS * noise_of(velocity)
+    resting = _within_a_step(path, np.abs(velocity) <= limit, step, STILL_SAMPLES)
     if noise > limit > 0.0:
         longest = STILL_STEPS * step / (limit * float(np.median(np.diff(time_s))))
         samples = max(STILL_SAMPLES, int(np.ceil(min(longest, n))) + 1)
-        resting |= _within_a_step(path, np.abs(velocity_m_s) <= noise, step, samples)
+        resting |= _within_a_step(path, np.abs(velocity) <= noise, step, samples)
     edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        if _reverses(time_s, velocity_m_s, int(first), int(end), step):
+        if _reverses(time_s, velocity, int(first), int(end), step):
             resting[first:end] = False
             continue
         # A speed at the ends that exceeds the noise of the rest belongs to the motion.
-        speed = np.abs(velocity_m_s[first:end])
+        speed = np.abs(velocity[first:end])
         calm_at = np.flatnonzero(speed <= max(STANDS_OUT * float(np.median(speed)), hum))
         resting[first : first + calm_at[0]] = False
         resting[first + calm_at[-1] + 1 : end] = False
@@ -108,7 +108,7 @@ def _ptp(values: npt.NDArray[Any], samples: int) -> Array:
     return span
 
 
-def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: float) -> bool:
+def _reverses(time_s: Array, velocity: Array, first: int, end: int, step: float) -> bool:
     """Return whether one or two reversals explain an apparent rest.
 
     A reversal at the acceleration from before to after would stay within the encoder step for about
@@ -116,9 +116,9 @@ def _reverses(time_s: Array, velocity_m_s: Array, first: int, end: int, step: fl
     """
     way = min(end - first, STILL_SAMPLES)
     before, after = max(first - way, 0), min(end + way, len(time_s)) - 1
-    v0, v1 = velocity_m_s[before], velocity_m_s[after]
+    v0, v1 = velocity[before], velocity[after]
     # A speed of rounding size counts as zero.
-    least = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity_m_s)))
+    least = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity)))
     if min(abs(v0), abs(v1)) < least or v0 == v1 == 0.0:
         return False
     # Also covers a speed that touches zero, with two reversals or none.
@@ -143,7 +143,7 @@ def sure_rests(rest: Mask) -> Mask:
     return sure
 
 
-def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2: Array) -> Mask:
+def rest_edges(rest: Mask, time_s: Array, velocity: Array, acceleration: Array) -> Mask:
     """Mask of the first and last samples of each rest that borders on motion.
 
     The shaft stops and starts between samples, so the state within one sample of it is unknown. A
@@ -157,7 +157,7 @@ def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2
         for moving, inward in ((first - 1, 1), (end, -1)):
             if not 0 <= moving < len(rest):
                 continue
-            v, a = velocity_m_s[moving], -inward * acceleration_m_s2[moving]
+            v, a = velocity[moving], -inward * acceleration[moving]
             step_s = abs(time_s[moving + inward] - time_s[moving])
             ago = v / (a * step_s) if v * a > 0.0 else 0.0
             count = min(max(int(np.ceil(min(ago, most))), 1), most)
@@ -166,9 +166,7 @@ def rest_edges(rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2
     return beside
 
 
-def backward_near_rest(
-    rest: Mask, time_s: Array, velocity_m_s: Array, acceleration_m_s2: Array
-) -> Mask:
+def backward_near_rest(rest: Mask, time_s: Array, velocity: Array, acceleration: Array) -> Mask:
     """Mask of the samples next to a rest that decelerate after it or accelerate towards it.
 
     A shaft that starts does not slow down, and one that stops does not speed up. Only speeds below
@@ -176,8 +174,8 @@ def backward_near_rest(
     """
     backward = np.zeros(len(rest), dtype=bool)
     step_s = np.gradient(time_s) if len(time_s) > 1 else np.zeros(len(time_s))
-    small = np.abs(velocity_m_s) < np.abs(acceleration_m_s2) * step_s
-    growing = velocity_m_s * acceleration_m_s2
+    small = np.abs(velocity) < np.abs(acceleration) * step_s
+    growing = velocity * acceleration
     edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         part = slice(first, end)
@@ -190,7 +188,7 @@ def backward_near_rest(
     return backward
 
 
-def uncertain_near_rest(rest: Mask, path: Array, velocity_m_s: Array, least: float) -> Mask:
+def uncertain_near_rest(rest: Mask, path: Array, velocity: Array, least: float) -> Mask:
     """Mask from a rest to where the path has moved in the direction of the speed by `least`, m.
 
     A polynomial oscillates at the onset of a motion, so it does not determine the first direction.
@@ -198,7 +196,7 @@ def uncertain_near_rest(rest: Mask, path: Array, velocity_m_s: Array, least: flo
     unsure = np.zeros(len(rest), dtype=bool)
     edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        way = np.sign(velocity_m_s[first:end])
+        way = np.sign(velocity[first:end])
         if first > 0:
             gone = (path[first:end] - path[first - 1]) * way > least
             unsure[first:end] |= ~np.logical_or.accumulate(gone)
@@ -208,7 +206,7 @@ def uncertain_near_rest(rest: Mask, path: Array, velocity_m_s: Array, least: flo
     return unsure
 
 
-def without_swings(rest: Mask, velocity_m_s: Array, sign_known: Mask) -> None:
+def without_swings(rest: Mask, velocity: Array, sign_known: Mask) -> None:
     """Set reversed speeds next to a rest to zero in `velocity_m_s`, up to the first sure sign.
 
     A shaft does not move backwards before it starts.
@@ -218,7 +216,7 @@ def without_swings(rest: Mask, velocity_m_s: Array, sign_known: Mask) -> None:
         sure = np.flatnonzero(sign_known[first:end])
         if not len(sure):
             continue
-        v = velocity_m_s[first:end]
+        v = velocity[first:end]
         if first > 0:
             start = v[: sure[0]]
             start[start * v[sure[0]] < 0.0] = 0.0

@@ -69,7 +69,7 @@ export class LearnRoom {
 
   told_by_diagnosis(d) {
     return [
-      d.unexplained.length ? h("section", {}, h("h2", {}, "What remains"), h("ul", {}, d.unexplained.map((r) => h("li", {}, `${r.axis}: ${r.where}`)))) : null,
+      d.residual_structure.length ? h("section", {}, h("h2", {}, "What remains"), h("ul", {}, d.residual_structure.map((r) => h("li", {}, `${r.axis}: ${r.where}`)))) : null,
       d.next_experiment ? h("section", {}, h("h2", {}, "The next experiment"), h("p", {}, d.next_experiment), d.next_run ? h("p", {},
         h("button", { "data-key": "next-run", onclick: () => this.page.download("next_run", "next_run.csv") }, "Download its motion (next_run.csv)")) : null) : null,
     ];

@@ -8,14 +8,14 @@ export function showLedger(page, place) {
   const node = page.model, steps = node?.diagnosis ? node.diagnosis.steps : page.state.ledger, unit = page.units.force;
   const line = steps.map((step, i) => ({ ...step, words: i ? newly(step.effects, steps[i - 1].effects) : newly(step.effects, []) || "the law alone" }));
   if (!line.length) { put(place, h("p", { class: "faint" }, "Each model gets its bars here: fit the law alone, or diagnose.")); return; }
-  const noise = line.at(-1).noise_n, values = line.flatMap((l) => [l.rms_n, l.holdout_rms_n]).filter((v) => v > 0);
+  const noise = line.at(-1).noise_rms, values = line.flatMap((l) => [l.rms, l.held_out_rms]).filter((v) => v > 0);
   const low = Math.log(0.8 * Math.min(noise, ...values)), high = Math.log(1.05 * Math.max(noise, ...values));
   const x = (v) => 150 + 240 * (Math.log(v) - low) / (high - low);
   const picture = s("svg", { viewBox: `0 0 470 ${line.length * 40 + 26}`, role: "img", "aria-label": "error of each model" });
   line.forEach((l, i) => {
     const top = i * 40 + 4;
     picture.append(s("text", { x: 144, y: top + 20, "text-anchor": "end" }, (l.words.length > 22 ? `…${l.words.slice(-21)}` : l.words)));
-    for (const [k, value, name] of [[0, l.rms_n, "bar"], [1, l.holdout_rms_n, "bar out"]]) {
+    for (const [k, value, name] of [[0, l.rms, "bar"], [1, l.held_out_rms, "bar out"]]) {
       if (!value) continue;
       picture.append(s("rect", { class: name, x: 150, y: top + 16 * k, width: Math.max(x(value) - 150, 1), height: 13 }),
         s("text", { x: x(value) + 5, y: top + 16 * k + 11 }, `${number(value)} ${unit}`));

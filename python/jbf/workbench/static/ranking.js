@@ -18,7 +18,7 @@ export function showRanking(page, place) {
   const row = (name, t, why) => {
     const p = strength.get(name);
     return [h("tr", { class: page.effect === name ? "now first" : "first" }, h("td", { rowspan: 2 }, add(name)), h("td", {}, sketch(name)),
-      h("td", { class: "n" }, t ? (t.evidence > 0 ? number(t.evidence) : "none") : ""), h("td", { class: "n" }, t ? number(t.rms_n) : ""),
+      h("td", { class: "n" }, t ? (t.evidence > 0 ? number(t.evidence) : "none") : ""), h("td", { class: "n" }, t ? number(t.rms) : ""),
       // What gains already needs no promise; and beside a model that lacks it, its strength is overstated.
       h("td", {}, t?.evidence > 0 ? "gains already" : p ? [p.found, p.hidden ? h("span", { class: "faint", title: "at its usual strength it could be there unseen" }, " (could hide)") : null] : "")),
     h("tr", { class: page.effect === name ? "now" : "" }, h("td", { colspan: 4, class: "faint" }, why,

@@ -35,7 +35,7 @@ export class SeeRoom {
 
   told(before) {
     const { state } = this.page;
-    const now = JSON.stringify([state.current, state.beside, state.runs.map((r) => r.name), this.page.model?.records, this.page.model?.holdout_rms_n]);
+    const now = JSON.stringify([state.current, state.beside, state.runs.map((r) => r.name), this.page.model?.records, this.page.model?.held_out_rms]);
     if (!before || now !== this.was) { this.was = now; this.looked({}); }
   }
 
@@ -48,7 +48,7 @@ export class SeeRoom {
   heading() {
     const { page } = this, node = page.model, unit = page.units.force;
     put(this.words, node
-      ? `${node.words}: RMS ${number(node.rms_n)} ${unit} where the noise is ${number(node.noise_n)} ${unit}${node.holdout_rms_n ? `; on runs left out ${number(node.holdout_rms_n)} ${unit}` : ""}.`
+      ? `${node.words}: RMS ${number(node.rms)} ${unit} where the noise is ${number(node.noise_rms)} ${unit}${node.held_out_rms ? `; on runs left out ${number(node.held_out_rms)} ${unit}` : ""}.`
       : "The records alone: there is no model yet.");
     this.residual.style.display = node ? "" : "none";
     const way = (mode, words) => h("label", {}, h("input", { type: "radio", name: "drag", checked: this.drag === mode, "data-key": `drag-${mode}`,
@@ -78,7 +78,7 @@ export class SeeRoom {
         h("td", {}, h("button", { "data-key": `fail-${i}`, "aria-pressed": String(marked === i), title: "mark it in every plot",
           onclick: () => (marked === i ? this.select(null) : this.mark(i)) }, `along ${f.axis}`)),
         h("td", {}, `${(100 * f.share).toFixed(0)} % of the mean square error: ${f.where}.`, marked === i ? h("div", { class: "faint" }, `Usually ${f.causes}. To see more: ${f.to_do}.`) : null)))))
-      : h("p", {}, `Nowhere: what is left (${number(node.rms_n)} ${unit}) has no pattern along speed, direction, regime, time, angle or run.`),
+      : h("p", {}, `Nowhere: what is left (${number(node.rms)} ${unit}) has no pattern along speed, direction, regime, time, angle or run.`),
       node.findings.length ? [h("h3", {}, "What the recording did"), h("ul", {}, node.findings.map((f) => h("li", {}, f.words)))] : null);
   }
 
@@ -114,7 +114,7 @@ export class SeeRoom {
       document.body.dataset.drawn = `${page.run} ${model ?? ""}`;
       document.body.dataset.draws = String(++page.draws);
       if (stays) return;
-      if (model !== null && page.model?.records) this.map.show(await get("map", { model }), page.units, page.run, page.model.noise_n);
+      if (model !== null && page.model?.records) this.map.show(await get("map", { model }), page.units, page.run, page.model.noise_rms);
       else this.map.clear();
     } catch (error) { page.say(error.message); }
   }
@@ -122,7 +122,7 @@ export class SeeRoom {
   say(brushed) {
     const { page } = this, unit = page.units.force, mark = page.selection?.mark;
     if (!brushed) { this.said.textContent = "Select by dragging in any plot: it is shown in all of them."; return; }
-    const there = brushed.rms_n === null ? "" : `; record minus model there: mean ${number(brushed.mean_n)} ${unit}, RMS ${number(brushed.rms_n)} ${unit}`;
+    const there = brushed.rms === null ? "" : `; record minus model there: mean ${number(brushed.mean_n)} ${unit}, RMS ${number(brushed.rms)} ${unit}`;
     const runs = Object.entries(brushed.by_run).map(([name, one]) => `${name} ${one.samples}`);
     const named = runs.length ? ` (${runs.slice(0, 4).join(", ")}${runs.length > 4 ? ", …" : ""})` : "";
     this.said.textContent = `${mark === undefined ? "Selected" : `Marked: ${page.model.failures[mark].bin}`}: ${brushed.samples} samples${named}${there}.`;

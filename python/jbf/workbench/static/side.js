@@ -14,7 +14,7 @@ export function showRuns(page, place) {
 function said(page, run) {
   const parts = [`${number(run.duration_s)} s, ${run.samples} samples`];
   const own = page.model?.runs.find((r) => r.name === run.name);
-  if (own) parts.push(`RMS ${number(own.rms_n)} ${page.units.force}`);
+  if (own) parts.push(`RMS ${number(own.rms)} ${page.units.force}`);
   if (run.excluded) parts.push("left out");
   if (run.trim) parts.push("trimmed");
   if (run.findings === null) parts.push("looking…");
@@ -30,10 +30,10 @@ export function showModels(page, place) {
   const rows = [];
   const walk = (parent, depth) => {
     for (const node of nodes.filter((n) => n.parent === parent)) {
-      const outside = node.holdout_rms_n === null || node.holdout_rms_n === undefined ? "" : `; left out ${number(node.holdout_rms_n)}`;
+      const outside = node.held_out_rms === null || node.held_out_rms === undefined ? "" : `; left out ${number(node.held_out_rms)}`;
       const item = h("div", { class: `item${node.id === current ? " now" : ""}${node.id === beside ? " beside" : ""}` },
         h("button", { "data-key": `model-${node.id}`, "aria-pressed": String(node.id === current), onclick: () => page.do("show", { model: node.id }) },
-          node.words, h("br"), h("small", {}, `${number(node.rms_n)} ${page.units.force}${outside}`)),
+          node.words, h("br"), h("small", {}, `${number(node.rms)} ${page.units.force}${outside}`)),
         h("label", { title: "draw it beside the current model" },
           h("input", { type: "checkbox", checked: node.id === beside, disabled: node.id === current, "data-key": `beside-${node.id}`,
             "aria-label": `draw ${node.words} beside`,

@@ -7,7 +7,7 @@ export function parameters(node) {
   const rows = Object.entries(node.parameters).map(([name, p]) => {
     const held = p.held || p.stderr === null || p.stderr === undefined;
     const half = 1.96 * p.stderr;
-    return h("tr", {}, h("td", {}, p.shown ?? name), h("td", { class: "n" }, `${number(p.value, 4)} ${p.unit ?? ""}`),
+    return h("tr", {}, h("td", {}, name), h("td", { class: "n" }, `${number(p.value, 4)} ${p.unit ?? ""}`),
       h("td", { class: held ? "faint" : "n" }, held ? `held${p.note ? `: ${p.note}` : ""}` : `${number(p.value - half, 4)} to ${number(p.value + half, 4)}`));
   });
   return h("table", {}, head(["parameter", "value", "95 % interval"]), h("tbody", {}, rows));

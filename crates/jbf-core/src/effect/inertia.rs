@@ -11,19 +11,19 @@ use crate::real::Real;
 
 /// An accelerated mass in the force path.
 #[derive(Clone, Copy, Debug)]
-pub struct InertiaLeak<T> {
+pub struct Inertia<T> {
     mass_kg: T,
 }
 
-impl<T: Real> Effect<T> for InertiaLeak<T> {
-    const INFO: Info = Info::new("inertia_leak", Stage::Other)
+impl<T: Real> Effect<T> for Inertia<T> {
+    const INFO: Info = Info::new("inertia", Stage::Other)
         .summary("the load cell also feels a mass that is accelerated")
         .equation("F -> F + m_e dv/dt")
         .transmitted()
         .source("d'Alembert; Cohn 1998, section 4.1 (the housing on its arm)")
         .limits("a rigid mass; the slope of the speed comes from the record and has its noise")
         .parameters(&[Parameter::new(
-            "m_e_kg",
+            "m_e",
             "kg",
             "mass as felt at the journal's surface",
             [0.0, 1e6],
@@ -42,7 +42,7 @@ impl<T: Real> Effect<T> for InertiaLeak<T> {
     fn start(&self, _motion: &Motion<T>, _rig: &Rig<T>) {}
 }
 
-impl<T: Real> OtherFriction<T> for InertiaLeak<T> {
+impl<T: Real> OtherFriction<T> for Inertia<T> {
     #[inline(always)]
     fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
         Friction {

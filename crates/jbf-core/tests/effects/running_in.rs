@@ -10,7 +10,7 @@ const F_V_N_S_M: f64 = 40.0;
 fn falls_with_the_distance_slid() {
     let dt = 0.01;
     for (a, s_0) in [(0.2, 1.0), (-0.5, 0.05), (3.0, 0.3)] {
-        let chain = chain_round(newtons(F_C_N, F_V_N_S_M), &[("wear_in", &[a, s_0])]);
+        let chain = chain_round(newtons(F_C_N, F_V_N_S_M), &[("running_in", &[a, s_0])]);
         for speed in [0.05, -0.2] {
             let got = readings(&chain, dt, 500, |t| constant(speed, t));
             for (i, f) in got.iter().enumerate() {
@@ -30,7 +30,7 @@ fn falls_with_the_distance_slid() {
 #[test]
 fn both_ways_count_and_rests_do_not() {
     let (a, s_0, dt) = (0.8, 0.02, 0.01);
-    let chain = chain_round(newtons(F_C_N, 0.0), &[("wear_in", &[a, s_0])]);
+    let chain = chain_round(newtons(F_C_N, 0.0), &[("running_in", &[a, s_0])]);
     // Up to 0.1 m/s and back to zero in 1 s, then in the other direction, then 1 s of rest.
     let speed = |t: f64| match t {
         t if t < 0.5 => 0.2 * t,

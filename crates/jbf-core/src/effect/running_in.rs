@@ -10,13 +10,13 @@ use crate::real::Real;
 
 /// Asperity friction that changes with the sliding distance.
 #[derive(Clone, Copy, Debug)]
-pub struct WearIn<T> {
+pub struct RunningIn<T> {
     excess: T,
     inverse_distance_1_m: T,
 }
 
-impl<T: Real> Effect<T> for WearIn<T> {
-    const INFO: Info = Info::new("wear_in", Stage::Contact)
+impl<T: Real> Effect<T> for RunningIn<T> {
+    const INFO: Info = Info::new("running_in", Stage::Contact)
         .summary("asperities that run in: friction of contact falls with the distance slid")
         .equation("f_m -> f_m (1 + a exp(-s/s_0)), s the distance slid in the run")
         .source("Blau 1989; Cohn 1998, section 4.2")
@@ -31,7 +31,7 @@ impl<T: Real> Effect<T> for WearIn<T> {
             )
             .null(0.0),
             Parameter::new(
-                "s_0_m",
+                "s_0",
                 "m",
                 "distance in which the excess falls to 1/e",
                 [1e-3, 1e5],
@@ -55,7 +55,7 @@ impl<T: Real> Effect<T> for WearIn<T> {
     }
 }
 
-impl<T: Real> Contact<T> for WearIn<T> {
+impl<T: Real> Contact<T> for RunningIn<T> {
     #[inline(always)]
     fn apply(&self, state: &T, _journal: &JournalMotion<T>, sliding: &mut Friction<T>) {
         let fresh = (-(*state * self.inverse_distance_1_m)).exp();

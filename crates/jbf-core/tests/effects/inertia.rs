@@ -9,7 +9,7 @@ fn adds_the_mass_times_the_acceleration() {
     let (f, omega) = (0.1, 3.0);
     let sines = Sines::two_way(omega);
     for mass_kg in [0.9, 4.0, 100.0] {
-        let chain = chain_round(ConstantLaw(f), &[("inertia_leak", &[mass_kg])]);
+        let chain = chain_round(ConstantLaw(f), &[("inertia", &[mass_kg])]);
         let got = readings(&chain, 0.01, 700, |t| sines.at::<f64>(t));
         for (i, r) in got.iter().enumerate() {
             let phase = omega * 0.01 * i as f64;

@@ -204,7 +204,7 @@ def test_fit_with_the_true_effects_recovers_the_parameters_of_a_drive(name: str)
     stated |= {n: v for n, v in drawn.items() if _page(n).stated}
     true = {n: v for n, v in drawn.items() if n not in stated}
     # Two waves may be interchanged unless each starts at its true pitch.
-    start = {n: v for n, v in true.items() if name.endswith("_2") and n.endswith("pitch_m")}
+    start = {n: v for n, v in true.items() if name.endswith("_2") and n.endswith("pitch")}
     fixed = {"F_s": 10.0, **stated}
     found = fit(Rig(), runs, hidden, law="coulomb", fixed=fixed, start=start)
     assert found.converged

@@ -61,7 +61,7 @@ def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign
 
 
 @pytest.mark.parametrize(
-    ("pitch_m", "along"),
+    ("pitch", "along"),
     [
         (0.0041, False),
         (0.0123, True),

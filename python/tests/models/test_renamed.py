@@ -72,5 +72,5 @@ def test_option_value_is_converted_to_the_unit_of_the_rig(
 
 @pytest.mark.parametrize("text", ["0.2 N", "fast", "1 2", ""])
 def test_option_value_of_another_dimension_is_refused(text: str) -> None:
-    with pytest.raises(jbf.InputError, match="--max-velocity: .* is not a quantity in rad/s"):
+    with pytest.raises(jbf.InputError, match=r"--max-velocity: .* is not a quantity in rad/s"):
         number_in("rad/s", text, "--max-velocity")

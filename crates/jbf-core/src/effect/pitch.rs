@@ -7,7 +7,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Description of a pitch that the fit must find.
 pub(super) const PITCH: Parameter = Parameter::new(
-    "pitch_m",
+    "pitch",
     "m",
     "way of one period, at the radius",
     [1e-6, 1e3],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -29,6 +29,9 @@ def loops(
 ) -> Axes:
     """Plot friction against speed of one run: measured values as dots, the model as a line.
 
+    Hollow dots are samples that the fit excludes, such as those before the state of a film or a
+    bristle is known. The model is not drawn there.
+
     Parameters
     ----------
     comparison
@@ -50,16 +53,13 @@ def loops(
         rest = added_by(comparison, non_friction_effects(comparison))[index]
     speed = p.motion.velocity
     stride = max(len(speed) // MOST_DOTS, 1)
-    ax.plot(
-        speed[::stride],
-        (p.friction - rest)[::stride],
-        ".",
-        color=MEASURED,
-        markersize=3,
-        alpha=0.6,
-        label="measured",
-        rasterized=True,
-    )
+    measured = np.column_stack((speed, p.friction - rest))[::stride]
+    counted = comparison.samples.counted[index][::stride]
+    dots: dict[str, Any] = {"linestyle": "", "alpha": 0.6, "rasterized": True, "color": MEASURED}
+    ax.plot(*measured[counted].T, ".", markersize=3, label="measured", **dots)
+    if not counted.all():
+        dots |= {"markerfacecolor": "none", "markeredgewidth": 0.6}
+        ax.plot(*measured[~counted].T, "o", markersize=3, label="excluded from the fit", **dots)
     draw_model(ax, comparison, index, rest, colour=colour)
     dress(ax, title or f"Run {p.run.name}", *axes_words(comparison))
     ax.legend(loc="upper left", frameon=False, markerscale=2)

@@ -207,9 +207,10 @@ def _before(diagnosis: Diagnosis) -> Markup | str:
     left, right = axes_or_new(None, 1, 2, (WIDTH, 3.3))
     index = largest_error_run(before, after)
     loops(before, index, ax=left, colour=BEFORE, title=f"Run {before.runs[index].name}")
-    draw_model(left, after, index, colour=MODEL)
-    handles, _ = left.get_legend_handles_labels()
-    left.legend(handles, ["measured", "bare law", "final"], frameon=False, fontsize="small")
+    draw_model(left, after, index, colour=MODEL, label="final")
+    handles, labels = left.get_legend_handles_labels()
+    labels[labels.index("model")] = "bare law"
+    left.legend(handles, labels, frameon=False, fontsize="small")
     before_and_after(diagnosis, means_along(before, None), right)
     return svg([left, right], "Bare law and final model, in one run and along the worst axis")
 

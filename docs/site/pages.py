@@ -26,18 +26,24 @@ OUTSIDE = {
 FENCE = re.compile(
     r"^(?P<ticks>`{3,})(?P<info>[^`\n]*)\n(?P<body>.*?)^(?P=ticks)[ \t]*$", re.M | re.S
 )
+NOTE = re.compile(r"<!--((?:(?!-->).)*)-->\s*\Z", re.S)
+"""An HTML comment that ends a text."""
 TITLE = re.compile(r'title="([^"]*)"')
 LINK = re.compile(r"(?P<head>!?\[(?:[^\[\]]|\[[^\]]*\])*\]\()(?P<target>[^)\s]+)(?P<tail>\))")
 
 
 @dataclass(frozen=True)
 class Block:
-    """A code block: its language, the name of its file, its text and its line."""
+    """A code block: its language, the name of its file, its text and its line.
+
+    `note` is the HTML comment directly above the block.
+    """
 
     language: str
     title: str
     body: str
     row: int
+    note: str = ""
 
 
 def every_page() -> list[Path]:
@@ -59,7 +65,16 @@ def blocks(text: str) -> list[Block]:
         title = TITLE.search(info)
         language = info.split()[0] if info and not info.startswith("title=") else ""
         row = text.count("\n", 0, match.start()) + 1
-        found.append(Block(language, title[1] if title else "", match["body"], row))
+        note = NOTE.search(text, 0, match.start())
+        found.append(
+            Block(
+                language,
+                title[1] if title else "",
+                match["body"],
+                row,
+                note[1].strip() if note else "",
+            )
+        )
     return found
 
 

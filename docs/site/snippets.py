@@ -8,7 +8,7 @@
   omits any lines, and within a line any words;
 - `text` and blocks without a language are prose;
 - a first line `# in a clone of the repository` runs a block at its root;
-- a first line `# not tested: WHY`, or a shell line that ends in `(not tested: WHY)`, is not run;
+- a block below `<!-- not tested: WHY -->` is not run; readers of the page do not see the comment;
 - `<!-- needs: TOOL... -->` names programs and targets of Rust without which a page is skipped;
 - `<!-- given: NAME -->` in a page copies the files that the text presumes into the folder
   (`GIVEN`); further words are its arguments.
@@ -41,7 +41,7 @@ ELSEWHERE = {
 PROSE = {"", "text"}
 SIMULATOR = ROOT / "simulator"
 DEMO = ROOT / "python" / "jbf" / "data" / "demo" / "hidden"
-WHY = re.compile(r"not tested: (\S+ \S+ [^)\n]+)")
+WHY = re.compile(r"not tested: \S+ \S+ \S+")
 SECONDS = 1800
 """A shell block that takes longer is considered to hang; a busy machine is slow."""
 
@@ -174,12 +174,12 @@ def compare(shown: str, said: str) -> None:
         at += 1
 
 
-def told_why(line: str) -> bool:
-    """Whether a line is marked as not tested; the reason must have three words or more."""
-    if "not tested" not in line:
+def not_tested(note: str) -> bool:
+    """Whether a block's note marks it as not tested; the reason must have three words or more."""
+    if not note.startswith("not tested"):
         return False
-    if not WHY.search(line):
-        raise Wrong(f"gives no reason: {line}")
+    if not WHY.match(note):
+        raise Wrong(f"gives no reason: {note}")
     return True
 
 
@@ -209,8 +209,7 @@ class Reader:
 
     def follow(self, block: Block) -> None:
         """Execute a block."""
-        first = block.body.split("\n", 1)[0]
-        if first.lstrip("#/ ").startswith("not tested") and told_why(first):
+        if not_tested(block.note):
             self.said = None
         elif block.title:
             path = self.folder / block.title
@@ -243,9 +242,8 @@ class Reader:
 
     def shell(self, body: str) -> str:
         """Return the output of a shell block; the next block starts in its last folder."""
-        kept = [line for line in body.splitlines() if not told_why(line)]
         place = self.folder / ".folder"
-        script = "\n".join([*kept, f'pwd > "{place}"'])
+        script = f'{body}\npwd > "{place}"'
         bin_ = Path(sys.executable).parent
         path = f"{bin_}:{Path(__file__).parent / 'bin'}:{os.environ['PATH']}"
         where = Path(place.read_text().strip()) if place.exists() else self.folder

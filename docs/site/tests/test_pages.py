@@ -49,17 +49,28 @@ def test_snippet_reader_refuses_wrong_output_failing_commands_and_untested_code(
     with pytest.raises(Wrong, match="neither run"):
         reader.follow(Block("rust", "", "fn main() {}\n", 1))
     with pytest.raises(Wrong, match="no reason"):
-        reader.follow(Block("sh", "", "reboot   # (not tested: no)\n", 1))
+        reader.follow(Block("sh", "", "reboot\n", 1, "not tested: no"))
     with pytest.raises(Wrong, match="none before"):
         Reader(tmp_path).follow(Block("output", "", "one\n", 1))
 
 
-def test_snippet_reader_writes_files_changes_folders_and_skips_marked_lines(tmp_path: Path) -> None:
+def test_snippet_reader_writes_files_and_changes_folders(tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     reader.follow(Block("toml", "a/b.toml", "x = 1\n", 1))
     reader.follow(Block("sh", "", "cd a\n", 1))
-    reader.follow(Block("sh", "", "cat b.toml\nfalse   # (not tested: it would fail here)\n", 1))
+    reader.follow(Block("sh", "", "cat b.toml\n", 1))
     reader.follow(Block("output", "", "x = ...\n", 1))
+
+
+def test_snippet_reader_skips_a_block_below_a_comment_that_marks_it_as_not_tested(
+    tmp_path: Path,
+) -> None:
+    text = "<!-- not tested: it would fail here -->\n```sh\nfalse\n```\n\n```sh\ntrue\n```\n"
+    marked, plain = blocks(text)
+    assert (marked.note, plain.note) == ("not tested: it would fail here", "")
+    reader = Reader(tmp_path)
+    reader.follow(marked)
+    reader.follow(plain)
 
 
 def test_dots_in_the_shown_output_match_omitted_lines_and_words() -> None:

@@ -1,20 +1,22 @@
-"""What is promised of a diagnosis, and what it delivered: `python benches/promises.py FILE...`.
+"""Compare diagnoses with what is promised of them: `python benches/promises.py [FILE...]`.
 
 The files are JSON lines of `benches/hidden_effects`, `benches/recorded` and `benches/power_kept.py`
-(`--out`). Each promise is printed with its nominal rate, the observed share, its standard error and
-a 95 % interval (Clopper & Pearson 1934), and the number of campaigns. Each campaign that broke the
-promise is listed below the table. Prints Markdown; `--least N` fails if a promise has fewer
-campaigns.
+(`--out`). For each promise with campaigns among them, docs/results/rates.csv receives the share of
+campaigns that kept it with a 95 % interval (Clopper & Pearson 1934), and docs/results/broken.csv
+the campaigns that broke it. Then the tables of docs/validation.md are written from the files in
+docs/results, so that a new figure is entered in one place. `--check` writes nothing, and exits with
+1 if a table differs; `--least N` exits with 1 if a promise has fewer campaigns.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import math
+import re
 import sys
-import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -110,64 +112,159 @@ def _promises() -> Iterator[Promise]:
 
 
 PROMISES = tuple(_promises())
-HEAD = (
-    "# What a diagnosis promises, and what it delivered",
-    "Simulated campaigns that no development had seen: *tidy* ones as a simulator makes them,",
-    "*recorded* ones with what loggers do to them. Nominal is what is promised; the interval holds",
-    "the rate in 95 of 100 cases (Clopper & Pearson 1934). Every campaign in which a promise was",
-    "broken stands below the table. Intervals effect by effect: [recovery.md](recovery.md).",
-    "",
-)
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+PAGE, RESULTS = DOCS / "validation.md", DOCS / "results"
+COVERAGE = "95 % intervals of a right answer's parameters: hold the truth"
+TABLE = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.S)
 
 
-def coverage(rows: Sequence[Row]) -> str:
-    """Coverage of the parameter intervals of right results.
+def interval(count: int, campaigns: int) -> tuple[float, float, float]:
+    """A share and its exact 95 % interval, in per cent."""
+    sure = stats.binomtest(count, campaigns).proportion_ci(0.95, method="exact")
+    return 100.0 * count / campaigns, 100.0 * sure.low, 100.0 * sure.high
+
+
+def coverage(rows: Sequence[Row]) -> tuple[float, float, float, int]:
+    """Coverage of the parameter intervals of right results, its interval, and the campaigns.
 
     The intervals of one campaign are correlated, so the error is that of means over campaigns.
     """
     known = [row for row in rows if row.get("intervals")]
-    words = "95 % intervals of a right answer's parameters: hold the truth"
-    if not known:
-        return f"| {words} | 95 % | - | | | 0 |"
     count = sum(row["intervals"] for row in known)
     share = sum(row["covered"] for row in known) / count
     off = [row["covered"] - share * row["intervals"] for row in known]
     error = math.sqrt(sum(x * x for x in off)) / count
     low, high = (100.0 * min(max(share + z * error, 0.0), 1.0) for z in (-1.96, 1.96))
-    delivered = f"{100.0 * share:.1f} % | {100.0 * error:.1f} %"
-    return f"| {words} | 95 % | {delivered} | {low:.1f} to {high:.1f} % | {len(known)} |"
+    return 100.0 * share, low, high, len(known)
 
 
-def page(rows: Sequence[Row]) -> Iterator[str]:
-    """Generate the table and every broken promise."""
-    yield "| promise | nominal | delivered | standard error | 95 % interval | campaigns |"
-    yield "| --- | --- | --- | --- | --- | --- |"
-    broken = []
+def delivered(rows: Sequence[Row]) -> Iterator[tuple[str, tuple[float, float, float, int]]]:
+    """Share, interval and campaigns of each statement that the rows judge."""
     for promise in PROMISES:
         own = [row for row in rows if promise.of(row)]
-        if not own:
-            yield f"| {promise.words} | {promise.nominal} | - | | | 0 |"
-            continue
-        count = sum(promise.kept(row) for row in own)
-        share = count / len(own)
-        error = math.sqrt(share * (1.0 - share) / len(own))
-        sure = stats.binomtest(count, len(own)).proportion_ci(0.95, method="exact")
-        delivered = f"{100.0 * share:.1f} % | {100.0 * error:.1f} %"
-        interval = f"{100.0 * sure.low:.1f} to {100.0 * sure.high:.1f} %"
-        yield f"| {promise.words} | {promise.nominal} | {delivered} | {interval} | {len(own)} |"
-        broken += [(promise.words, row) for row in own if not promise.kept(row)]
-    yield coverage(rows)
-    yield ""
-    for words, row in broken:
-        named = ", ".join(row["named"]) or "nothing"
-        yield f"- {words}: `{row['key']}` is `{row['verdict']}`, named {named}"
+        if own:
+            yield promise.words, (*interval(sum(map(promise.kept, own)), len(own)), len(own))
+    if any(row.get("intervals") for row in rows):
+        yield COVERAGE, coverage(rows)
+
+
+def broken(rows: Sequence[Row]) -> Iterator[dict[str, str]]:
+    """Each campaign that broke a promise."""
+    for promise in PROMISES:
+        for row in rows:
+            if promise.of(row) and not promise.kept(row):
+                yield {
+                    "statement": promise.words,
+                    "campaign": row["key"],
+                    "verdict": str(row["verdict"]).lower(),
+                    "named": ", ".join(row["named"]),
+                }
+
+
+def read(name: str) -> list[dict[str, str]]:
+    """Rows of a file of results."""
+    with (RESULTS / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def write(name: str, rows: Sequence[Mapping[str, str]]) -> None:
+    """Replace a file of results; its columns remain."""
+    columns = list(read(name)[0])
+    with (RESULTS / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def enter(rows: Sequence[Row]) -> None:
+    """Enter the rates of new campaigns, and the broken promises in place of those before."""
+    new = dict(delivered(rows))
+    kept = [row for row in read("broken") if row["statement"] not in new]
+    rates = read("rates")
+    listed = {row["statement"] for row in rates}
+    rates += [
+        {"statement": p.words, "nominal": p.nominal.rstrip(" %"), "study": "tidy"}
+        for p in PROMISES
+        if p.words in new.keys() - listed
+    ]
+    for row in rates:
+        if row["statement"] in new:
+            *shares, campaigns = new[row["statement"]]
+            names = ("delivered", "low", "high")
+            row.update(zip(names, (f"{x:.1f}" for x in shares), strict=True))
+            row["campaigns"] = str(campaigns)
+    write("rates", rates)
+    write("broken", [*kept, *broken(rows)])
+
+
+def _rates() -> Iterator[Sequence[str]]:
+    yield "statement", "promised, %", "measured, %", "95 % interval", "campaigns", "study"
+    for row in read("rates"):
+        met = not row["nominal"] or float(row["delivered"]) >= float(row["nominal"])
+        measured = row["delivered"] if met else f"**{row['delivered']}**"
+        between = f"{row['low']} to {row['high']}"
+        yield (
+            row["statement"],
+            row["nominal"],
+            measured,
+            between,
+            row["campaigns"],
+            row["study"],
+        )
+
+
+def _servo() -> Iterator[Sequence[str]]:
+    yield (
+        "hidden",
+        "right",
+        "95 % interval",
+        "false name",
+        "unexplained",
+        "missed",
+        "held-out error, median",
+        "worst",
+    )
+    for row in read("servo"):
+        count, campaigns = int(row["right"]), int(row["campaigns"])
+        _, low, high = interval(count, campaigns)
+        missed = int(row["missed"]) + int(row["not_reported"])
+        yield (
+            row["hidden"],
+            f"{count} of {campaigns}",
+            f"{low:.0f} to {high:.0f} %",
+            row["false_name"],
+            row["unexplained"],
+            str(missed),
+            row["ratio_median"],
+            row["ratio_worst"],
+        )
+
+
+def _studies() -> Iterator[Sequence[str]]:
+    yield "study", "campaigns", "command", "commit, date"
+    for row in read("studies"):
+        yield row["study"], row["campaigns"], row["command"], f"{row['commit']}, {row['date']}"
+
+
+TABLES = {"rates": _rates, "servo": _servo, "studies": _studies}
+
+
+def page(text: str) -> str:
+    """Return the text with every table written anew."""
+
+    def table(match: re.Match[str]) -> str:
+        head, *rows = TABLES[match[2]]()
+        lines = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
+        return match[1] + "\n".join(lines) + "\n" + match[3]
+
+    return TABLE.sub(table, text)
 
 
 def main() -> int:
-    """Read the files and print the page."""
+    """Enter new results and write the page, or check it."""
     parser = argparse.ArgumentParser(prog="promises", description=__doc__.split(":")[0])
-    parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
-    parser.add_argument("--note", default="", help="where the files come from: commands, commit")
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
+    parser.add_argument("--check", action="store_true", help="write nothing")
     parser.add_argument("--least", type=int, default=0, metavar="N", help="campaigns of each; 0")
     asked = parser.parse_args()
     rows = [
@@ -175,10 +272,15 @@ def main() -> int:
         for file in asked.files
         for line in file.read_text(encoding="utf-8").splitlines()
     ]
-    note = textwrap.wrap(asked.note, 100, break_on_hyphens=False)
-    print("\n".join([*HEAD, *note, "", *page(rows)]))
+    if rows and not asked.check:
+        enter(rows)
+    text = PAGE.read_text(encoding="utf-8")
+    new = page(text)
+    if asked.check:
+        return int(new != text)
+    PAGE.write_text(new, encoding="utf-8")
     fewest = min(sum(map(promise.of, rows)) for promise in PROMISES)
-    return 0 if fewest >= asked.least else 1
+    return int(fewest < asked.least)
 
 
 if __name__ == "__main__":

@@ -290,13 +290,16 @@ def index() -> str:
     lines = [
         "# Effects",
         "",
-        "What a law may lack, in the order in which the signal travels: from the commanded motion",
-        "to the record. `jbf effects` prints the same catalogue, `jbf effects NAME` one page of",
-        "it; pages and pictures here are made from it by `docs/effects.py`. Effects of your own:",
-        "[own_effects.md](../own_effects.md). How well a fit recovers each:",
-        "[recovery.md](../recovery.md).",
+        "This page lists the effects of the catalogue: physical mechanisms that a friction law does",
+        "not contain. They are in the order of the signal, from the commanded motion to the record.",
+        "`jbf effects` prints the same list, and `jbf effects NAME` one page of it.",
         "",
-        "| stage | effect | what it is |",
+        "- Pictures of the common phenomena: [friction phenomena](../phenomena.md).",
+        "- Motions that determine an effect: [what can be identified](../what_can_be_identified.md).",
+        "- Accuracy of the fitted parameters: [validation results](../validation.md).",
+        "- Effects in Python: [your own effects](../own_effects.md).",
+        "",
+        "| stage | effect | description |",
         "| --- | --- | --- |",
     ]
     for e in catalogue().values():

@@ -23,6 +23,7 @@ SCRIPTS = {
     "docs/architecture.py": ("images/rooms.png", "images/way_of_data.png"),
     "docs/effects.py": ("effects/*.png", "effects/*.md"),
     "docs/laws.py": ("images/laws/*.png",),
+    "docs/phenomena.py": ("images/phenomena/*.png",),
     "docs/failures.py": ("images/failures/*.png", "why/failures.md"),
     "docs/reproduction.py": ("images/reproduction.png",),
     "docs/pictures.py": ("images/error_falling.png", "images/plot/*.svg"),
@@ -33,14 +34,14 @@ SCRIPTS = {
 }
 """Files written by each script, relative to docs."""
 NOT_ANEW = {
-    "images/detection.png": "a day of campaigns (`benches/hidden_effects`, seed 701, 784478f), "
-    "not made anew",
+    "images/detection.png": "`benches/hidden_effects --seeds 1 --first-seed 701`, a day of campaigns, "
+    "commit 784478f",
 }
 PAGE = DOCS / "reference" / "figures.md"
 HEAD = """# Figures: command, machine, commit
 
-`make figures` makes all of these anew from one commit, and writes this page. Figures in the text
-(times, rates, sizes) stand beside their own command, machine and commit where they are.
+This page lists the command that draws each picture and writes each generated page. `make figures`
+runs all of them and writes this page. Numbers in the text have their own command next to them.
 """
 
 
@@ -77,7 +78,7 @@ def brought(names: tuple[str, ...]) -> str:
 
 def write(rows: list[tuple[str, tuple[str, ...], str]], told: str) -> None:
     """Write the page."""
-    lines = ["| beside `docs` | made by | commit |", "| --- | --- | --- |"]
+    lines = ["| file in `docs` | command | commit |", "| --- | --- | --- |"]
     for script, names, source in rows:
         shown = ", ".join(f"`{name}`" for name in names)
         lines.append(f"| {shown} | `.venv/bin/python {script}` | {source} |")
@@ -106,11 +107,11 @@ def main() -> int:
         print(f"{script}: {time.monotonic() - start:.0f} s", flush=True)
     rows = [(s, names, source if s in made else brought(names)) for s, names in SCRIPTS.items()]
     if made:
-        told = f"Made {date.today().isoformat()} from {source}, on {machine()}."
+        told = f"Made on {date.today().isoformat()} from {source}, on {machine()}."
         if len(made) < len(SCRIPTS):
-            told += " Others: the commit that brought what stands there now."
+            told += " Other files: the last commit that changed them."
     else:
-        told = "Not made at one time: the commit is the one that brought what stands there now."
+        told = "The commit is the last one that changed the files."
     write(rows, told)
     return 0
 

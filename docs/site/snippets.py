@@ -35,7 +35,6 @@ from pages import DOCS, ROOT, Block, blocks, name_of
 
 ELSEWHERE = {
     ("crates/jbf-core/README.md", "rust"): "cargo test --doc -p jbf-core",
-    ("README.md", "python"): "python/tests/project/test_documentation.py",
     ("docs/control.md", "python"): "python/tests/project/test_documentation.py",
 }
 PROSE = {"", "text"}

@@ -58,14 +58,6 @@ def test_cargo_and_citation_files_have_the_version_of_the_package() -> None:
     assert f"\nversion: {version}\n" in text_of("CITATION.cff")
 
 
-@pytest.mark.extended
-@pytest.mark.usefixtures("working_folder")
-def test_readme_example_identifies_presliding_and_saves_the_model(capsys: Capture) -> None:
-    exec(compile(python_of("README.md"), "README.md", "exec"), {})
-    assert "missing ('presliding',)" in capsys.readouterr().out
-    assert Model.load("model.toml").effects == ("presliding",)
-
-
 def test_example_of_the_control_page_prints_an_error_ratio_below_one_tenth(capsys: Capture) -> None:
     exec(compile(python_of("docs/control.md"), "docs/control.md", "exec"), {})
     assert 0.0 < float(capsys.readouterr().out) < 0.1

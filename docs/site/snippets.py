@@ -95,46 +95,6 @@ def _schema(folder: Path) -> None:
     shutil.copy(ROOT / "docs" / "schema" / "results.json", folder)
 
 
-def _measurement(folder: Path) -> None:
-    """Write a log of six tests on a test bench, in German."""
-    sys.path.insert(0, str(SIMULATOR))
-    from rigsim import axis_campaign
-
-    (folder / "bench").mkdir()
-    lines = [
-        "Prüfstand 3;Bediener: K. Lind",
-        "Datum;22.11.2026",
-        "",
-        "Zeit;Versuch;Reibkraft [N];Weg [mm];Geschwindigkeit [mm/s];Normalkraft [N]",
-    ]
-    for number, r in enumerate(axis_campaign(14, ("inertia",))[0]):
-        columns = zip(r.time_s, r.path, r.velocity, r.force_n, r.load_n, strict=True)
-        for t, x, v, f, n in columns:
-            seconds = 40 * number + t
-            row = f"{seconds:.2f};{number + 1};{f:.3f};{1e3 * x:.2f};{1e3 * v:.3f};{n:.0f}"
-            lines.append(row.replace(".", ","))
-    (folder / "bench" / "messung.csv").write_text("\n".join(lines), encoding="latin-1")
-
-
-def _joint(folder: Path) -> None:
-    """Write recordings of a robot joint behind a gear."""
-    import numpy as np
-
-    sys.path.insert(0, str(SIMULATOR))
-    from rigsim import axis_campaign
-
-    turns, motor_n_m_a = 50.0, 0.08
-    (folder / "joint").mkdir()
-    hidden = ("gravity", "inertia", "viscous_thinning")
-    for r in axis_campaign(14, hidden, swing=8.0)[0]:
-        motor_rpm = r.velocity * turns * 60.0 / (2.0 * np.pi)
-        current_a = r.force_n / (turns * motor_n_m_a)
-        rows = np.column_stack((r.time_s, r.path, motor_rpm, current_a))
-        names = "time_s,angle_rad,motor_speed_rpm,current_a"
-        path = folder / "joint" / f"{r.name}.csv"
-        np.savetxt(path, rows, "%.10g", ",", header=names, comments="")
-
-
 def _effect(folder: Path, name: str) -> None:
     """Write runs with an effect."""
     sys.path.insert(0, str(DOCS))
@@ -147,8 +107,6 @@ GIVEN: dict[str, Callable[..., None]] = {
     "campaign": _campaign,
     "warm_campaign": _warm_campaign,
     "schema": _schema,
-    "measurement": _measurement,
-    "joint": _joint,
     "effect": _effect,
 }
 IN_A_CLONE = "# in a clone of the repository"

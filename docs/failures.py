@@ -52,34 +52,34 @@ def _levels(run: int, _: Array, speed: Array) -> Array:
 SHOWN = (
     Shown(
         "velocity",
-        "Along the speed",
-        "dry friction that falls more steeply than the law's",
+        "Residual along speed",
+        "dry friction that decreases more steeply with speed than the law",
         {"stribeck_excess.a": 0.1, "stribeck_excess.v_s": 0.006, "stribeck_excess.n": 1.5},
     ),
     Shown(
         "direction",
-        "By direction",
-        "a zero of the cell that is 0.6 N off",
+        "Residual by direction",
+        "a force sensor with an offset of 0.6 N",
         {"sensor_offset.b": 0.6},
     ),
     Shown(
         "acceleration",
-        "Along the acceleration",
-        "3 kg that the cell accelerates with the shaft",
+        "Residual along acceleration",
+        "a mass of 3 kg between sensor and shaft",
         {"inertia.m_e": 3.0},
     ),
     Shown(
         "angle",
-        "Over a turn",
-        "friction that goes by 20 % over each turn",
+        "Residual along angle",
+        "friction that varies by 20 % over each turn",
         {"position_ripple.a": 0.2, "position_ripple.theta_0_rad": 1.0},
     ),
-    Shown("time", "In time", "a zero that wanders by 0.05 N each second", {"sensor_drift.d": 0.05}),
-    Shown("run", "From run to run", "another dry level in each run", None, _levels),
+    Shown("time", "Residual in time", "a sensor drift of 0.05 N/s", {"sensor_drift.d": 0.05}),
+    Shown("run", "Residual by run", "a different dry level in each run", None, _levels),
     Shown(
         "time since a rest",
-        "After rests",
-        "friction that grows while the contact rests",
+        "Residual after rests",
+        "static friction that grows while the contact rests",
         {
             "dwell_stiction.a": 0.15,
             "dwell_stiction.t_0_s": 1.0,
@@ -89,12 +89,12 @@ SHOWN = (
     ),
     Shown(
         "distance since a reversal",
-        "After reversals",
-        "a contact that bends before it slides",
+        "Residual after reversals",
+        "a contact that deforms elastically before it slides (presliding)",
         {"presliding.sigma": 800.0},
     ),
-    Shown("frequency", "In the spectrum", "a hum of 0.6 N at 7.3 Hz", None, _hum),
-    Shown("bursts", "In bursts", "a knock of 5 N in each run", None, _knock),
+    Shown("frequency", "Spectrum of the residual", "a vibration of 0.6 N at 7.3 Hz", None, _hum),
+    Shown("bursts", "Bursts in the residual", "an impact of 5 N in each run", None, _knock),
 )
 
 
@@ -133,9 +133,11 @@ def compared(shown: Shown) -> Comparison:
 def looks(shown: Shown, found: Comparison) -> str:
     """Describe the result of the comparison; the axis must be among those that it names."""
     if shown.kind == "frequency":
-        return "A line stands out of the noise, and the means along every axis are near zero."
+        return (
+            "The spectrum has one line above the noise; the means along every axis are near zero."
+        )
     if shown.kind == "bursts":
-        return "Some instants stick out; everywhere else the residual is noise."
+        return "The residual is large at some instants, and noise elsewhere."
     failure = next(f for f in found.failures if f.axis == shown.kind)
     share = f"{100 * failure.share:.0f} % of the mean square"
     return f"{failure.where[0].upper()}{failure.where[1:]}: {share}."
@@ -169,24 +171,24 @@ def page(drawn: bool) -> str:
         parts.append(
             f"## {shown.title}\n"
             f"![Residual of the law alone: {shown.hidden}](../images/failures/{name})\n\n"
-            f"**Looks like.** {looks(shown, found)} RMS {found.rms / found.noise_rms:.2g} times "
-            f"the noise.\n\n**Here it is** {shown.hidden}.\n\n"
-            f"**Usually it comes from** {advice.causes}.\n\n"
-            f"**What to do.** {sentence(advice.to_do)}\n"
+            f"**Simulated cause:** {shown.hidden}.\n\n"
+            f"**Comparison:** {looks(shown, found)} The RMS is "
+            f"{found.rms / found.noise_rms:.2g} times the noise.\n\n"
+            f"**Usual causes:** {advice.causes}.\n\n"
+            f"**Next step:** {sentence(advice.to_do)}\n"
         )
     return "\n".join([*parts, TAIL])
 
 
 HEAD = """# A gallery of failures
 
-What a residual looks like, what it usually comes from, and what to do about it. Each picture is
-record minus model of the law alone, fitted to three runs in which one thing was hidden; a report
-draws the same of yours, and names the effect where the catalogue has it. Means that stay within the
-band of the noise are no failure.
+This page shows typical patterns of residuals, their usual causes, and the next step. Each picture
+shows record minus model. The law alone was fitted to three simulated runs with one hidden cause. A
+report of your runs contains the same pictures, and names the effect if the catalogue contains it.
+Means within the noise band are not significant.
 """
 TAIL = """\
-*(Written by `docs/failures.py` from the words of the reports; noise of 0.3 N, fixed seed. Machine
-and commit in [figures](../reference/figures.md).)*
+*(Generated by `docs/failures.py`; the causes and next steps are those of the reports. Noise: 0.3 N.)*
 """
 
 

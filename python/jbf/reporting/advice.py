@@ -18,61 +18,61 @@ class Advice:
 
 
 NONE = Advice(
-    "something that no effect in the catalogue has", "look at the runs where it is largest"
+    "a mechanism that the catalogue does not contain", "look at the runs where it is largest"
 )
 
 ADVICE = {
     "velocity": Advice(
-        "friction that bends over the speed otherwise than the law does",
+        "a friction curve over speed that differs from the law",
         "compare the laws (--law auto); hold a few slow and a few fast speeds for some seconds",
     ),
     "speed range": Advice(
-        "friction that bends over the speed otherwise than the law does",
+        "a friction curve over speed that differs from the law",
         "compare the laws (--law auto); hold a few slow and a few fast speeds for some seconds",
     ),
     "regime": Advice(
-        "a film whose viscosity or load is not what the rig's file says",
+        "a viscosity or load that differs from the rig file",
         "check the oil's viscosity at its temperature, and the load; record slow sweeps",
     ),
     "direction": Advice(
-        "a zero that is off, a weight, or friction that differs between the two ways",
-        "read the sensor unloaded before and after; record the same motion both ways",
+        "a sensor offset, a weight, or friction that differs by direction",
+        "read the unloaded sensor before and after; record the same motion in both directions",
     ),
     "acceleration": Advice(
-        "an inertia that is not in the model, a late channel, or friction that remembers",
+        "an inertia that the model lacks, a delayed channel, or friction with memory",
         "record one slow and one fast sine of the same speeds; check the filters of both channels",
     ),
     "angle": Advice(
-        "a bent shaft, an eccentric seat, a weight, or a ripple of encoder or motor",
-        "record a few slow turns each way; see whether it turns with the shaft or with the motor",
+        "a bent shaft, an eccentric seat, a weight, or a ripple of the encoder or the motor",
+        "record a few slow turns in each direction; check whether the period is that of shaft or motor",
     ),
     "time": Advice(
-        "warming up, running in, or a zero that wanders",
-        "log a temperature; let the rig run warm; read the zero before and after each run",
+        "warm-up, running-in, or sensor drift",
+        "record a temperature; warm the rig up first; read the zero before and after each run",
     ),
     "run": Advice(
-        "something that was set differently from run to run: zero, load, oil, temperature",
+        "a setting that differs between runs: zero, load, oil, temperature",
         "repeat one run at the end of the campaign, and compare it with the first",
     ),
     "time since a rest": Advice(
-        "friction that grows while the contact rests, or a film that comes back late",
+        "static friction that grows during a rest, or a film that forms slowly",
         "record starts after rests of 0.1, 1, 10 and 100 s",
     ),
     "distance since a reversal": Advice(
-        "bending of the contact before it slides, play, or a soft drive",
-        "record small reversals of tens of micrometres to a millimetre, position well resolved",
+        "presliding, backlash, or a soft drive",
+        "record reversals of 10 um to 1 mm with a well-resolved position",
     ),
     "force": Advice(
-        "a sensor that is not straight, or that has a hysteresis",
+        "a force sensor with nonlinearity or hysteresis",
         "calibrate the sensor with weights, up and down",
     ),
     "frequency": Advice(
-        "a hum, a resonance of the frame, a motor's current ripple",
-        "record at another speed: a resonance stays, what turns moves with the speed",
+        "mains hum, a resonance of the frame, or current ripple of the motor",
+        "record at another speed: a resonance keeps its frequency, a rotating cause does not",
     ),
     "bursts": Advice(
-        "a knock, a loose cable, dirt that passes, somebody who leans on the rig",
-        "look at the record at those instants; record the run again",
+        "an impact, a loose cable, a particle in the contact, or contact with the rig",
+        "inspect the record at those instants; record the run again",
     ),
     "way": Advice(
         "a wave of rack, ball, magnet or tooth whose phase is another in each run",

@@ -126,6 +126,9 @@ def compared(shown: Shown) -> Comparison:
         if shown.spoil is not None:
             force = force + shown.spoil(number, time_s, speed)
         seen = np.where(speed == 0.0, 0.0, speed + random.normal(0.0, 1e-4, len(speed)))
+        # The force at the last sample of a rest is that of the start, so it is recorded as moving.
+        last = np.flatnonzero((speed[:-1] == 0.0) & (speed[1:] != 0.0))
+        seen[last] = 0.5 * speed[last + 1]
         runs.append(jbf.Run.from_arrays(time_s, seen, force, angle_rad=way / RADIUS_M, name=name))
     return jbf.compare(jbf.fit(rig, runs).model, runs)
 

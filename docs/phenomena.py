@@ -1,4 +1,4 @@
-"""Draw the pictures of docs/phenomena.md from jbf's models: `.venv/bin/python docs/phenomena.py`."""
+"""Draw the pictures of docs/phenomena.md: `.venv/bin/python docs/phenomena.py`."""
 
 from __future__ import annotations
 

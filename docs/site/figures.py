@@ -34,8 +34,8 @@ SCRIPTS = {
 }
 """Files written by each script, relative to docs."""
 NOT_ANEW = {
-    "images/detection.png": "`benches/hidden_effects --seeds 1 --first-seed 701`, a day of campaigns, "
-    "commit 784478f",
+    "images/detection.png": "`benches/hidden_effects --seeds 1 --first-seed 701`, a day of "
+    "campaigns, commit 784478f",
 }
 PAGE = DOCS / "reference" / "figures.md"
 HEAD = """# Figures: command, machine, commit

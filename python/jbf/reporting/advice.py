@@ -44,7 +44,7 @@ ADVICE = {
     ),
     "angle": Advice(
         "a bent shaft, an eccentric seat, a weight, or a ripple of the encoder or the motor",
-        "record a few slow turns in each direction; check whether the period is that of shaft or motor",
+        "record a few slow turns in each direction; check whether shaft or motor has the period",
     ),
     "time": Advice(
         "warm-up, running-in, or sensor drift",

@@ -2,6 +2,8 @@
 
 import re
 import shlex
+import subprocess
+import sys
 from dataclasses import fields
 from pathlib import Path
 
@@ -92,3 +94,9 @@ def test_import_page_names_every_option_function_and_format() -> None:
     assert [extra for extra in extras if f"`jbf[{extra}]`" not in text] == []
     project = text_of("pyproject.toml")
     assert [e for e in extras if not re.search(rf"^{e} = \[", project, re.MULTILINE)] == []
+
+
+def test_tables_of_the_validation_page_are_those_of_the_result_files() -> None:
+    command = [sys.executable, str(ROOT / "benches" / "promises.py"), "--check"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"run benches/promises.py\n{done.stderr}"

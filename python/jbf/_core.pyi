@@ -82,6 +82,7 @@ class LawPage(TypedDict):
     needs_bearing: bool
     has_film: bool
     has_bristle: bool
+    has_memory: bool
     rust_type: str
     parameters: list[ParameterPage]
 

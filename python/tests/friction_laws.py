@@ -143,6 +143,27 @@ def stribeck(
     return (fc + (fs - fc) * np.exp(-((np.abs(v) / vs) ** delta)) + fv * np.abs(v)) * np.sign(v)
 
 
+def rate_and_state(
+    speed: Speed, t: Array, *, f0: float, a: float, b: float, dc: float, v0: float, fv: float
+) -> Array:
+    """Rate-and-state friction with the ageing law (N), from steady sliding at the first sample."""
+    result = solve_ivp(
+        lambda s, y: [1.0 - abs(speed(s)) * y[0] / dc],
+        (t[0], t[-1]),
+        [dc / abs(speed(t[0]))],
+        method="LSODA",
+        t_eval=t,
+        rtol=1e-9,
+        atol=1e-12,
+        max_step=float(t[1] - t[0]),
+    )
+    assert result.success
+    v = np.array([speed(x) for x in t])
+    psi = f0 + b * np.log(v0 * result.y[0] / dc)
+    friction: Array = a * np.arcsinh(v / (2.0 * v0) * np.exp(psi / a)) + fv * v
+    return friction
+
+
 def seven(
     speed: Speed,
     t: Array,

@@ -117,6 +117,8 @@ JBF_DECLARE(maxwell_slip, f32, float, 96, 128)
 JBF_DECLARE(maxwell_slip, f64, double, 192, 256)
 JBF_DECLARE(elasto_plastic, f32, float, 96, 128)
 JBF_DECLARE(elasto_plastic, f64, double, 192, 256)
+JBF_DECLARE(rate_and_state, f32, float, 96, 128)
+JBF_DECLARE(rate_and_state, f64, double, 192, 256)
 
 #ifdef __cplusplus
 }

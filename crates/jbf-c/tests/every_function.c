@@ -30,6 +30,7 @@ static const double DAHL[] = {8.0, 1e6, 1.0, 5.0};
 static const double LUGRE[] = {8.0, 10.0, 0.05, 1e5, 100.0, 0.05, 5.0};
 static const double MAXWELL[] = {8.0, 1e6, 1.0, 5.0};
 static const double ELASTO[] = {8.0, 1e6, 0.5, 5.0};
+static const double RATE[] = {8.0, 0.1, 0.2, 1e-5, 0.01, 5.0};
 
 #define COUNT(values) (sizeof(values) / sizeof((values)[0]))
 
@@ -125,6 +126,7 @@ BOTH(dahl, DAHL)
 BOTH(lugre, LUGRE)
 BOTH(maxwell_slip, MAXWELL)
 BOTH(elasto_plastic, ELASTO)
+BOTH(rate_and_state, RATE)
 
 #define RUN(law) (try_##law##_f32(), try_##law##_f64())
 
@@ -138,6 +140,7 @@ int main(void) {
   RUN(lugre);
   RUN(maxwell_slip);
   RUN(elasto_plastic);
+  RUN(rate_and_state);
   printf("%lu checks of every function of jbf.h, none found fault with\n", done);
   return 0;
 }

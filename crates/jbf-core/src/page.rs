@@ -41,6 +41,8 @@ pub enum Start {
     Slowness,
     /// Friction per distance over which a contact deflects.
     Stiffness,
+    /// A small share of a typical stroke.
+    SlipDistance,
     /// A small share of friction per typical speed.
     Damping,
     /// A small share of friction in motion.
@@ -87,6 +89,7 @@ impl Start {
             Start::UsualSpeed => "usual_speed",
             Start::Slowness => "slowness",
             Start::Stiffness => "stiffness",
+            Start::SlipDistance => "slip_distance",
             Start::Damping => "damping",
             Start::Drag => "drag",
             Start::Pitch => "pitch",

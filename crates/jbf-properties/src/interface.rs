@@ -256,6 +256,10 @@ laws! {
         jbf_elasto_plastic_f32_init jbf_elasto_plastic_f32_effect jbf_elasto_plastic_f32_start jbf_elasto_plastic_f32_step jbf_elasto_plastic_f32_predict;
     elasto_plastic::ElastoPlastic f64
         jbf_elasto_plastic_f64_init jbf_elasto_plastic_f64_effect jbf_elasto_plastic_f64_start jbf_elasto_plastic_f64_step jbf_elasto_plastic_f64_predict;
+    rate_and_state::RateAndState f32
+        jbf_rate_and_state_f32_init jbf_rate_and_state_f32_effect jbf_rate_and_state_f32_start jbf_rate_and_state_f32_step jbf_rate_and_state_f32_predict;
+    rate_and_state::RateAndState f64
+        jbf_rate_and_state_f64_init jbf_rate_and_state_f64_effect jbf_rate_and_state_f64_start jbf_rate_and_state_f64_step jbf_rate_and_state_f64_predict;
 }
 
 /// Any law of the interface in either precision.

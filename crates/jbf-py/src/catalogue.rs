@@ -76,6 +76,7 @@ pub fn laws(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         d.set_item("needs_bearing", info.needs_bearing)?;
         d.set_item("has_film", info.has_film)?;
         d.set_item("has_bristle", info.has_bristle)?;
+        d.set_item("has_memory", info.has_memory)?;
         d.set_item("rust_type", law::type_name(info.name))?;
         d.set_item("parameters", parameters(py, info.parameters)?)?;
         out.append(d)?;

@@ -1,8 +1,9 @@
 """Initial-state transient: how long a model remembers the unrecorded state at the start of a run.
 
-A film, a contact that deflects, and a load cell with backlash start a run in an unknown state. The
-state is forgotten as the shaft moves, or as the force reverses. The model gives the duration: two
-simulations of a run that start from opposite states differ as long as the state is remembered.
+A film, the age of a contact, a contact that deflects, and a load cell with backlash start a run in
+an unknown state. The state is forgotten as the shaft moves, or as the force reverses. The model
+gives the duration: two simulations of a run that start from opposite states differ as long as the
+state is remembered.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ excluded completely if other runs remain.
 BEFORE_S = 6.0
 """Duration of the simulated motions before a run, s."""
 SPEEDS = (1e-3, 0.1, 1.0)
-"""Speeds of these motions for a film, as fractions of the top speed of the run."""
+"""Speeds of these motions for a film or an age, as fractions of the top speed of the run."""
 WAYS = (-1.0, 1.0)
 """Speeds of these motions for contacts and backlash, which may be on either side at the start."""
 LONGER = 1.5
@@ -74,12 +75,13 @@ class Memory:
 def memories(law: str, effects: Iterable[str]) -> list[Memory]:
     """Return the parts of a law and its effects that remember the initial state of a run."""
     page = find_law(law)
+    by_speed = page.has_memory and not page.has_bristle
     if has_unknown_start(effects):
         # A film that builds up or breaks down pushes the load cell in one direction or the other.
-        return [Memory((*(SPEEDS if page.has_film else ()), *WAYS), FURTHER, np.inf, MOST_OF_ALL)]
-    film = [Memory(SPEEDS, LONGER, MOST_OF_A_RUN)] if page.has_film else []
-    bent = [Memory(WAYS, FURTHER, MOST_OF_A_STROKE)] if page.has_bristle else []
-    return film + bent
+        return [Memory((*(SPEEDS if by_speed else ()), *WAYS), FURTHER, np.inf, MOST_OF_ALL)]
+    if page.has_bristle:
+        return [Memory(WAYS, FURTHER, MOST_OF_A_STROKE)]
+    return [Memory(SPEEDS, LONGER, MOST_OF_A_RUN)] if by_speed else []
 
 
 def has_unknown_start(effects: Iterable[str]) -> bool:

@@ -108,7 +108,9 @@ def _what(law: str, effects: Iterable[str]) -> str:
     cell = has_unknown_start(effects)
     if page.has_film:
         return "film, or the cell in its play, was not settled" if cell else "film was not settled"
-    return "contact was bent another way" if page.has_bristle else "cell was elsewhere in its play"
+    if page.has_bristle:
+        return "contact was bent another way"
+    return "contact was not settled" if page.has_memory else "cell was elsewhere in its play"
 
 
 def _findings(

@@ -47,6 +47,7 @@ RULES: dict[str, Callable[[Scales], Starts]] = {
     "usual_speed": lambda s: (s.usual_m_s,),
     "slowness": lambda s: (0.5 / s.usual_m_s, 5.0 / s.usual_m_s),
     "stiffness": _stiffness,
+    "slip_distance": lambda s: tuple(share * s.stroke_m for share in (1e-2, 1e-1, 1e-3)),
     "damping": lambda s: (0.05 * s.kinetic_n / s.usual_m_s,),
     "drag": lambda s: (0.1 * s.kinetic_n,),
 }

@@ -157,6 +157,7 @@ class Law:
     needs_bearing: bool
     has_film: bool
     has_bristle: bool
+    has_memory: bool
     rust_type: str
     parameters: tuple[Parameter, ...]
 

@@ -129,6 +129,7 @@ def register_law(
         needs_bearing=False,
         has_film=False,
         has_bristle=False,
+        has_memory=False,
         rust_type="",
         parameters=pages,
         force=force,

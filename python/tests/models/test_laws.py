@@ -7,6 +7,7 @@ import friction_laws as independent
 import jbf
 import numpy as np
 import pytest
+from jbf.diagnosis.which_law import allowed
 from shared import shared
 
 DRIVE_LAWS = [law.name for law in jbf.laws().values() if not law.needs_bearing]
@@ -65,6 +66,67 @@ def test_lugre_parameters_are_recovered_within_five_percent() -> None:
     fit = jbf.fit(jbf.Rig(), runs_of("lugre", 1e-3, 0.03, **LUGRE), law="lugre")
     truth = {"F_c": 6.0, "F_s": 9.0, "v_s": 0.003, "sigma_0": 6e4, "F_v": 40.0}
     check_recovery(fit, truth, 0.03, 0.05)
+
+
+RATE_AND_STATE = {"f0": 20.0, "a": 0.4, "b": 0.6, "dc": 1e-4, "v0": 1e-3, "fv": 30.0}
+
+
+def velocity_steps(low: float, high: float) -> independent.Speed:
+    """Speed (m/s) that steps between two values every 2 s, within 10 ms, and reverses every 8 s."""
+
+    def speed(t: float) -> float:
+        levels = [low, high, low, high, -low, -high, -low, -high]
+        i, phase = divmod(t, 2.0)
+        begin, end = (levels[int(k) % len(levels)] for k in (i - 1, i))
+        if i < 1.0:
+            begin = end
+        return float(begin + (end - begin) * min(phase / 0.01, 1.0))
+
+    return speed
+
+
+@shared
+def velocity_step_runs() -> list[jbf.Run]:
+    """Two runs with velocity steps over a decade each, simulated by SciPy."""
+    time_s = np.arange(0.0, 20.0, 0.002)
+    result = []
+    for seed, (low, high) in enumerate([(1e-4, 1e-3), (3e-4, 3e-3)]):
+        speed = velocity_steps(low, high)
+        friction = independent.rate_and_state(speed, time_s, **RATE_AND_STATE)
+        result.append(independent.record(speed, time_s, friction, 0.02, seed, f"run{seed}", 1e-9))
+    return result
+
+
+def test_rate_and_state_parameters_are_recovered_within_their_errors() -> None:
+    fixed = {"v_0_m_s": RATE_AND_STATE["v0"]}
+    fit = jbf.fit(jbf.Rig(), velocity_step_runs(), law="rate_and_state", fixed=fixed)
+    assert fit.rms < 1.05 * 0.02, fit.report()
+    truth = {"F_0_n": "f0", "a_n": "a", "b": "b", "D_c_m": "dc", "F_v": "fv"}
+    for name, key in truth.items():
+        parameter = fit.parameters[name]
+        assert parameter.stderr is not None
+        error = parameter.value - RATE_AND_STATE[key]
+        assert abs(error) < 3.0 * parameter.stderr + 0.002 * RATE_AND_STATE[key], fit.report()
+        assert parameter.stderr < 0.1 * RATE_AND_STATE[key], fit.report()
+
+
+def test_rate_and_state_prediction_agrees_with_a_scipy_integration() -> None:
+    speed = velocity_steps(1e-4, 1e-3)
+    t = np.arange(0.0, 20.0, 0.002)
+    v = np.array([speed(x) for x in t])
+    names = ["F_0_n", "a_n", "b", "D_c_m", "v_0_m_s", "F_v"]
+    values = dict(zip(names, RATE_AND_STATE.values(), strict=True))
+    model = jbf.Model(jbf.Rig(), "rate_and_state", parameters=values)
+    difference = model.predict(jbf.Run.from_arrays(t, v)) - independent.rate_and_state(
+        speed, t, **RATE_AND_STATE
+    )
+    # At the reversals the motion between the samples is not recorded.
+    assert float(np.quantile(np.abs(difference), 0.99)) < 1e-3
+
+
+def test_automatic_selection_leaves_out_the_rate_and_state_law() -> None:
+    assert "rate_and_state" not in allowed(jbf.Rig())
+    assert "stribeck" in allowed(jbf.Rig())
 
 
 # Amplitude and Coulomb level of a joint (rad, N m), a machine slide and a precision stage (m, N).

@@ -32,6 +32,10 @@ pub struct Info {
     ///
     /// It is defined by [`Law::HAS_BRISTLE`] and repeated here.
     pub has_bristle: bool,
+    /// True if friction depends on motion before the last step.
+    ///
+    /// It is defined by [`Law::HAS_MEMORY`] and repeated here.
+    pub has_memory: bool,
     /// True if the law contains a dry friction `F sgn(v)` that is independent of the load and jumps
     /// at zero speed.
     ///
@@ -52,6 +56,7 @@ impl Info {
             needs_bearing: false,
             has_film: false,
             has_bristle: L::HAS_BRISTLE,
+            has_memory: L::HAS_MEMORY,
             has_dry_level: false,
         }
     }

@@ -16,6 +16,7 @@ pub mod journal;
 pub mod journal_full;
 pub mod lugre;
 pub mod maxwell_slip;
+pub mod rate_and_state;
 pub mod seven_parameter;
 pub mod stribeck;
 
@@ -151,6 +152,7 @@ registry::laws! {
     lugre::LuGre,
     maxwell_slip::MaxwellSlip,
     elasto_plastic::ElastoPlastic,
+    rate_and_state::RateAndState,
 }
 
 /// True if the catalogue has a law of this name and the values fit its parameters.

@@ -11,6 +11,7 @@ mod finite;
 mod limits;
 mod maxwell_slip;
 mod needs;
+mod rate_and_state;
 mod seven_parameter;
 mod steps;
 mod support;

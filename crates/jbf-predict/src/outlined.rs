@@ -1,7 +1,7 @@
 //! Effects of the catalogue, with each stage compiled as a separate function.
 //!
 //! A chain that holds [`Effects`] itself inlines the code of all effects into the time loop of its
-//! law. For nine laws, four number types and two instruction sets that is about fifty times. Here
+//! law. For ten laws, four number types and two instruction sets that is about fifty times. Here
 //! that code is compiled once per number type and instruction set. A step costs one call per stage
 //! that has an effect, and nothing for a stage without effects.
 //!

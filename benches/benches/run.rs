@@ -27,6 +27,7 @@ fn run<T: Real>(c: &mut Criterion, name: &str, step_s: f64, lift: impl Fn(usize,
         velocity_m_s,
         acceleration_m_s2,
         angle_rad,
+        weight_offset_rad: None,
         load_n,
         temperature_c: None,
     };

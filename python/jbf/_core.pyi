@@ -106,6 +106,7 @@ class Motion:
         angle_rad: _Array,
         load_n: _Array,
         temperature_c: _Array | None = None,
+        weight_offset_rad: _Array | None = None,
     ) -> Self: ...
     def __len__(self) -> int: ...
 

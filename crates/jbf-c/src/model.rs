@@ -153,6 +153,7 @@ pub unsafe fn whole<T: Real, L: Law<T>>(
         velocity_m_s,
         acceleration_m_s2,
         angle_rad,
+        weight_offset_rad: None,
         load_n,
         temperature_c,
     };

@@ -21,6 +21,10 @@ pub struct Motion<T> {
     pub acceleration_m_s2: T,
     /// Shaft angle, unwrapped, rad.
     pub angle_rad: T,
+    /// Angle over which a weight acts minus the shaft angle, rad.
+    ///
+    /// It is zero except for a joint behind other moving joints, whose link turns with all of them.
+    pub weight_offset_rad: T,
     /// Normal load on one bearing, N.
     pub load_n: T,
     /// Recorded temperature, C.
@@ -38,6 +42,7 @@ impl<T: Real> Motion<T> {
             velocity_m_s: T::ZERO,
             acceleration_m_s2: T::ZERO,
             angle_rad: T::ZERO,
+            weight_offset_rad: T::ZERO,
             load_n,
             temperature_c: None,
         }
@@ -75,6 +80,14 @@ impl<T: Real> Motion<T> {
         self
     }
 
+    /// Sets the angle over which a weight acts minus the shaft angle, rad.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_weight_offset_rad(mut self, weight_offset_rad: T) -> Self {
+        self.weight_offset_rad = weight_offset_rad;
+        self
+    }
+
     /// Sets the load on one bearing, N.
     #[inline(always)]
     #[must_use]
@@ -98,6 +111,7 @@ impl<T: Real> Motion<T> {
             && self.velocity_m_s.is_finite()
             && self.acceleration_m_s2.is_finite()
             && self.angle_rad.is_finite()
+            && self.weight_offset_rad.is_finite()
             && self.load_n.is_finite()
             && self.temperature_c.is_none_or(T::is_finite)
     }
@@ -111,6 +125,7 @@ impl<T: Real> Motion<T> {
             velocity_m_s: lift(self.velocity_m_s),
             acceleration_m_s2: lift(self.acceleration_m_s2),
             angle_rad: lift(self.angle_rad),
+            weight_offset_rad: lift(self.weight_offset_rad),
             load_n: lift(self.load_n),
             temperature_c: self.temperature_c.map(lift),
         }
@@ -131,6 +146,7 @@ impl<T: Real> Motion<T> {
             velocity_m_s: line(self.velocity_m_s, other.velocity_m_s),
             acceleration_m_s2: line(self.acceleration_m_s2, other.acceleration_m_s2),
             angle_rad: line(self.angle_rad, other.angle_rad) - sag(fraction) * bend,
+            weight_offset_rad: line(self.weight_offset_rad, other.weight_offset_rad),
             load_n: line(self.load_n, other.load_n),
             temperature_c: match (self.temperature_c, other.temperature_c) {
                 (Some(from), Some(to)) => Some(line(from, to)),
@@ -169,6 +185,8 @@ pub struct JournalMotion<T> {
     pub acceleration_m_s2: T,
     /// Journal angle, rad.
     pub angle_rad: T,
+    /// Angle over which a weight acts minus the journal angle, rad.
+    pub weight_offset_rad: T,
     /// Present value of the set-valued sgn(v): -1 or +1 in sliding.
     ///
     /// It is between the two where a stuck journal carries less than the sliding friction.
@@ -215,6 +233,7 @@ impl<T: Real> From<&Motion<T>> for JournalMotion<T> {
             velocity_m_s: m.velocity_m_s,
             acceleration_m_s2: m.acceleration_m_s2,
             angle_rad: m.angle_rad,
+            weight_offset_rad: m.weight_offset_rad,
             direction: m.velocity_m_s.sign(),
             time_s: m.time_s,
             load_n: m.load_n,

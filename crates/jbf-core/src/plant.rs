@@ -306,6 +306,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Plant<T, L, E> {
             velocity_m_s: speed_rad_s * radius_m,
             acceleration_m_s2: (speed_rad_s - before.speed_rad_s) * radius_m / h,
             angle_rad,
+            weight_offset_rad: T::ZERO,
             load_n: before.load_n,
             temperature_c: None,
         };

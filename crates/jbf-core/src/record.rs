@@ -14,6 +14,8 @@ pub struct Record<'a> {
     pub acceleration_m_s2: &'a [f64],
     /// Shaft angle, unwrapped, rad.
     pub angle_rad: &'a [f64],
+    /// Angle over which a weight acts minus the shaft angle, rad; zero without it.
+    pub weight_offset_rad: Option<&'a [f64]>,
     /// Load on one bearing, N.
     pub load_n: &'a [f64],
     /// Recorded temperature, C, if any.
@@ -35,6 +37,10 @@ impl Record<'_> {
             velocity_m_s: *self.velocity_m_s.get(i)?,
             acceleration_m_s2: *self.acceleration_m_s2.get(i)?,
             angle_rad: *self.angle_rad.get(i)?,
+            weight_offset_rad: match self.weight_offset_rad {
+                Some(all) => *all.get(i)?,
+                None => 0.0,
+            },
             load_n: *self.load_n.get(i)?,
             temperature_c: match self.temperature_c {
                 Some(all) => Some(*all.get(i)?),

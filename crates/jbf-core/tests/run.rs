@@ -34,6 +34,7 @@ impl Columns {
             velocity_m_s,
             acceleration_m_s2,
             angle_rad,
+            weight_offset_rad: None,
             load_n,
             temperature_c: self.1.as_deref(),
         }

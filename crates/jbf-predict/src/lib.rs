@@ -19,6 +19,7 @@
 //!     velocity_m_s: &[0.1, 0.2, 0.3],
 //!     acceleration_m_s2: &[1.0, 1.0, 1.0],
 //!     angle_rad: &[0.0, 0.015, 0.04],
+//!     weight_offset_rad: None,
 //!     load_n: &[1.0, 1.0, 1.0],
 //!     temperature_c: None,
 //! };

@@ -27,6 +27,7 @@ impl<T: Real> Along<'_, '_, T> {
             &mut motion.velocity_m_s,
             &mut motion.acceleration_m_s2,
             &mut motion.angle_rad,
+            &mut motion.weight_offset_rad,
             &mut motion.load_n,
         ]
         .into_iter()

@@ -13,6 +13,7 @@ pub struct Motion {
     velocity_m_s: Vec<f64>,
     acceleration_m_s2: Vec<f64>,
     angle_rad: Vec<f64>,
+    weight_offset_rad: Option<Vec<f64>>,
     load_n: Vec<f64>,
     temperature_c: Option<Vec<f64>>,
     paths: FilmPaths,
@@ -30,6 +31,7 @@ impl Motion {
             velocity_m_s: &self.velocity_m_s,
             acceleration_m_s2: &self.acceleration_m_s2,
             angle_rad: &self.angle_rad,
+            weight_offset_rad: self.weight_offset_rad.as_deref(),
             load_n: &self.load_n,
             temperature_c: self.temperature_c.as_deref(),
         }
@@ -44,7 +46,7 @@ impl Motion {
 impl Motion {
     #[new]
     #[pyo3(signature = (time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n,
-                        temperature_c=None))]
+                        temperature_c=None, weight_offset_rad=None))]
     fn new(
         time_s: PyReadonlyArray1<'_, f64>,
         velocity_m_s: PyReadonlyArray1<'_, f64>,
@@ -52,6 +54,7 @@ impl Motion {
         angle_rad: PyReadonlyArray1<'_, f64>,
         load_n: PyReadonlyArray1<'_, f64>,
         temperature_c: Option<PyReadonlyArray1<'_, f64>>,
+        weight_offset_rad: Option<PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<Self> {
         let n = time_s.len();
         let column = |name: &str, a: &PyReadonlyArray1<'_, f64>| -> PyResult<Vec<f64>> {
@@ -75,6 +78,9 @@ impl Motion {
             load_n: column("load_n", &load_n)?,
             temperature_c: temperature_c
                 .map(|values| column("temperature_c", &values))
+                .transpose()?,
+            weight_offset_rad: weight_offset_rad
+                .map(|values| column("weight_offset_rad", &values))
                 .transpose()?,
             paths: FilmPaths::default(),
         };

@@ -30,6 +30,7 @@ from jbf.records.motion.same_logger import further_starts
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
 from jbf.records.run import Run
+from jbf.records.weight_angle import check_weight_angles
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -107,10 +108,12 @@ class Campaign:
         ------
         InputError
             No run, a run without friction, no run with motion, or a force that is zero throughout.
+            The column `weight_angle_rad` in some runs only.
         """
         runs = list_of_runs(runs)
         if not runs:
             raise InputError(problem="no run was given", mend="name at least one CSV file")
+        check_weight_angles(rig, runs)
         again = copies(runs)
         ready, without_motion = _each(rig, {i: r for i, r in enumerate(runs) if i not in again})
         prepared = tuple(

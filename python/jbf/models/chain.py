@@ -34,6 +34,7 @@ from jbf.records.motion.readings import ReadingErrors
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
 from jbf.records.run import Run, run_on
+from jbf.records.weight_angle import weight_offset
 
 Array = npt.NDArray[np.float64]
 MAX_STEP_S = 0.02
@@ -200,6 +201,9 @@ def core_motion(
     celsius = recorded_temperature(run)
     if celsius is not None:
         columns["temperature_c"] = celsius
+    offset = weight_offset(rig, run, motion.angle_rad)
+    if offset is not None:
+        columns["weight_offset_rad"] = offset
     kept = None
     if before is not None:
         count, columns = _with_motion_before(columns, rig, *before)
@@ -212,6 +216,7 @@ def core_motion(
             np.ascontiguousarray(columns["angle_rad"]),
             np.ascontiguousarray(columns["load_n"]),
             None if celsius is None else np.ascontiguousarray(columns["temperature_c"]),
+            None if offset is None else np.ascontiguousarray(columns["weight_offset_rad"]),
         )
     # User-defined effects see the record with the motion that drives the models, also under the
     # names of its columns in a file.

@@ -48,6 +48,7 @@ OF_DRIVES = (
     "force_percent",
     "voltage_v",
     "load_n_m",
+    "weight_angle_rad",
     "velocity_rad_s",
     "speed_rpm",
     "motor_angle_rad",

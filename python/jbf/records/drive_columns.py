@@ -90,7 +90,8 @@ class DriveColumns:
     @property
     def known(self) -> tuple[str, ...]:
         """All columns with a defined meaning for this drive."""
-        return (*ALWAYS, *self.friction, *self.speed, *self.place)
+        of_link = ("weight_angle_rad",) if self.drive.motion == "rotary" else ()
+        return (*ALWAYS, *self.friction, *self.speed, *self.place, *of_link)
 
     def required(self, header: Sequence[str], need_friction: bool) -> list[str]:
         """Return the required columns: the time, a motion and a friction.
@@ -179,6 +180,7 @@ def _foreign_columns(columns: DriveColumns) -> dict[str, str]:
         for name, own in (("velocity_m_s", "velocity_rad_s"), ("position_m", "angle_rad")):
             found[name] = f"give {own}, or correct [drive]"
         return found
+    found["weight_angle_rad"] = "drop it: on a slide the weight is constant (sensor_offset)"
     found["angle_rad"] = "is it the motor's? then rename it to motor_angle_rad, else drop it"
     for name in ("velocity_rad_s", "speed_rpm"):
         found[name] = f"is it the motor's? then rename it to motor_{name}, else drop it"

@@ -35,6 +35,7 @@ WORDS = {
     "time_s": "time",
     "position_m": "position of the slide",
     "angle_rad": "angle of the shaft or joint",
+    "weight_angle_rad": "angle of a link behind several joints, over which its weight acts",
     "velocity_m_s": "speed of the slide, or at the surface",
     "velocity_rad_s": "speed of the joint, as an angle",
     "speed_rpm": "speed of the shaft or joint, in turns",

@@ -150,6 +150,7 @@ impl<T: Real, L: Law<T>, E: EffectSet<T>> Carried<T> for Whole<T, L, E> {
             velocity_m_s,
             acceleration_m_s2: change / dt_s,
             angle_rad,
+            weight_offset_rad: T::ZERO,
             load_n: self.load_n,
             temperature_c: None,
         };

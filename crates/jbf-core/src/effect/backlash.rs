@@ -146,6 +146,7 @@ impl<T: Real> Drive<T> for Backlash<T> {
             velocity_m_s: v1 * driven,
             acceleration_m_s2: to.acceleration_m_s2 * driven,
             angle_rad: to.angle_rad - (state.place_m - state.first_m) / rig.radius_m,
+            weight_offset_rad: to.weight_offset_rad,
             direction: to.direction * driven,
             time_s: to.time_s,
             load_n: to.load_n,

@@ -183,6 +183,7 @@ impl<T: Real> Drive<T> for DriveCompliance<T> {
             velocity_m_s: state.speed_rad_s * rig.radius_m,
             acceleration_m_s2: (state.speed_rad_s - before) / h * rig.radius_m,
             angle_rad: state.angle_rad,
+            weight_offset_rad: to.weight_offset_rad,
             direction,
             time_s: to.time_s,
             load_n: to.load_n,

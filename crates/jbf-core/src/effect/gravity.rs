@@ -2,6 +2,9 @@
 //!
 //! Source: any textbook on robots, such as Siciliano et al. (2009), section 7.3. For an axis that
 //! slides at an angle the weight is a constant, which is `sensor_offset`.
+//!
+//! The link of a joint behind other joints turns with all of them. Its angle theta is the angle of
+//! the joint plus [`JournalMotion::weight_offset_rad`].
 
 use super::{Effect, Info, Need, OtherFriction, Parameter, Rig, Stage};
 use crate::error::ParameterError;
@@ -26,8 +29,8 @@ impl<T: Real> Effect<T> for Gravity<T> {
         .transmitted()
         .source("Siciliano et al. 2009, section 7.3")
         .limits(
-            "one link, the others standing still; the angle must be absolute or have the same \
-                 zero in every run",
+            "one link, the others standing still unless weight_angle_rad is recorded; the angle \
+                 must be absolute or have the same zero in every run",
         )
         .parameters(&[
             Parameter::new(
@@ -67,9 +70,9 @@ impl<T: Real> Effect<T> for Gravity<T> {
 impl<T: Real> OtherFriction<T> for Gravity<T> {
     #[inline(always)]
     fn friction_n(&self, _state: &(), journal: &JournalMotion<T>) -> Friction<T> {
+        let theta = journal.angle_rad + journal.weight_offset_rad;
         // sin(theta - theta_0) from the precomputed cosine and sine of the offset.
-        let level =
-            journal.angle_rad.sin() * self.cos_offset - journal.angle_rad.cos() * self.sin_offset;
+        let level = theta.sin() * self.cos_offset - theta.cos() * self.sin_offset;
         Friction {
             jump: T::ZERO,
             smooth: self.weight_n * level,

@@ -95,6 +95,7 @@ fn the_reading_has_no_step_in_the_gap() {
         velocity_m_s: &columns[1],
         acceleration_m_s2: &columns[2],
         angle_rad: &columns[3],
+        weight_offset_rad: None,
         load_n: &columns[4],
         temperature_c: None,
     };

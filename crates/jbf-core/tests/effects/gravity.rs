@@ -23,3 +23,26 @@ fn weighs_as_the_sine_of_the_angle() {
         }
     }
 }
+
+/// The link of a joint behind another joint turns with both.
+#[test]
+fn weighs_as_the_sine_of_the_sum_of_two_joint_angles() {
+    let sines = Sines::two_way(1.0);
+    let other = |t: f64| 0.8 * (0.3 * t).sin();
+    for drive in [&[][..], &[("backlash", &[1e-12_f64][..])]] {
+        let effects: Vec<_> = [("gravity", &[3.0, 0.4][..])]
+            .into_iter()
+            .chain(drive.iter().copied())
+            .collect();
+        let chain = chain_round(newtons(F_C_N, 0.0), &effects);
+        let got = readings(&chain, 0.01, 700, |t| {
+            sines.at::<f64>(t).with_weight_offset_rad(other(t))
+        });
+        for (i, f) in got.iter().enumerate().skip(1) {
+            let t = 0.01 * i as f64;
+            let theta = 10.0 * (1.0 - t.cos()) + other(t);
+            let expected = F_C_N * t.sin().signum() + 3.0 * (theta - 0.4).sin();
+            assert!((f - expected).abs() < 1e-7, "{i}: {f} {expected}");
+        }
+    }
+}

@@ -1,0 +1,46 @@
+"""The angle of a link that turns with several joints, over which its weight acts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.errors import InputError
+from jbf.records.rig import Rig
+from jbf.records.run import Run
+
+Array = npt.NDArray[np.float64]
+
+WEIGHT_ANGLE = "weight_angle_rad"
+
+
+def weight_offset(rig: Rig, run: Run, angle_rad: Array) -> Array | None:
+    """Recorded angle of the link minus the angle of the joint, rad, shape (N,).
+
+    None without the column `weight_angle_rad`: the weight then acts over the angle of the joint. It
+    is used for rotary drives only.
+    """
+    if rig.quantities.motion != "rotary" or WEIGHT_ANGLE not in run.extra:
+        return None
+    offset: Array = np.unwrap(run.extra[WEIGHT_ANGLE]) - angle_rad
+    return offset
+
+
+def check_weight_angles(rig: Rig, runs: Sequence[Run]) -> None:
+    """Raise an InputError if some runs of a rotary drive have the angle of the link and some not.
+
+    One model has one angle over which the weight acts.
+    """
+    if rig.quantities.motion != "rotary":
+        return
+    having = [run for run in runs if WEIGHT_ANGLE in run.extra]
+    lacking = [run for run in runs if WEIGHT_ANGLE not in run.extra]
+    if having and lacking:
+        raise InputError(
+            file=lacking[0].path or lacking[0].name,
+            column=WEIGHT_ANGLE,
+            problem=f"is missing, and {having[0].name} has it",
+            mend="give it in every run, or in none",
+        )

@@ -74,7 +74,7 @@ def _rows(t4: ModuleType, rounds: int) -> dict[str, Row]:
         found = jbf.fit_trajectories(
             RIG, runs, data, start=start, tolerance=tolerance, phi_rad=0.01
         )
-        return np.array([found.values[name] for name in NAMES]), found.evaluations
+        return np.array([found.params[name] for name in NAMES]), found.evaluations
 
     return {
         "jbf.fit_trajectories, tolerance 1e-6": Row(lambda: ours(1e-6), 5 * rounds),

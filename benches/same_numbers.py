@@ -73,7 +73,7 @@ def answers(name: str, options: dict[str, Any], seed: int) -> Row:
             "correlations": fit.correlations.tolist(),
             "rms": fit.rms,
             "noise": [fit.noise.memory_s, fit.noise.colour],
-            "samples": fit.samples,
+            "samples": fit.nobs,
             "doubtful": list(fit.doubtful),
             "residuals_n": [float(np.sqrt(np.mean(r**2))) for r in fit.residuals],
         },

@@ -65,7 +65,7 @@ class Rivals:
 
         def score(fit: jbf.Fit) -> float:
             free = len(fit.parameters)
-            return fit.samples * 2.0 * math.log(fit.rms) + free * math.log(fit.samples)
+            return fit.nobs * 2.0 * math.log(fit.rms) + free * math.log(fit.nobs)
 
         chosen: list[str] = []
         best = score(self.bare)

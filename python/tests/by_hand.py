@@ -125,7 +125,7 @@ def fit_by_hand(effects: Sequence[str] = (), *, doubtful: tuple[str, ...] = ()) 
         rms=0.525,
         noise_floor=0.5,
         noise=replace(fitted.noise, colour=0.25, memory_s=0.15),
-        samples=1001,
+        nobs=1001,
         converged=True,
         doubtful=doubtful,
     )

@@ -117,7 +117,8 @@ def bootstrap(
     campaign = Campaign.prepare(model.rig, runs)
     truth = {name: p.value for name, p in fitted.parameters.items()}
     held = {name: truth[name] for name in fitted.fixed}
-    problem = Problem(campaign, model.law, model.clock, model.effects, held)
+    bounds = dict(fitted.bounds)
+    problem = Problem(campaign, model.law, model.clock, model.effects, held, bounds)
     random = np.random.default_rng(seed)
     predictions = problem.predict(np.array([truth[name] for name in problem.names]))
     sigmas = innovation_sizes(fitted, campaign)
@@ -129,9 +130,8 @@ def bootstrap(
             simulated_recording(p, f, fitted.noise, sigma, random)
             for p, f, sigma in zip(campaign.prepared, predictions, sigmas, strict=True)
         ]
-        other = Problem(
-            Campaign.prepare(model.rig, again), model.law, model.clock, model.effects, held
-        )
+        campaign_again = Campaign.prepare(model.rig, again)
+        other = Problem(campaign_again, model.law, model.clock, model.effects, held, bounds)
         answers.append(minimum(other, [named_values(start, problem.parameters)]).values)
     values = dict(zip(problem.names, np.array(answers).T, strict=True))
     parameters = {
@@ -142,7 +142,14 @@ def bootstrap(
     told = [name for name, p in fitted.parameters.items() if not p.held]
     kept = [k for k, name in enumerate(told) if not parameters[name].held]
     among = fitted.correlations[kept][:, kept]
-    fit = replace(fitted, model=model, parameters=parameters, correlations=among, doubtful=())
+    fit = replace(
+        fitted,
+        model=model,
+        parameters=parameters,
+        correlations=among,
+        doubtful=(),
+        cov_type="bootstrap",
+    )
     return Bootstrap(fit, values)
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
+from statistics import NormalDist
 from typing import Any
 
 from jbf.errors import InputError
 from jbf.models.catalogue import find_parameter
 from jbf.models.parameter_value import ParameterValue
+from jbf.records.toml_file import number
 from jbf.results import Result
 
 
@@ -19,16 +22,58 @@ class Estimates(Result):
     """
 
     parameters: dict[str, ParameterValue]
+    nobs: int
 
     @property
-    def values(self) -> dict[str, float]:
-        """Values by parameter name."""
+    def params(self) -> dict[str, float]:
+        """Values by parameter name, those of held parameters included."""
         return {name: p.value for name, p in self.parameters.items()}
 
     @property
-    def stderr(self) -> dict[str, float | None]:
-        """Standard errors by parameter name; None where no error is known."""
-        return {name: p.stderr for name, p in self.parameters.items()}
+    def stderr(self) -> dict[str, float]:
+        """Standard errors by parameter name; nan where the parameter is held."""
+        errors = {name: p.stderr for name, p in self.parameters.items()}
+        return {name: math.nan if error is None else error for name, error in errors.items()}
+
+    @property
+    def var_names(self) -> tuple[str, ...]:
+        """Names of the estimated parameters: those that are not held."""
+        return tuple(name for name, p in self.parameters.items() if not p.held)
+
+    def conf_int(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
+        """Return the confidence interval of each parameter.
+
+        Parameters
+        ----------
+        level
+            Confidence level, between 0 and 1.
+
+        Returns
+        -------
+        dict of str to (float, float)
+            Lower and upper limit by parameter name; nan where the parameter is held.
+
+        Raises
+        ------
+        InputError
+            The level is not between 0 and 1.
+
+        Notes
+        -----
+        The interval is ``value -/+ z stderr`` with the quantile z of the standard normal
+        distribution (Wald interval). It is not valid for parameters whose likelihood is not a
+        parabola at one standard error (`Fit.doubtful`); their errors come from a bootstrap.
+        """
+        if not 0.0 < number(level, "level") < 1.0:
+            raise InputError(
+                key="level", problem=f"{level:g} is not a probability", mend="try 0.95"
+            )
+        z = NormalDist().inv_cdf(0.5 + 0.5 * level)
+        errors = self.stderr
+        return {
+            name: (value - z * errors[name], value + z * errors[name])
+            for name, value in self.params.items()
+        }
 
     def __getitem__(self, name: str) -> ParameterValue:
         return self.parameters[find_parameter(name, self.parameters)]

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError, Stopped, Unfinished
+from jbf.estimation.bounds import bounded_pages, checked_bounds
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.curvature import doubtful_errors
 from jbf.estimation.estimates import Estimates
 from jbf.estimation.exact_delay import exact_delay
 from jbf.estimation.film_rate import check_film
+from jbf.estimation.likelihood import log_likelihood
 from jbf.estimation.minimum import minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.noise_floor import noise_floor
@@ -33,12 +35,15 @@ from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
 from jbf.models.vocabulary import Clock
+from jbf.records.arguments import one_of
 from jbf.records.findings.finding import Finding
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
+CovType = Literal["model", "bootstrap"]
+"""Method of the standard errors."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,13 +56,21 @@ class Fit(Estimates):
         The fitted model.
     parameters
         Dotted name to value with standard error. A parameter that is not identifiable is held, and
-        its note states the reason.
+        its note states the reason. `params` and `stderr` are its values and errors by name.
     correlations
-        Shape (k, k), in the order of the `parameters` that are not held.
+        Correlations of the estimates, shape (k, k), in the order of `var_names`.
     rms
         Root mean square of the residual over the samples that count, N.
+    noise
+        The estimated noise model: white noise with a first-order coloured part.
+    nobs
+        Number of samples n that count: those in motion with a known sign.
     residuals
         Record minus prediction, N, one array a run.
+    loglik
+        Log-likelihood at the estimates.
+    converged, message
+        Convergence flag and message of the search.
     doubtful
         Names of the parameters whose standard error is not valid, because the likelihood is not a
         parabola at one standard error. :func:`jbf.bootstrap` computes their errors.
@@ -68,6 +81,36 @@ class Fit(Estimates):
     noise_floor
         Standard deviation of the noise on the record, estimated from the record only, N; None if it
         cannot be estimated.
+    bounds
+        Bounds that were given to the fit, by parameter name.
+    cov_type
+        Method of the standard errors: "model" or "bootstrap".
+
+    Notes
+    -----
+    `loglik` is the Gaussian log-likelihood of the residuals whitened by the estimated noise model,
+    with their variance at its maximum-likelihood value s^2:
+    ``-2 loglik = n (log(2 pi s^2) + 1) + log det C``, where s^2 C is the covariance of the noise.
+    The number of parameters k counts the estimated ones only (`var_names`), neither those that are
+    held nor those of the noise. ``aic = 2 k - 2 loglik`` (Akaike 1974) and
+    ``bic = k log(n) - 2 loglik`` (Schwarz 1978) compare fits to the same samples. Robust weights
+    are treated as known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 10.0, 0.02)
+    >>> v = 0.1 * np.sin(2.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> fit = jbf.fit(jbf.Rig(), [run], law="coulomb", fixed={"F_s": 5.0})
+    >>> fit.var_names
+    ('F_c', 'F_v')
+    >>> low, high = fit.conf_int()["F_c"]
+    >>> low < 5.0 < high
+    True
+    >>> fit.covariance.shape
+    (2, 2)
     """
 
     model: Model
@@ -75,7 +118,7 @@ class Fit(Estimates):
     correlations: Array
     rms: float
     noise: Noise
-    samples: int
+    nobs: int
     residuals: list[Array]
     converged: bool
     message: str
@@ -83,12 +126,41 @@ class Fit(Estimates):
     fixed: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
     noise_floor: float | None = None
+    loglik: float = math.nan
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    cov_type: CovType = "model"
 
     def __post_init__(self) -> None:
-        told = sum(not p.held for p in self.parameters.values())
+        told = len(self.var_names)
         if self.correlations.shape != (told, told):
             shape = self.correlations.shape
             raise ValueError(f"correlations of shape {shape} for {told} parameters not held")
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance matrix of the estimates, shape (k, k), in the order of `var_names`."""
+        errors = np.array([self.stderr[name] for name in self.var_names])
+        return self.correlations * np.outer(errors, errors)
+
+    @property
+    def aic(self) -> float:
+        """Akaike's information criterion."""
+        return 2.0 * len(self.var_names) - 2.0 * self.loglik
+
+    @property
+    def bic(self) -> float:
+        """Bayesian information criterion."""
+        return len(self.var_names) * math.log(self.nobs) - 2.0 * self.loglik
+
+    def predict(self, run: Run) -> Array:
+        """Predict the friction reading for the motion of a run, N, shape (n,).
+
+        Raises
+        ------
+        InputError
+            The run lacks a column that the model needs.
+        """
+        return self.model.predict(run)
 
     def report(self) -> str:
         """Return `summary`: statistics, parameters with errors, and the strongest correlations."""
@@ -101,7 +173,7 @@ class Fit(Estimates):
             "effects": list(self.model.effects),
             "rms": self.rms,
             "noise_floor": self.noise_floor,
-            "samples": self.samples,
+            "samples": self.nobs,
             "converged": self.converged,
             "message": self.message,
             "doubtful": list(self.doubtful),
@@ -153,13 +225,15 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         correlations=correlations(problem, named, known),
         rms=rms,
         noise=solution.noise,
-        samples=samples,
+        nobs=samples,
         residuals=list(found.residuals),
         converged=solution.converged,
         message=solution.message,
         fixed=tuple(name for name in problem.names if name in problem.fixed),
         findings=campaign.findings,
         noise_floor=noise_floor(campaign.prepared, solution.samples) or None,
+        loglik=log_likelihood(solution),
+        bounds=problem.bounds,
     )
 
 
@@ -173,14 +247,12 @@ def fit(
     clock: Clock = "journal",
     start: Mapping[str, float] | None = None,
     fixed: Mapping[str, float] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    cov_type: CovType = "model",
 ) -> Fit:
     """Fit the base law, with named effects, to runs.
 
     Least squares over all samples at which the sign of the motion is known, with exact derivatives.
-    Bounds are taken from the catalogue; starting values from the catalogue or, for a law in
-    newtons, from the data. Residuals are weighted by the coloured-noise model where the residual
-    shows colour and plain least squares agrees. Huber's weights are used where they have the
-    smaller held-out error.
 
     Parameters
     ----------
@@ -193,24 +265,60 @@ def fit(
     law, clock
         Base law and its clock.
     start, fixed
-        Values by parameter name to start from, or to hold.
+        Values by parameter name to start from, or to hold. Other starting values are those of the
+        catalogue or, for a law in newtons, are estimated from the data.
+    bounds
+        Pairs (low, high) by parameter name, within the bounds of the catalogue. A parameter that
+        ends at a bound has no standard error.
+    cov_type
+        "model": standard errors from the curvature of the likelihood, increased by the long-run
+        variance of the score where the noise model does not describe the residual. "bootstrap":
+        from 40 fits of simulated records (:func:`jbf.bootstrap`), which take 40 times as long.
+
+    Returns
+    -------
+    Fit
+        The estimates with their statistics.
 
     Raises
     ------
     InputError
-        An unknown name, a missing column, runs without motion, or a film too fast for the runs.
+        An unknown name, an empty interval of bounds, a missing column, runs without motion, or a
+        film too fast for the runs.
     Stopped
         The fit was interrupted; the exception holds the best fit so far.
     Unfinished
         The fit exceeded its budget; the exception holds the best fit so far.
+
+    Notes
+    -----
+    The estimates minimise ``sum(e(y - f(p))^2)`` over the whitened residuals e. The noise is white
+    plus a first-order coloured part where the residual shows colour and plain least squares agrees
+    (`Fit.noise`). Huber's weights (Huber 1964) or those of Student's t (Lange et al. 1989) are used
+    where they have the smaller held-out error. The standard errors are those of Newey & West (1987)
+    where the whitened residuals are correlated.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 10.0, 0.02)
+    >>> v = 0.1 * np.sin(2.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> fit = jbf.fit(jbf.Rig(), [run], law="coulomb", bounds={"F_c": (1.0, 10.0)})
+    >>> round(fit.params["F_c"], 1)
+    5.0
     """
+    one_of(cov_type, get_args(CovType), "cov_type")
     chosen = in_chain_order(effects)
     check_rig(rig, law)
     check_applies(law, chosen)
     campaign = Campaign.prepare(rig, runs)
     check_effects(campaign, chosen)
     known = parameters_of(law, chosen)
-    problem = Problem(campaign, law, clock, chosen, named_values(fixed, known))
+    limits = checked_bounds(bounds, known)
+    known = bounded_pages(known, limits)
+    problem = Problem(campaign, law, clock, chosen, named_values(fixed, known), limits)
     given = named_values(start, known)
     check_film(campaign, law, clock, {**given, **problem.fixed})
     try:
@@ -229,4 +337,9 @@ def fit(
             raise Unfinished(steps=stop.steps, fit=best, file=campaign.named) from None
         raise Stopped(best) from None
     fitted = finish(problem, solution, given)
-    return replace(fitted, doubtful=doubtful_errors(problem, solution, fitted.parameters))
+    fitted = replace(fitted, doubtful=doubtful_errors(problem, solution, fitted.parameters))
+    if cov_type == "model":
+        return fitted
+    from jbf.estimation.bootstrap import bootstrap  # which imports this module
+
+    return bootstrap(fitted, runs, start=start).fit

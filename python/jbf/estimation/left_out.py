@@ -310,7 +310,7 @@ def _groups(campaign: Campaign) -> list[list[int]]:
 def _of(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
     """Return the problem for other runs, with more parameters held."""
     fixed = {**problem.fixed, **held}
-    return Problem(campaign, problem.law, problem.clock, problem.effects, fixed)
+    return Problem(campaign, problem.law, problem.clock, problem.effects, fixed, problem.bounds)
 
 
 def _held(problem: Problem, unknown: Mask) -> dict[str, float]:

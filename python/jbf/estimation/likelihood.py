@@ -37,6 +37,36 @@ def likelihood_gain(richer: Solution, simpler: Solution) -> float:
     return simpler_cost - richer_cost
 
 
+def log_likelihood(solution: Solution) -> float:
+    """Log-likelihood of the whitened residuals at a solution, with the variance estimated.
+
+    Notes
+    -----
+    With n whitened, weighted residuals of mean square s^2, and the covariance s^2 C of the noise,
+    ``-2 log L = n (log(2 pi s^2) + 1) + log det C``. The filter of coloured noise has a unit
+    determinant. Weights contribute ``-2 sum(log w)``; random effects and the errors of the motion
+    contribute the determinants of their covariances.
+    """
+    samples = solution.samples
+    count = sum(int(np.count_nonzero(w)) for w in samples.weight)
+    constant = count * (np.log(2.0 * np.pi) + 1.0)
+    return float(-0.5 * (constant + solution.cost + _log_determinant(solution, count)))
+
+
+def _log_determinant(solution: Solution, count: int) -> float:
+    """Log determinant of the covariance of the noise, in units of its estimated variance."""
+    samples = solution.samples
+    if samples.motion is not None:
+        zeros = [np.zeros(len(w)) for w in samples.weight]
+        whole = samples.motion.deviance(zeros, samples.weight)
+        return whole - 2.0 * count * float(np.log(samples.motion.noise))
+    weights = -2.0 * sum(float(np.sum(np.log(w[w > 0.0]))) for w in samples.weight)
+    if samples.between is None:
+        return weights
+    between = samples.between.log_determinant(samples.weight, samples.steps_s, solution.noise)
+    return weights + between
+
+
 _shares: WeakKeyDictionary[Solution, float] = WeakKeyDictionary()
 
 

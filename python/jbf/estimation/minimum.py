@@ -118,7 +118,7 @@ def not_above_nested(problem: Problem, solution: Solution) -> Solution:
     if not problem.effects:
         return solution
     fixed = {name: value for name, value in problem.fixed.items() if "." not in name}
-    law = Problem(problem.campaign, problem.law, problem.clock, (), fixed)
+    law = Problem(problem.campaign, problem.law, problem.clock, (), fixed, problem.bounds)
     if not law.open:
         return solution
     nested = settle(law, approach(law, [{}], NESTED_EVALUATIONS)).values

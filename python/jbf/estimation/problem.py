@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.estimation.bounds import Bounds, bounded_pages
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.initial_state import has_unknown_start, memories, remembering
 from jbf.estimation.jumps import active_effects, moves_jumps, samples_near_jumps, spreads_jumps
@@ -69,23 +70,25 @@ class Problem:
         clock: Clock,
         effects: Sequence[str],
         fixed: Mapping[str, float] | None = None,
+        bounds: Bounds | None = None,
     ) -> None:
         self.campaign = campaign
         self.best = Best()
         self.law, self.clock = law, clock
         self.effects = in_chain_order(effects)
         self.chain = chain(campaign.rig, law, clock, self.effects)
-        self.parameters: dict[str, Parameter] = with_starts(
+        pages = with_starts(
             parameters_of(law, self.effects), campaign, not find_law(law).needs_bearing
         )
+        self.bounds: Bounds = {n: pair for n, pair in (bounds or {}).items() if n in pages}
+        self.parameters = bounded_pages(pages, self.bounds)
         self.names = list(self.parameters)
         stated = {name: page.starts[0] for name, page in self.parameters.items() if page.stated}
         self.fixed = stated | dict(fixed or {})
         self.open = [i for i, name in enumerate(self.names) if name not in self.fixed]
-        pages = list(self.parameters.values())
-        self.log = np.array([p.log for p in pages])
-        self.lower = np.array([p.lower for p in pages])
-        self.upper = np.array([p.upper for p in pages])
+        self.log = np.array([p.log for p in self.parameters.values()])
+        self.lower = np.array([p.lower for p in self.parameters.values()])
+        self.upper = np.array([p.upper for p in self.parameters.values()])
 
     # ---- search variables -------------------------------------------------------------------
 

@@ -44,7 +44,7 @@ class TrajectoryFit(Estimates):
         Name to value with standard error (residuals as independent noise of one size).
     sum_of_squares
         Sum of squares of the residual friction coefficients.
-    samples
+    nobs
         Number of fitted samples.
     evaluations
         Number of simulations of all runs, each with its derivatives.
@@ -54,7 +54,7 @@ class TrajectoryFit(Estimates):
 
     parameters: dict[str, ParameterValue]
     sum_of_squares: float
-    samples: int
+    nobs: int
     evaluations: int
     converged: bool
     message: str
@@ -63,7 +63,7 @@ class TrajectoryFit(Estimates):
         """Entries of `to_dict` in addition to the parameters."""
         return {
             "sum_of_squares": self.sum_of_squares,
-            "samples": self.samples,
+            "samples": self.nobs,
             "evaluations": self.evaluations,
             "converged": self.converged,
             "message": self.message,
@@ -174,7 +174,7 @@ def fit_trajectories(
     return TrajectoryFit(
         parameters=parameters,
         sum_of_squares=2.0 * float(found.cost),
-        samples=len(data),
+        nobs=len(data),
         evaluations=evaluations,
         converged=bool(found.status > 0),
         message=str(found.message),

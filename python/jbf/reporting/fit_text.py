@@ -48,7 +48,7 @@ def fit_report(fit: Fit) -> str:
         ("law", law_words(model)),
         ("effects", ", ".join(model.effects) or "none"),
         ("runs", str(len(fit.residuals))),
-        ("samples", str(fit.samples)),
+        ("samples", str(fit.nobs)),
         ("RMS of the residual", f"{number(fit.rms)} {model.rig.quantities.force}"),
         ("noise of the records", noise_floor_words(fit)),
         ("noise in the residual", noise_words(fit.noise)),
@@ -93,7 +93,7 @@ def bootstrap_report(found: Bootstrap) -> str:
 def trajectory_report(fit: TrajectoryFit) -> str:
     """Format the statistics and the parameters with standard errors."""
     facts = [
-        ("samples", str(fit.samples)),
+        ("samples", str(fit.nobs)),
         ("sum of squares", f"{number(fit.sum_of_squares)} (of friction coefficients)"),
         ("simulations", str(fit.evaluations)),
         ("search", "converged" if fit.converged else f"not converged: {fit.message}"),

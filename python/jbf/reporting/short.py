@@ -53,7 +53,7 @@ def short_fit(fit: Fit) -> str:
     unit = fit.model.rig.quantities.force
     return (
         f"Fit({_law(fit.model)}; {count_of(len(fit.residuals), 'run')}, "
-        f"{count_of(fit.samples, 'sample')}, "
+        f"{count_of(fit.nobs, 'sample')}, "
         f"RMS {number(fit.rms)} {unit}{search};\n    {_fitted(fit)})"
     )
 
@@ -67,9 +67,7 @@ def short_bootstrap(found: Bootstrap) -> str:
 def short_trajectory_fit(fit: TrajectoryFit) -> str:
     """Summarize the number of samples and the parameters."""
     search = "" if fit.converged else ", not converged"
-    return (
-        f"TrajectoryFit({count_of(fit.samples, 'sample')}{search};\n    {_values(fit.parameters)})"
-    )
+    return f"TrajectoryFit({count_of(fit.nobs, 'sample')}{search};\n    {_values(fit.parameters)})"
 
 
 def short_comparison(comparison: Comparison) -> str:

@@ -65,7 +65,7 @@ def bootstrap_table(found: Bootstrap) -> str:
 def trajectory_table(fit: TrajectoryFit) -> str:
     """Tabulate the parameters with standard errors."""
     rows = parameter_rows("journal", (), fit.parameters)
-    return table(f"Fit of trajectories: {fit.samples} samples", PARAMETER_HEAD, rows)
+    return table(f"Fit of trajectories: {fit.nobs} samples", PARAMETER_HEAD, rows)
 
 
 def loop_table(run: LoopRun) -> str:

@@ -121,8 +121,8 @@ def test_trajectory_fit_from_distant_starts_converges_with_missing_samples() -> 
     found = jbf.fit_trajectories(RIG, SWINGS, pieces, start=start)
     assert found.converged
     assert found.evaluations < 15
-    assert found.samples == len(clean()) - 20
-    assert found.sum_of_squares == pytest.approx(NOISE**2 * found.samples, rel=0.2)
+    assert found.nobs == len(clean()) - 20
+    assert found.sum_of_squares == pytest.approx(NOISE**2 * found.nobs, rel=0.2)
     for name, value in found.parameters.items():
         assert abs(value.value - TRUTH[name]) < 4.0 * value.stderr
         assert value.stderr < 0.1 * value.value
@@ -140,11 +140,11 @@ def test_trajectory_fit_errors_are_those_of_least_squares() -> None:
     data += NOISE * np.random.default_rng(5).standard_normal(len(data))
     found = jbf.fit_trajectories(RIG, runs, np.split(data, len(runs)), start=TRUTH)
     columns = []
-    for name, value in found.values.items():
-        up, down = ({**found.values, name: value * (1.0 + h)} for h in (1e-4, -1e-4))
+    for name, value in found.params.items():
+        up, down = ({**found.params, name: value * (1.0 + h)} for h in (1e-4, -1e-4))
         columns.append((along(up, 1e-10) - along(down, 1e-10)) / (2e-4 * value))
     x = np.stack(columns, 1)
-    residual = data - along(found.values)
+    residual = data - along(found.params)
     assert found.sum_of_squares == pytest.approx(residual @ residual, rel=1e-3)
     covariance = np.linalg.inv(x.T @ x) * (residual @ residual) / (len(data) - len(TRUTH))
     errors = np.sqrt(np.diag(covariance))
@@ -186,13 +186,13 @@ def test_trajectory_fit_ignores_samples_at_rest_or_without_a_measurement() -> No
     data[0][-4:] = np.nan
     moving = np.sum(record[:-4] != 0.0) + np.sum(speed > 1e-9 * 0.2)
     assert np.sum(speed <= 1e-9 * 0.2) == 3
-    assert jbf.fit_trajectories(RIG, runs, data, start=TRUTH).samples == moving
+    assert jbf.fit_trajectories(RIG, runs, data, start=TRUTH).nobs == moving
 
 
 def test_fit_is_rejected_if_samples_do_not_outnumber_parameters() -> None:
     few = [(np.linspace(0.5, 2.5, 5), (0.127, 0.25, 0.0))]
     data = [np.array(jbf.trajectories(RIG, TRUTH, few)[0].friction_coefficient)]
-    assert jbf.fit_trajectories(RIG, few, data, start=TRUTH).samples == 5
+    assert jbf.fit_trajectories(RIG, few, data, start=TRUTH).nobs == 5
     data[0][0] = np.nan
     with pytest.raises(InputError, match="too few for 4 parameters"):
         jbf.fit_trajectories(RIG, few, data, start=TRUTH)

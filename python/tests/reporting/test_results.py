@@ -77,7 +77,7 @@ def test_reporting_functions_reject_an_object_that_is_not_a_result() -> None:
 def test_fit_parameter_is_accessible_by_name() -> None:
     fit = fit_by_hand(["sensor_offset"])
     assert fit["sensor_offset.b"] is fit.parameters["sensor_offset.b"]
-    assert fit["F_c"].value == fit.values["F_c"] == 4.9876
+    assert fit["F_c"].value == fit.params["F_c"] == 4.9876
     assert fit.stderr["F_c"] == 0.0123
     assert "F_v" in fit
     assert "F_x" not in fit

@@ -9,16 +9,19 @@ compensation in control loops.
 'missing'
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from importlib import import_module as _import_module
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
+from jbf import cores as _cores
+from jbf import results as _results
 from jbf._core import __version__
-from jbf.cores import cap_threads
-from jbf.errors import FilmWarning, InputError, JbfError
+from jbf.errors import FilmWarning, InputError, JbfError, Stopped, Unfinished
 
-if TYPE_CHECKING:
+if _TYPE_CHECKING:
     from jbf import control, plot
-    from jbf.comparison.comparison import Comparison, compare
+    from jbf.comparison.compare import compare
+    from jbf.comparison.comparison import Comparison
+    from jbf.comparison.model_comparison import ModelComparison
     from jbf.diagnosis import Diagnosis, Experiment, Limits, Policy, diagnose, diagnose_many
     from jbf.diagnosis.check import Check, check
     from jbf.diagnosis.plan import Plan, plan
@@ -43,7 +46,11 @@ if TYPE_CHECKING:
     from jbf.records.run import Run
     from jbf.records.run_files import read_runs
 
-cap_threads()
+_cores.cap_threads()
+_results.presented_by(
+    "jbf.reporting.presenters", "summary", "short_words", "small_table", "columns"
+)
+_results.presented_by("jbf.reporting.pictures", "plot", "page")
 
 # All names are imported at first use. numpy takes a tenth of a second to import and scipy most of a
 # second: `jbf --help` needs neither, and a prediction does not need scipy.
@@ -74,7 +81,8 @@ _LATER = {
     "Bootstrap": "jbf.estimation.bootstrap",
     "bootstrap": "jbf.estimation.bootstrap",
     "Comparison": "jbf.comparison.comparison",
-    "compare": "jbf.comparison.comparison",
+    "ModelComparison": "jbf.comparison.model_comparison",
+    "compare": "jbf.comparison.compare",
     "Diagnosis": "jbf.diagnosis",
     "Experiment": "jbf.diagnosis",
     "Limits": "jbf.diagnosis",
@@ -100,7 +108,7 @@ _LATER = {
     "read_recording": "jbf.importing.import_files",
 }
 
-_ROOMS = ("control", "models", "plot", "records")
+_PACKAGES = ("control", "plot")
 
 __all__ = [
     "Bearing",
@@ -121,6 +129,7 @@ __all__ = [
     "Lubricant",
     "Map",
     "Model",
+    "ModelComparison",
     "Parameter",
     "ParameterValue",
     "Plan",
@@ -128,8 +137,10 @@ __all__ = [
     "Policy",
     "Rig",
     "Run",
+    "Stopped",
     "Trajectory",
     "TrajectoryFit",
+    "Unfinished",
     "__version__",
     "batch",
     "bootstrap",
@@ -162,15 +173,15 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    if name in _ROOMS:
-        return import_module(f"jbf.{name}")
+def __getattr__(name: str) -> object:
+    if name in _PACKAGES:
+        return _import_module(f"jbf.{name}")
     if name not in _LATER:
         raise AttributeError(f"module 'jbf' has no attribute {name!r}")
-    value = getattr(import_module(_LATER[name]), name)
+    value = getattr(_import_module(_LATER[name]), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

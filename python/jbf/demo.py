@@ -13,7 +13,7 @@ from collections.abc import Callable
 from importlib.resources import as_file, files
 from pathlib import Path
 
-from jbf.comparison.comparison import compare
+from jbf.comparison.compare import compare
 from jbf.diagnosis import Diagnosis, diagnose
 from jbf.records.rig import read_rig
 from jbf.records.run import PathLike

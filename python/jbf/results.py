@@ -1,15 +1,15 @@
-"""Common methods of results, and their only entry point to texts, tables and plots.
+"""Common methods of results, and the registry of the functions that present them.
 
-A result holds numbers and does not depend on their presentation. Each method here calls
-`jbf.reporting.door`, which is imported at the first call. No other module below reporting may use
-it.
+A result holds numbers and does not depend on their presentation. Presenters are registered by
+operation and type with `register`. A module that registers them is named by `presented_by` and
+imported at the first call, because texts and plots take long to import.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from jbf.errors import InputError
 from jbf.text_files import write_text
@@ -17,19 +17,84 @@ from jbf.text_files import write_text
 if TYPE_CHECKING:
     import os
 
+    import numpy as np
+    import numpy.typing as npt
     from matplotlib.axes import Axes
 
+    AxesOrArray = Axes | Sequence[Axes] | npt.NDArray[np.object_]
 
-def _call_reporting(verb: str, result: object, *arguments: Any) -> Any:
-    """Call a function of the reporting entry point."""
-    return getattr(import_module("jbf.reporting.door"), verb)(result, *arguments)
+Operation = Literal["summary", "short_words", "small_table", "columns", "plot", "page"]
+"""Presentation of a result.
+
+`summary` is a text for a terminal, `short_words` one or two lines, `small_table` an HTML table,
+`columns` arrays of equal length by name, `plot` matplotlib axes, and `page` an HTML page.
+"""
+Kind = TypeVar("Kind")
+
+_presenters: dict[Operation, dict[type, Callable[..., Any]]] = {}
+_modules: dict[Operation, list[str]] = {}
+
+
+def register(operation: Operation, kind: type[Kind], presenter: Callable[..., Any]) -> None:
+    """Register the function that presents results of a type, and of types derived from it."""
+    _presenters.setdefault(operation, {})[kind] = presenter
+
+
+def presented_by(module: str, *operations: Operation) -> None:
+    """Name a module that registers presenters; it is imported when one of them is needed."""
+    for operation in operations:
+        _modules.setdefault(operation, []).append(module)
+
+
+def present(operation: Operation, result: object, *arguments: Any) -> Any:
+    """Call the presenter of a result.
+
+    Raises
+    ------
+    TypeError
+        No presenter is registered for the type of the result.
+    """
+    for module in _modules.get(operation, ()):
+        import_module(module)
+    known = _presenters.get(operation, {})
+    for kind in type(result).__mro__:
+        if kind in known:
+            return known[kind](result, *arguments)
+    raise TypeError(f"no {operation} is registered for results of type {type(result).__name__}")
+
+
+def data_frame(columns: Any) -> Any:
+    """Return columns as a `pandas.DataFrame`; pandas is an optional dependency.
+
+    Raises
+    ------
+    InputError
+        pandas is not installed.
+    """
+    return optional("pandas", "a frame").DataFrame(columns)
+
+
+def optional(module: str, what: str) -> Any:
+    """Import a package that is not a dependency of jbf.
+
+    Raises
+    ------
+    InputError
+        The package is not installed.
+    """
+    try:
+        return import_module(module)
+    except ImportError:
+        raise InputError(
+            problem=f"{what} needs {module}, which is not installed", mend=f"pip install {module}"
+        ) from None
 
 
 class Shown:
     """Base of objects with a notebook representation."""
 
     def _repr_html_(self) -> str:
-        table: str = _call_reporting("small_table", self)
+        table: str = present("small_table", self)
         return table
 
 
@@ -38,16 +103,33 @@ class Result(Shown):
 
     def summary(self) -> str:
         """Return the result in words, as text for a terminal."""
-        text: str = _call_reporting("summary", self)
+        text: str = present("summary", self)
         return text
 
-    def plot(self, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+    def plot(self, axes: AxesOrArray | None = None) -> Axes | npt.NDArray[np.object_]:
         """Plot the result on the given matplotlib axes, or on a new figure.
 
-        No window opens; ``axes[0].figure.savefig("a.png")`` writes it.
+        Parameters
+        ----------
+        axes
+            As many axes as the plot returns. Default: those of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes or ndarray of Axes
+            A single axes, or an array of shape (n,). No window opens;
+            ``jbf.plot.save(result.plot(), "a.png")`` writes the figure.
+
+        Raises
+        ------
+        InputError
+            The number of axes is wrong, or the result has nothing to plot.
         """
-        drawn: Sequence[Axes] = _call_reporting("plot", self, axes)
-        return drawn
+        import numpy as np  # most of the time of `import jbf`
+
+        drawn = np.ravel(np.asarray(present("plot", self, axes), dtype=object))
+        single: Axes = drawn[0]
+        return drawn if len(drawn) > 1 else single
 
     def to_dict(self) -> dict[str, Any]:
         """Return numbers and words for JSON; every result implements its own."""
@@ -61,13 +143,7 @@ class Result(Shown):
         InputError
             pandas is not installed.
         """
-        try:
-            pandas = import_module("pandas")
-        except ImportError:
-            raise InputError(
-                problem="a frame needs pandas, which is not installed", mend="pip install pandas"
-            ) from None
-        return pandas.DataFrame(_call_reporting("columns", self))
+        return data_frame(present("columns", self))
 
     def save_html(self, path: str | os.PathLike[str]) -> None:
         """Write a self-contained HTML page with plots, atomically.
@@ -77,8 +153,8 @@ class Result(Shown):
         InputError
             The file cannot be written.
         """
-        write_text(path, _call_reporting("page", self))
+        write_text(path, present("page", self))
 
     def __repr__(self) -> str:
-        line: str = _call_reporting("short_words", self)
+        line: str = present("short_words", self)
         return line

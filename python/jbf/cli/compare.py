@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
         _, runs = inputs.recordings(arguments.map, arguments.runs)
     outputs.check(wanted, [run.path for run in runs if run.path])
 
-    from jbf.comparison.comparison import compare
+    from jbf.comparison.compare import compare
 
     texts = {}
     with shown("comparing"):

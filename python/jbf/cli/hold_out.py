@@ -68,7 +68,7 @@ def error_for_json(model: Model, held: Sequence[Run]) -> dict[str, Any]:
     """
     if not held:
         return {}
-    from jbf.comparison.comparison import compare
+    from jbf.comparison.compare import compare
 
     error = compare(model, held).to_dict()
     return {"hold_out": {key: error[key] for key in ("rms", "noise_rms", "runs")}}

@@ -176,7 +176,7 @@ def keep_unfinished(
     if end.fit is not None and out is not None:
         texts[out] = end.fit.model.to_toml()
     if end.fit is not None and report is not None:
-        from jbf.reporting.fit_page import fit_page
+        from jbf.reporting.text_pages import fit_page
 
         texts[report] = fit_page(end.fit)
     write(texts)

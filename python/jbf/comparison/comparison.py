@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,10 +15,9 @@ from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.samples import Samples
 from jbf.models.catalogue import parameters_of, transition_speed
 from jbf.models.chain import chain, warn_of_fast_film
-from jbf.models.model import Model, the_model
-from jbf.records.arguments import list_of_runs
+from jbf.models.model import Model
 from jbf.records.findings.finding import Finding
-from jbf.records.run import PathLike, Run
+from jbf.records.run import PathLike
 from jbf.results import Result
 
 Array = npt.NDArray[np.float64]
@@ -122,21 +120,3 @@ def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
         predictions=predictions,
         residuals=residuals,
     )
-
-
-def compare(model: Model, runs: Sequence[Run]) -> Comparison:
-    """Compare a model with recorded runs.
-
-    Samples at rest do not count, nor do samples at which the sign of the motion is unknown (within
-    a few samples of a reversal).
-
-    Raises
-    ------
-    InputError
-        A run lacks friction or a column that the model needs, or nothing moves in it.
-    """
-    the_model(model)
-    runs = list_of_runs(runs)
-    for run in runs:
-        model.require_columns(run)
-    return compare_prepared(model, Campaign.prepare(model.rig, runs))

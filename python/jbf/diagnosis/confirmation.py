@@ -10,20 +10,15 @@ import numpy.typing as npt
 from scipy import special
 
 from jbf.diagnosis.policy import Policy
-from jbf.diagnosis.strokes import stroke_of
 from jbf.estimation.left_out import HeldOutPart, errors_by_run
 from jbf.estimation.predictive import mean_square, surprise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import common_samples
 from jbf.estimation.solution import Solution
+from jbf.estimation.units import LEAST_UNITS, independent_units
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
-
-LEAST_UNITS = 6
-"""Smallest number of independent units for a paired test over them."""
-LEAST_SAMPLES = 16
-"""Smallest number of samples of a stroke that counts as a unit."""
 
 
 @dataclass(frozen=True)
@@ -136,16 +131,9 @@ def _unit_ratios(
     counted: Sequence[npt.NDArray[np.bool_]],
 ) -> Array:
     """Log ratios of the mean squares without and with a candidate, one per unit."""
-    parts: list[tuple[Array, Array]] = [(before[i], after[i]) for i in before]
-    if len(parts) < LEAST_UNITS and prepared:
-        parts = []
-        for i in before:
-            own = stroke_of(prepared[i])[counted[i]]
-            for k in range(int(np.max(own, initial=-1)) + 1):
-                if np.count_nonzero(own == k) >= LEAST_SAMPLES:
-                    parts.append((before[i][own == k], after[i][own == k]))
+    units = independent_units({i: counted[i] for i in before}, prepared)
     squares = np.array(
-        [(np.mean(b**2), np.mean(a**2)) for b, a in parts if len(b) and len(a)]
+        [(np.mean(before[i][own] ** 2), np.mean(after[i][own] ** 2)) for i, own in units]
     ).reshape(-1, 2)
     squares = squares[(squares > 0.0).all(axis=1)]
     ratios: Array = np.log(squares[:, 0] / squares[:, 1])

@@ -19,12 +19,11 @@ from scipy import special
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from jbf.estimation.units import Strokes, stroke_of
 
 Array = npt.NDArray[np.float64]
-Strokes = npt.NDArray[np.intp]
 
 LEAST_STROKES = 3
 """Smallest number of strokes of a run that is tested."""
@@ -70,20 +69,6 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
         f"({ratio:.0f} times as much as within one)"
     )
     return [Remainder("stroke", where, min(share, 1.0))]
-
-
-def stroke_of(p: Prepared) -> Strokes:
-    """Number of the stroke of each sample; -1 where it is not known to move.
-
-    A stroke ends where the motion reverses.
-    """
-    motion = p.motion
-    moving = np.flatnonzero(p.slides)
-    found = np.full(len(motion.velocity), -1, dtype=np.intp)
-    if len(moving):
-        sign = np.sign(motion.velocity[moving])
-        found[moving] = np.cumsum(np.diff(sign, prepend=sign[0]) != 0.0)
-    return found
 
 
 def _halves(

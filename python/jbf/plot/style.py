@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from jbf.results import AxesOrArray
+
 # Colour palette of Okabe and Ito, distinguishable with red-green colour blindness.
 MEASURED, MODEL, BEFORE, NOISE = "#8c8c8c", "#0072b2", "#d55e00", "#009e73"
 OTHER = "#cc79a7"
@@ -102,7 +104,7 @@ def legend_above(ax: Axes, columns: int = 3) -> None:
     )
 
 
-def save(ax: Axes | Sequence[Axes], path: str | os.PathLike[str]) -> None:
+def save(ax: AxesOrArray, path: str | os.PathLike[str]) -> None:
     """Save the figure of the axes; `.svg` and `.pdf` are vector formats, `.png` is not.
 
     Raises
@@ -110,7 +112,7 @@ def save(ax: Axes | Sequence[Axes], path: str | os.PathLike[str]) -> None:
     InputError
         The file cannot be written, or its suffix is not that of an image format.
     """
-    first = next(iter(ax)) if isinstance(ax, Sequence) else ax
+    first = np.ravel(np.asarray(ax, dtype=object))[0]
     # Keep text as text, so that it can be searched and set in another font.
     from matplotlib import rc_context
 

@@ -5,5 +5,5 @@ cells, matplotlib axes, self-contained HTML. The package computes no statistics 
 decisions.
 
 May import: every package that produces results (`jbf.records` to `jbf.diagnosis`). None of these
-packages imports it: their methods `summary`, `plot` and `report` call it through `jbf.results`.
+packages imports it: `presenters` and `pictures` register its functions with `jbf.results`.
 """

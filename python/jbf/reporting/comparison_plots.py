@@ -7,18 +7,20 @@ opens a window. `axes[0].figure.savefig(...)` saves the figure.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from jbf.plot.loops import loops
 from jbf.plot.residuals import residual_along, residual_in_time
 from jbf.plot.runs import index_of, largest_error_run
-from jbf.plot.style import axes_or_new
+from jbf.plot.style import INK, MODEL, axes_or_new, dress, plain
 from jbf.plot.traces import record_and_model
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from jbf.comparison.comparison import Comparison
+    from jbf.comparison.model_comparison import ModelComparison
 
 
 def plot_comparison(comparison: Comparison, axes: Sequence[Axes] | None = None) -> list[Axes]:
@@ -64,3 +66,20 @@ def plot_run(
     residual_in_time(comparison, index, ax=bottom)
     bottom.sharex(top)
     return [top, bottom]
+
+
+def plot_model_comparison(
+    compared: ModelComparison, axes: Sequence[Axes] | None = None
+) -> list[Axes]:
+    """Plot the difference of each model to the best with its standard error, on one axes."""
+    models = compared.models
+    (ax,) = axes_or_new(axes, 1, 1, (7.0, 1.2 + 0.5 * len(models)))
+    for row, m in enumerate(models):
+        error = m.stderr if isfinite(m.stderr) else 0.0
+        ax.errorbar(m.difference, row, xerr=error, fmt="o", color=MODEL, capsize=3, markersize=5)
+    ax.set_yticks(range(len(models)), labels=[plain(m.name) for m in models], fontsize="small")
+    ax.set_ylim(len(models) - 0.4, -0.6)
+    ax.axvline(0.0, color=INK, linewidth=0.6)
+    unit = compared.force_unit
+    dress(ax, "Difference to the best model", f"RMS minus that of the best ({unit})", "")
+    return [ax]

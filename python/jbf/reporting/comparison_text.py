@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from jbf.comparison.comparison import Comparison
+from jbf.comparison.model_comparison import ModelComparison
+from jbf.records.counts import count_of
 from jbf.reporting.paragraphs import columns
-from jbf.reporting.tables import run_rows
+from jbf.reporting.tables import model_rows, run_rows
 from jbf.reporting.text_parts import finding_lines, where_lines
 from jbf.reporting.words import comparison_sentence
 
@@ -28,3 +30,25 @@ def comparison_report(comparison: Comparison) -> str:
         lines[0] += "; no pattern along any axis"
     lines += ["", "Runs", *_run_lines(comparison)]
     return "\n".join([*lines, *finding_lines(comparison.findings)])
+
+
+MODEL_HEAD = ("model", "RMS ({unit})", "difference", "standard error")
+
+
+def model_head(compared: ModelComparison) -> list[str]:
+    """Return the header of the table of models, with the unit of the errors."""
+    return [cell.format(unit=compared.force_unit) for cell in MODEL_HEAD]
+
+
+def model_comparison_sentence(compared: ModelComparison) -> str:
+    """State the number of samples and of independent units."""
+    return (
+        f"{count_of(len(compared.models), 'model')} on {count_of(compared.nobs, 'sample')}; "
+        f"standard errors over {count_of(compared.units, compared.unit)}"
+    )
+
+
+def model_comparison_report(compared: ModelComparison) -> str:
+    """Format one row per model, the best first, and the basis of the standard errors."""
+    rows = [model_head(compared), *model_rows(compared)]
+    return "\n".join([model_comparison_sentence(compared), "", *columns(rows, "<>>>", 0)])

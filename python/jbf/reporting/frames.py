@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from jbf.comparison.comparison import Comparison
+from jbf.comparison.model_comparison import ModelComparison
+from jbf.diagnosis.check import Check
+from jbf.diagnosis.plan import Plan
+from jbf.diagnosis.planned import PlannedPower
 from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
@@ -67,6 +71,36 @@ def comparison_columns(comparison: Comparison) -> Columns:
     }
     run = [p.run.name for p in prepared for _ in range(len(p.run))]
     return {"run": run} | {name: np.concatenate(parts) for name, parts in joined.items()}
+
+
+def model_comparison_columns(compared: ModelComparison) -> Columns:
+    """Return one row per model, the best first."""
+    return rows_as_columns(vars(m) for m in compared.models)
+
+
+def power_columns(planned: PlannedPower) -> Columns:
+    """Return one row per effect."""
+    return rows_as_columns({**vars(p), "like": ", ".join(p.confounded_with)} for p in planned.power)
+
+
+def plan_columns(plan: Plan) -> Columns:
+    """Return one row per run to record."""
+    return {
+        "run": [run.name for run in plan.runs],
+        "motion": list(plan.words),
+        "duration_s": [run.duration_s for run in plan.runs],
+    }
+
+
+def check_columns(check: Check) -> Columns:
+    """Return one row per rate, with its confidence interval."""
+    return rows_as_columns(vars(rate) for rate in check.rates)
+
+
+def rows_as_columns(rows: Iterable[Mapping[str, Any]]) -> Columns:
+    """Transpose rows with equal keys."""
+    several = list(rows)
+    return {name: [row[name] for row in several] for name in (several[0] if several else ())}
 
 
 def diagnosis_columns(diagnosis: Diagnosis) -> Columns:

@@ -1,54 +1,49 @@
-"""Plot and page functions of the entry point `door`, which require matplotlib."""
+"""Presenters of results as plots and pages, which require matplotlib; see `presenters`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import singledispatch
-
-from matplotlib.axes import Axes
-
 from jbf.comparison.comparison import Comparison
+from jbf.comparison.model_comparison import ModelComparison
 from jbf.control.run import Result as LoopRun
+from jbf.diagnosis.check import Check
+from jbf.diagnosis.plan import Plan
+from jbf.diagnosis.planned import PlannedPower
 from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.importing.result import Import
-from jbf.reporting import fit_page
+from jbf.reporting import text_pages
 from jbf.reporting.comparison_page import comparison_page
-from jbf.reporting.comparison_plots import plot_comparison
+from jbf.reporting.comparison_plots import plot_comparison, plot_model_comparison
 from jbf.reporting.control_run_plot import plot_run_of_loop
 from jbf.reporting.cut_plot import import_page, plot_cut
 from jbf.reporting.diagnosis_page import diagnosis_page
 from jbf.reporting.diagnosis_plot import plot_diagnosis
 from jbf.reporting.fit_plot import plot_bootstrap, plot_fit, plot_trajectory_fit
+from jbf.reporting.study_plots import plot_check, plot_plan, plot_planned_power
+from jbf.results import register
 
+register("plot", Fit, plot_fit)
+register("plot", Bootstrap, plot_bootstrap)
+register("plot", TrajectoryFit, plot_trajectory_fit)
+register("plot", Comparison, plot_comparison)
+register("plot", ModelComparison, plot_model_comparison)
+register("plot", Diagnosis, plot_diagnosis)
+register("plot", LoopRun, plot_run_of_loop)
+register("plot", Import, plot_cut)
+register("plot", PlannedPower, plot_planned_power)
+register("plot", Plan, plot_plan)
+register("plot", Check, plot_check)
 
-@singledispatch
-def plot(result: object, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-    """Plot a result on the given axes, or on those of a new figure."""
-    raise TypeError(f"reporting knows no result of type {type(result).__name__}")
-
-
-plot.register(Fit, plot_fit)
-plot.register(Bootstrap, plot_bootstrap)
-plot.register(TrajectoryFit, plot_trajectory_fit)
-plot.register(Comparison, plot_comparison)
-plot.register(Diagnosis, plot_diagnosis)
-plot.register(LoopRun, plot_run_of_loop)
-plot.register(Import, plot_cut)
-
-
-@singledispatch
-def page(result: object) -> str:
-    """Return the HTML text of a result's page."""
-    raise TypeError(f"reporting knows no result of type {type(result).__name__}")
-
-
-page.register(Fit, fit_page.fit_page)
-page.register(Bootstrap, fit_page.bootstrap_page)
-page.register(TrajectoryFit, fit_page.trajectory_page)
-page.register(Comparison, comparison_page)
-page.register(Diagnosis, diagnosis_page)
-page.register(LoopRun, fit_page.loop_page)
-page.register(Import, import_page)
+register("page", Fit, text_pages.fit_page)
+register("page", Bootstrap, text_pages.bootstrap_page)
+register("page", TrajectoryFit, text_pages.trajectory_page)
+register("page", Comparison, comparison_page)
+register("page", ModelComparison, text_pages.model_comparison_page)
+register("page", Diagnosis, diagnosis_page)
+register("page", LoopRun, text_pages.loop_page)
+register("page", Import, import_page)
+register("page", PlannedPower, text_pages.planned_power_page)
+register("page", Plan, text_pages.plan_page)
+register("page", Check, text_pages.check_page)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from jbf.comparison.comparison import Comparison
+from jbf.comparison.model_comparison import ModelComparison
 from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit
@@ -79,6 +80,15 @@ def short_comparison(comparison: Comparison) -> str:
         f"Comparison({_law(comparison.model)}; {count_of(len(comparison.runs), 'run')}, "
         f"RMS {number(rms)} {unit}, {against_noise(rms, noise, unit)};\n    "
         + (f"fails along {where})" if where else "no pattern along any axis)")
+    )
+
+
+def short_model_comparison(compared: ModelComparison) -> str:
+    """Summarize the RMS of each model, the smallest first."""
+    errors = first_of(f"{m.name} {number(m.rms)}" for m in compared.models)
+    return (
+        f"ModelComparison({count_of(compared.nobs, 'sample')};\n"
+        f"    RMS ({compared.force_unit}): {errors})"
     )
 
 

@@ -8,6 +8,7 @@ from html import escape
 import numpy as np
 
 from jbf.comparison.comparison import Comparison
+from jbf.comparison.model_comparison import ModelComparison
 from jbf.control.run import Result as LoopRun
 from jbf.diagnosis.check import Check
 from jbf.diagnosis.plan import Plan
@@ -21,9 +22,10 @@ from jbf.models.model import Model
 from jbf.records.counts import count_of
 from jbf.records.run import Run
 from jbf.reporting.check_text import check_report
+from jbf.reporting.comparison_text import model_comparison_sentence, model_head
 from jbf.reporting.control_run_text import status_words
 from jbf.reporting.power_text import short_plan, short_power
-from jbf.reporting.tables import ledger_rows, parameter_rows, power_rows, run_rows
+from jbf.reporting.tables import ledger_rows, model_rows, parameter_rows, power_rows, run_rows
 from jbf.reporting.words import (
     comparison_sentence,
     law_and_effects,
@@ -82,6 +84,12 @@ def comparison_table(comparison: Comparison) -> str:
     title = comparison_sentence(comparison) + (f"; fails along {where}" if where else "")
     unit = comparison.model.rig.quantities.force
     return table(title, ("run", "samples", f"RMS ({unit})", "RMS / noise"), run_rows(comparison))
+
+
+def model_comparison_table(compared: ModelComparison) -> str:
+    """Tabulate the error of each model and its difference to the best."""
+    sentence = model_comparison_sentence(compared)
+    return table(sentence, model_head(compared), model_rows(compared))
 
 
 def diagnosis_table(diagnosis: Diagnosis) -> str:

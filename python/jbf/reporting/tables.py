@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ from jbf.reporting.words import UNKNOWN, number, percent, step_name, value_and_e
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison
+    from jbf.comparison.model_comparison import ModelComparison
     from jbf.diagnosis.ledger import Step
     from jbf.diagnosis.power import Power
     from jbf.diagnosis.result import Diagnosis
@@ -86,6 +88,19 @@ def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
     return [
         (r.name, str(r.samples), number(r.rms), ratio(r.rms, comparison.noise_rms))
         for r in comparison.runs
+    ]
+
+
+def model_rows(compared: ModelComparison) -> list[tuple[str, str, str, str]]:
+    """Return name, RMS, difference to the best, and its standard error of each model."""
+    return [
+        (
+            m.name,
+            number(m.rms),
+            number(m.difference) if i else "",
+            number(m.stderr) if isfinite(m.stderr) else "",
+        )
+        for i, m in enumerate(compared.models)
     ]
 
 

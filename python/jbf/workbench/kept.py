@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from jbf.comparison.comparison import compare
+from jbf.comparison.compare import compare
 from jbf.errors import InputError
 from jbf.export import c, rust
 from jbf.reporting.comparison_page import comparison_page

@@ -15,7 +15,8 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Literal
 
-from jbf.comparison.comparison import Comparison, compare
+from jbf.comparison.compare import compare
+from jbf.comparison.comparison import Comparison
 from jbf.diagnosis import diagnose
 from jbf.diagnosis.one_round import one_round
 from jbf.errors import JbfError, Stopped

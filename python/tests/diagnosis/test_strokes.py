@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.strokes import find_stroke_levels, stroke_of
+from jbf.diagnosis.strokes import find_stroke_levels
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.units import stroke_of
 from scipy import signal, stats
 from slides import Array, friction_of, numbers_in, slides, solution_with, white_noise
 

@@ -72,7 +72,7 @@ def test_parallel_fits_have_the_same_values_as_sequential_fits() -> None:
     effects = ["sensor_offset", "quadratic_drag", "inertia"]
 
     def fitted(effect: str) -> dict[str, float]:
-        return jbf.fit(Rig(), runs, [effect], law="coulomb").values
+        return jbf.fit(Rig(), runs, [effect], law="coulomb").params
 
     one_by_one, parallel = (list(side_by_side(fitted, effects, n)) for n in (1, 4))
     assert one_by_one == parallel

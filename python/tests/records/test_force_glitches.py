@@ -120,5 +120,5 @@ def test_fit_changes_by_under_0_2_percent_if_the_first_rows_are_corrupt() -> Non
         clean.append(Run.from_arrays(TIME_S, speed, force))
         speed[0], force[0] = 99.0, -1234.5
         corrupt.append(Run.from_arrays(TIME_S, speed, force))
-    expected = fit(Rig(), clean, law="coulomb").values
-    assert fit(Rig(), corrupt, law="coulomb").values == pytest.approx(expected, rel=2e-3)
+    expected = fit(Rig(), clean, law="coulomb").params
+    assert fit(Rig(), corrupt, law="coulomb").params == pytest.approx(expected, rel=2e-3)

@@ -62,7 +62,7 @@ def diagnosed(rig: Rig, torque: float = 1.0, angle: float = 1.0) -> Diagnosis:
 
 def test_fit_of_a_joint_equals_that_of_a_slide_with_the_same_numbers() -> None:
     slide, joint = fitted(SLIDE), fitted(JOINT)
-    assert (slide.values, slide.rms) == (joint.values, joint.rms)
+    assert (slide.params, slide.rms) == (joint.params, joint.rms)
 
 
 def assert_scaled(large: Fit, small: Fit) -> None:

@@ -11,7 +11,7 @@ import pytest
 from by_hand import LAW, TRIALS, along, diagnosis_by_hand, fit_by_hand, there_and_back
 from jbf.diagnosis.power import Power
 from jbf.reporting.diagnosis_page import diagnosis_page
-from jbf.reporting.fit_page import bootstrap_page, fit_page, loop_page, trajectory_page
+from jbf.reporting.text_pages import bootstrap_page, fit_page, loop_page, trajectory_page
 from shared import shared
 
 Table = list[list[str]]

@@ -10,18 +10,39 @@ from typing import Any
 
 import numpy as np
 import pytest
-from by_hand import comparison_by_hand, diagnosis_by_hand, fit_by_hand
-from jbf import Bootstrap, InputError, ParameterValue, Rig, TrajectoryFit, control
+from by_hand import LAW, comparison_by_hand, coulomb, diagnosis_by_hand, fit_by_hand, there_and_back
+from jbf import (
+    Bootstrap,
+    Check,
+    InputError,
+    Model,
+    ParameterValue,
+    Plan,
+    PlannedPower,
+    Rig,
+    Run,
+    TrajectoryFit,
+    compare,
+    control,
+)
+from jbf.diagnosis.check import Answer
+from jbf.diagnosis.level import Level
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.power import Power
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.result import Import
-from jbf.reporting import door
 from jbf.reporting.frames import parameter_columns
 from jbf.reporting.json import json_text
 from jbf.reporting.short import LONGEST, first_of
-from jbf.results import Result
+from jbf.results import Result, present
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 Results = dict[str, Result]
-KINDS = ("fit", "bootstrap", "trajectory fit", "comparison", "diagnosis", "loop")
+KINDS = (
+    "fit", "bootstrap", "trajectory fit", "comparison", "model comparison", "diagnosis", "loop",
+    "planned power", "plan", "check",
+)  # fmt: skip
 TRAJECTORY = TrajectoryFit(
     {"f_m": ParameterValue(0.25, 0.0012), "U_tr_m_s": ParameterValue(0.05)}, 4e-4, 100, 7, True, ""
 )
@@ -34,7 +55,24 @@ def results() -> Results:
     task = control.Task("velocity", "sine", -5.0, 5.0, 2.0, seconds=2.0)
     comparison, diagnosis = comparison_by_hand(1.25, (1.0, 1.5)), diagnosis_by_hand("ambiguous")
     loop = control.run(None, "observed", task)
-    all_results = (fit, Bootstrap(fit, answers), TRAJECTORY, comparison, diagnosis, loop)
+    models = [Model(Rig(), "coulomb", parameters={**LAW, "F_c": force}) for force in (5.0, 6.0)]
+    runs = there_and_back(coulomb, noise_rms=0.1)
+    power = Power("sensor_offset", "b", "N", 0.1, 0.2, False, 0.02, 0.15, ("sensor_drift",))
+    level = Level.shared(DEFAULT, 12, 2000.0, 0.1)
+    planned = PlannedPower(models[0], 0.1, (power,), {}, ("there",), level)
+    simulated = tuple(Answer((), draw, "adequate", (), {}) for draw in range(3))
+    all_results = (
+        fit,
+        Bootstrap(fit, answers),
+        TRAJECTORY,
+        comparison,
+        compare(models, runs),
+        diagnosis,
+        loop,
+        planned,
+        Plan(tuple(runs), ("forward", "back"), planned),
+        Check(models[0], simulated),
+    )
     return dict(zip(KINDS, all_results, strict=True))
 
 
@@ -51,7 +89,7 @@ def frame_is_dict(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_each_result_is_reported_in_every_form(kind: str, results: Results, tmp_path: Path) -> None:
     result = results[kind]
     assert result.summary()
-    for ax in result.plot():
+    for ax in np.ravel(result.plot()):
         assert ax.lines or ax.collections or ax.patches
     json.loads(json_text(result.to_dict()))
     result.save_html(tmp_path / "a.html")
@@ -68,10 +106,29 @@ def test_to_frame_is_rejected_if_pandas_is_not_installed(monkeypatch: pytest.Mon
         fit_by_hand().to_frame()
 
 
-def test_reporting_functions_reject_an_object_that_is_not_a_result() -> None:
-    for method in (door.summary, door.small_table, door.columns, door.plot, door.page):
+def test_presentation_of_an_object_that_is_not_a_result_raises_a_type_error() -> None:
+    operations: tuple[Any, ...] = ("summary", "small_table", "columns", "plot", "page")
+    for operation in operations:
         with pytest.raises(TypeError, match="int"):
-            method(3)  # type: ignore[operator]
+            present(operation, 3)
+
+
+def test_plot_returns_one_axes_or_an_array_and_draws_on_given_axes(results: Results) -> None:
+    single, several = results["bootstrap"].plot(), results["comparison"].plot()
+    assert isinstance(single, Axes)
+    assert isinstance(several, np.ndarray)
+    assert several.shape == (2,)
+    axes = Figure().subplots(1, 2)
+    assert list(results["comparison"].plot(axes)) == list(axes)
+    assert results["bootstrap"].plot(axes[0]) is axes[0]
+    with pytest.raises(InputError, match="axes"):
+        results["bootstrap"].plot(axes)
+
+
+def test_run_and_model_have_an_html_table() -> None:
+    run = Run.from_arrays(np.arange(20.0), np.ones(20), np.ones(20), name="a<b")
+    assert "a&lt;b" in run._repr_html_()
+    assert "F_c" in Model(Rig(), "coulomb")._repr_html_()
 
 
 def test_fit_parameter_is_accessible_by_name() -> None:

@@ -22,7 +22,8 @@ from jbf.models.driven import Driven
 from jbf.models.own_effects import ALWAYS
 from jbf.records.motion.known import known_motion
 from jbf.records.rig import Rig
-from jbf.records.run import Run, run_on
+from jbf.records.run import Run
+from jbf.records.run_requirements import run_on
 
 Array = npt.NDArray[np.float64]
 

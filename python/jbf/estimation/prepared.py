@@ -27,7 +27,8 @@ from jbf.records.findings.steps import find_steps
 from jbf.records.motion.imposed import ImposedMotion
 from jbf.records.motion.readings import ReadingErrors
 from jbf.records.rig import Rig
-from jbf.records.run import Run, require, run_on
+from jbf.records.run import Run
+from jbf.records.run_requirements import require, run_on
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]

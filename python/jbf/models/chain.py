@@ -33,7 +33,8 @@ from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.motion.readings import ReadingErrors
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
-from jbf.records.run import Run, run_on
+from jbf.records.run import Run
+from jbf.records.run_requirements import run_on
 from jbf.records.weight_angle import weight_offset
 
 Array = npt.NDArray[np.float64]

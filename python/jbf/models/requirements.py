@@ -8,7 +8,8 @@ from jbf.errors import InputError
 from jbf.models.catalogue import find_effect
 from jbf.models.own_effects import ALWAYS
 from jbf.records.rig import Rig
-from jbf.records.run import Run, require
+from jbf.records.run import Run
+from jbf.records.run_requirements import require
 
 
 def has_angle(rig: Rig, run: Run) -> bool:

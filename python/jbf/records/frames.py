@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.results import optional
 
 Array = npt.NDArray[np.float64]
 
@@ -42,6 +43,40 @@ def columns_of(frame: object, name: str) -> dict[str, Array]:
     if "time_s" not in found and getattr(index, "name", None) == "time_s":
         found = {"time_s": _numbers(index)} | found
     return {column: values for column, values in found.items() if values is not None}
+
+
+def dataset_of_columns(columns: Mapping[str, Array], units: Mapping[str, str], name: str) -> Any:
+    """Return columns as an `xarray.Dataset` over the coordinate `time_s`.
+
+    Raises
+    ------
+    InputError
+        xarray is not installed.
+    """
+    xarray = optional("xarray", "a dataset")
+    variables = {
+        column: ("time_s", values, {"units": units[column]} if column in units else {})
+        for column, values in columns.items()
+    }
+    return xarray.Dataset(variables, attrs={"name": name}).set_coords("time_s")
+
+
+def columns_of_dataset(dataset: Any) -> tuple[dict[str, Any], str]:
+    """Return the variables of an `xarray.Dataset` over `time_s` by name, and the dataset's name.
+
+    Raises
+    ------
+    InputError
+        The object has no variables by name.
+    """
+    variables = getattr(dataset, "variables", None)
+    if variables is None or not hasattr(dataset, "data_vars"):
+        raise InputError(
+            problem=f"{type(dataset).__name__} is not an xarray.Dataset",
+            mend="give a Dataset, or a frame to Run.from_frame",
+        )
+    columns = {str(n): v.to_numpy() for n, v in variables.items() if v.dims == ("time_s",)}
+    return columns, str(dataset.attrs.get("name", "run"))
 
 
 def _names(frame: object) -> list[str] | None:

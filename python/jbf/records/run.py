@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.records.channels import Channels, filled, recorded_samples, side_by_side
+from jbf.records.channels import Channels, recorded_samples, side_by_side
 from jbf.records.checks import (
     ATTRIBUTES,
     COLUMNS,
@@ -27,17 +25,24 @@ from jbf.records.checks import (
     frozen,
     listed,
 )
+from jbf.records.csv_output import csv_of_columns
+from jbf.records.derived_columns import fill_gaps, made_speed
 from jbf.records.findings.finding import Finding
-from jbf.records.frames import columns_of
+from jbf.records.frames import columns_of, columns_of_dataset, dataset_of_columns
 from jbf.records.quantities import OF_BEARING, Quantities
-from jbf.results import Shown
+from jbf.results import Shown, data_frame
 from jbf.text_files import write_text
-
-if TYPE_CHECKING:
-    from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+UNITS = {
+    "time_s": "s",
+    "angle_rad": "rad",
+    "position_m": "m",
+    "load_n": "N",
+    "temperature_c": "degC",
+}
+"""Units of the columns that do not depend on the rig."""
 PathLike = str | os.PathLike[str]
 
 
@@ -282,15 +287,82 @@ class Run(Shown):
         known: dict[str, Any] = {attribute(c): columns.pop(c) for c in COLUMNS if c in columns}
         return cls.from_arrays(time_s, **known, extra=columns, name=name, path=path)
 
+    def to_frame(self) -> Any:
+        """Return the run as a `pandas.DataFrame`, which `from_frame` reads; pandas is optional.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per sample, with the names of `columns`; nan where a channel with its own clock
+            was not sampled. `attrs` holds the name of the run and the units of the columns.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed.
+        """
+        frame = data_frame(self._sampled())
+        frame.attrs = {"name": self.name, "units": self.units()}
+        return frame
+
+    @classmethod
+    def from_xarray(cls, dataset: Any, *, name: str | None = None) -> Run:
+        """Build a run from an `xarray.Dataset` with the dimension and coordinate `time_s`.
+
+        Parameters
+        ----------
+        dataset
+            Variables named as in `from_frame`; those of other dimensions are ignored.
+        name
+            Name of the run. Default: the attribute `name` of the dataset, or "run".
+
+        Raises
+        ------
+        InputError
+            As in `from_frame`.
+        """
+        columns, recorded_name = columns_of_dataset(dataset)
+        return cls.from_frame(columns, name=name or recorded_name)
+
+    def to_xarray(self) -> Any:
+        """Return the run as an `xarray.Dataset`, which `from_xarray` reads; xarray is optional.
+
+        Returns
+        -------
+        xarray.Dataset
+            Variables over the coordinate `time_s`, each with its unit in the attribute `units`.
+
+        Raises
+        ------
+        InputError
+            xarray is not installed.
+        """
+        return dataset_of_columns(self._sampled(), self.units(), self.name)
+
+    def units(self) -> dict[str, str]:
+        """Return the units of the known columns that are present, by column name."""
+        units = UNITS | {
+            "velocity_m_s": self.quantities.speed,
+            "friction_n": self.quantities.force,
+        }
+        return {name: units[name] for name in self.columns() if name in units}
+
+    def _sampled(self) -> dict[str, Array]:
+        """Return `columns` with nan at the instants at which a channel was not sampled."""
+        return {
+            name: np.where(self.read[name], values, np.nan) if name in self.read else values
+            for name, values in self.columns().items()
+        }
+
     @classmethod
     def of_columns(cls, name: str, columns: Mapping[str, Array], path: Path | None) -> Run:
         """Build a run from columns that have been checked."""
         recorded = "velocity_m_s" in columns
         if not recorded:
-            columns = dict(columns) | {"velocity_m_s": _made_speed(columns)}
+            columns = dict(columns) | {"velocity_m_s": made_speed(columns)}
         reading: tuple[Finding, ...] = ()
         if SLOW in columns:
-            whole, reading = _fill_gaps(name, columns["time_s"], columns[SLOW])
+            whole, reading = fill_gaps(name, columns["time_s"], columns[SLOW])
             columns = dict(columns) | {SLOW: whole}
         known: dict[str, Any] = {attribute(c): v for c, v in columns.items() if c in COLUMNS}
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
@@ -335,86 +407,5 @@ class Run(Shown):
 
     def to_csv(self) -> str:
         """Return the run as CSV text, with columns in the units of their names."""
-        columns = self._called()
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(columns)
-        # repr of a float is the shortest text that reads back to the same bits.
-        cells = [list(map(repr, a.tolist())) for a in columns.values()]
-        for own, of_column in zip(self.columns(), cells, strict=True):
-            # An empty cell is an instant at which the channel was not sampled.
-            for i in np.flatnonzero(~self.read[own]).tolist() if own in self.read else ():
-                of_column[i] = ""
-        writer.writerows(zip(*cells, strict=True))
-        return text.getvalue()
-
-
-def _fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
-    """Interpolate the gaps of a temperature, C, linearly, and report them as a finding."""
-    known = np.isfinite(celsius)
-    if known.all():
-        return celsius, ()
-    ends = np.concatenate((time_s[:1], time_s[known], time_s[-1:]))
-    longest_s = float(np.max(np.diff(ends)))
-    words = f"the temperature was read at {known.sum()} of {len(celsius)} samples"
-    finding = Finding("gaps", SLOW, name, longest_s, "s", "straight lines between", words)
-    return filled(time_s, celsius, known), (finding,)
-
-
-def _made_speed(columns: Mapping[str, Array]) -> Array:
-    """Speed from the position, m/s; nan if only an angle is known, whose radius is in the rig."""
-    if "position_m" in columns:
-        return frozen(np.gradient(columns["position_m"], columns["time_s"]))
-    return frozen(np.full(len(columns["time_s"]), np.nan))
-
-
-def require(run: Run, columns: str | Iterable[str], why: str) -> None:
-    """Raise a one-line error if a run lacks a required column.
-
-    Parameters
-    ----------
-    columns : str or iterable of str
-        Column names, for example ``"angle_rad"``.
-    why : str
-        The part that requires the column, as a subject: ``"the effect position_ripple"``.
-
-    Raises
-    ------
-    InputError
-        A column is missing.
-    """
-    there = run.columns()
-    for column in [columns] if isinstance(columns, str) else columns:
-        if column not in there:
-            raise InputError(
-                file=run.path or run.name,
-                column=column,
-                problem=f"is missing, and {why} needs it",
-                mend=f"add the column (it has {listed(there)})",
-            )
-
-
-def run_on(rig: Rig, run: Run) -> Run:
-    """Return the run with the quantities of its rig.
-
-    Raises
-    ------
-    InputError
-        The run was read for another kind of machine, or without the rig that its columns require.
-    """
-    wanted = rig.quantities
-    if run.quantities == wanted:
-        return run
-    if run.quantities != OF_BEARING and run.quantities.motion != wanted.motion:
-        raise InputError(
-            file=run.path or run.name,
-            problem=f"was read for a {run.quantities.motion} drive, and this rig is none",
-            mend="give the rig that it was read with",
-        )
-    if run.quantities == OF_BEARING and wanted.motion == "rotary" and run.path is not None:
-        raise InputError(
-            file=run.path,
-            problem="was read without the rig, whose [drive] says what its columns are",
-            mend="read it with the rig: jbf.read_run(path, rig)",
-        )
-    return replace(run, quantities=wanted)
+        names = zip(self._called(), self.columns(), strict=True)
+        return csv_of_columns(self._called(), {called: self.read.get(own) for called, own in names})

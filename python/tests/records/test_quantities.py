@@ -13,7 +13,7 @@ from jbf.models.catalogue import laws, parameters_of
 from jbf.models.parameter_units import unit_of, units_of
 from jbf.records.drive import Drive
 from jbf.records.quantities import LINEAR, OF_BEARING, ROTARY
-from jbf.records.run import run_on
+from jbf.records.run_requirements import run_on
 from rigsim import AxisRun, axis_campaign
 
 SLIDE = Rig(drive=Drive("linear", "force"))

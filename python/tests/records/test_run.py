@@ -15,7 +15,7 @@ from jbf.records.drive import Drive
 from jbf.records.frames import columns_of
 from jbf.records.quantities import LINEAR, ROTARY
 from jbf.records.recorded_load import recorded_load
-from jbf.records.run import require, run_on
+from jbf.records.run_requirements import require, run_on
 
 SAMPLES = 20
 TIME_S: Any = 0.1 * np.arange(SAMPLES)
@@ -138,6 +138,69 @@ def test_run_is_read_from_an_arrow_table_and_an_arrow_stream() -> None:
         run = Run.from_frame(frame)
         assert list(run.columns()) == ["time_s", "velocity_m_s"]
         np.testing.assert_array_equal(run.velocity, TIME_S + 1.0)
+
+
+def own_clock() -> Run:
+    """A run whose friction was sampled at every second instant."""
+    return Run.from_channels(
+        {
+            "velocity_m_s": (TIME_S, TIME_S + 1.0),
+            "friction_n": (TIME_S[::2], 2.0 * TIME_S[::2]),
+            "own": (TIME_S, 4.0 * TIME_S),
+        },
+        name="a",
+    )
+
+
+def assert_equal_runs(run: Run, other: Run) -> None:
+    assert run.name == other.name
+    assert list(run.columns()) == list(other.columns())
+    for name, values in run.columns().items():
+        np.testing.assert_array_equal(other.columns()[name], values, err_msg=name)
+    assert {k: v.tolist() for k, v in run.read.items()} == {
+        k: v.tolist() for k, v in other.read.items()
+    }
+
+
+@pytest.mark.parametrize("run", [RUN, own_clock()])
+def test_pandas_frame_of_a_run_is_read_back_to_the_same_bits(run: Run) -> None:
+    pytest.importorskip("pandas")
+    frame = run.to_frame()
+    assert frame.attrs["name"] == "a"
+    assert frame.attrs["units"]["velocity_m_s"] == "m/s"
+    assert_equal_runs(Run.from_frame(frame, name="a"), run)
+    assert_equal_runs(Run.from_frame(frame.set_index("time_s"), name="a"), run)
+
+
+@pytest.mark.parametrize("run", [RUN, own_clock()])
+def test_xarray_dataset_of_a_run_is_read_back_to_the_same_bits(run: Run) -> None:
+    pytest.importorskip("xarray")
+    dataset = run.to_xarray()
+    assert dataset["friction_n"].dims == ("time_s",)
+    assert dataset["friction_n"].attrs["units"] == "N"
+    assert_equal_runs(Run.from_xarray(dataset), run)
+    assert Run.from_xarray(dataset, name="b").name == "b"
+    wide = dataset.assign(image=(("row", "column"), np.ones((2, 3))))
+    assert_equal_runs(Run.from_xarray(wide), run)
+
+
+def test_units_of_a_run_are_those_of_its_rig() -> None:
+    units = run_on(JOINT, RUN).units()
+    assert (units["friction_n"], units["velocity_m_s"]) == ("N m", "rad/s")
+    assert "own" not in units
+
+
+@pytest.mark.parametrize(("method", "library"), [("to_frame", "pandas"), ("to_xarray", "xarray")])
+def test_missing_optional_library_is_reported_with_its_installation(
+    monkeypatch: pytest.MonkeyPatch, method: str, library: str
+) -> None:
+    monkeypatch.setitem(sys.modules, library, None)
+    assert f"pip install {library}" in str(input_error(getattr(RUN, method)))
+
+
+def test_object_without_variables_is_rejected_as_a_dataset() -> None:
+    for given in (3, {"time_s": TIME_S}):
+        assert "xarray" in input_error(Run.from_xarray, given).problem
 
 
 def test_object_without_named_columns_is_rejected_as_a_frame() -> None:

@@ -1,0 +1,33 @@
+"""Columns of a run that are computed from recorded ones: a sparse temperature, a missing speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.records.channels import filled
+from jbf.records.checks import SLOW, frozen
+from jbf.records.findings.finding import Finding
+
+Array = npt.NDArray[np.float64]
+
+
+def fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
+    """Interpolate the gaps of a temperature, C, linearly, and report them as a finding."""
+    known = np.isfinite(celsius)
+    if known.all():
+        return celsius, ()
+    ends = np.concatenate((time_s[:1], time_s[known], time_s[-1:]))
+    longest_s = float(np.max(np.diff(ends)))
+    words = f"the temperature was read at {known.sum()} of {len(celsius)} samples"
+    finding = Finding("gaps", SLOW, name, longest_s, "s", "straight lines between", words)
+    return filled(time_s, celsius, known), (finding,)
+
+
+def made_speed(columns: Mapping[str, Array]) -> Array:
+    """Speed from the position, m/s; nan if only an angle is known, whose radius is in the rig."""
+    if "position_m" in columns:
+        return frozen(np.gradient(columns["position_m"], columns["time_s"]))
+    return frozen(np.full(len(columns["time_s"]), np.nan))

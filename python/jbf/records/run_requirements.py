@@ -1,0 +1,67 @@
+"""Requirements on a run: columns that a part needs, and the quantities of its rig."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from jbf.errors import InputError
+from jbf.records.checks import listed
+from jbf.records.quantities import OF_BEARING
+from jbf.records.run import Run
+
+if TYPE_CHECKING:
+    from jbf.records.rig import Rig
+
+
+def require(run: Run, columns: str | Iterable[str], why: str) -> None:
+    """Raise a one-line error if a run lacks a required column.
+
+    Parameters
+    ----------
+    columns : str or iterable of str
+        Column names, for example ``"angle_rad"``.
+    why : str
+        The part that requires the column, as a subject: ``"the effect position_ripple"``.
+
+    Raises
+    ------
+    InputError
+        A column is missing.
+    """
+    there = run.columns()
+    for column in [columns] if isinstance(columns, str) else columns:
+        if column not in there:
+            raise InputError(
+                file=run.path or run.name,
+                column=column,
+                problem=f"is missing, and {why} needs it",
+                mend=f"add the column (it has {listed(there)})",
+            )
+
+
+def run_on(rig: Rig, run: Run) -> Run:
+    """Return the run with the quantities of its rig.
+
+    Raises
+    ------
+    InputError
+        The run was read for another kind of machine, or without the rig that its columns require.
+    """
+    wanted = rig.quantities
+    if run.quantities == wanted:
+        return run
+    if run.quantities != OF_BEARING and run.quantities.motion != wanted.motion:
+        raise InputError(
+            file=run.path or run.name,
+            problem=f"was read for a {run.quantities.motion} drive, and this rig is none",
+            mend="give the rig that it was read with",
+        )
+    if run.quantities == OF_BEARING and wanted.motion == "rotary" and run.path is not None:
+        raise InputError(
+            file=run.path,
+            problem="was read without the rig, whose [drive] says what its columns are",
+            mend="read it with the rig: jbf.read_run(path, rig)",
+        )
+    return replace(run, quantities=wanted)

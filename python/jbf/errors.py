@@ -17,11 +17,27 @@ _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 class JbfError(Exception):
-    """Base of all errors that jbf raises deliberately."""
+    """Base of all errors that jbf raises deliberately.
+
+    Examples
+    --------
+    >>> try:
+    ...     jbf.read_rig("missing.toml")
+    ... except jbf.JbfError as error:
+    ...     print(type(error).__name__)
+    InputError
+    """
 
 
 class FilmWarning(UserWarning):
-    """A film is too fast for a prediction to follow: see :meth:`jbf.Model.predict`."""
+    """A film is too fast for a prediction to follow: see :meth:`jbf.Model.predict`.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", jbf.FilmWarning)   # a prediction then raises it
+    """
 
 
 class Stopped(KeyboardInterrupt):
@@ -31,6 +47,14 @@ class Stopped(KeyboardInterrupt):
     ----------
     fit
         The best :class:`jbf.Fit` so far.
+
+    Examples
+    --------
+    >>> try:
+    ...     raise jbf.Stopped(None)   # as jbf.fit does at Ctrl-C, with its best fit so far
+    ... except jbf.Stopped as stop:
+    ...     print(stop.fit)
+    None
     """
 
     def __init__(self, fit: Any) -> None:
@@ -56,8 +80,8 @@ class InputError(JbfError, ValueError):
 
     Examples
     --------
-    >>> print(InputError(file="a.csv", row=17, column="friction_n",
-    ...                  problem='"abc" is not a number', mend="correct the cell"))
+    >>> problem, mend = '"abc" is not a number', "correct the cell"
+    >>> print(jbf.InputError(file="a.csv", row=17, column="friction_n", problem=problem, mend=mend))
     a.csv, row 17, column friction_n: "abc" is not a number; correct the cell
     """
 
@@ -129,6 +153,11 @@ class Unfinished(InputError):
         Number of inner steps of the model.
     fit
         The best :class:`jbf.Fit` so far, or None.
+
+    Examples
+    --------
+    >>> issubclass(jbf.Unfinished, jbf.InputError)
+    True
     """
 
     def __init__(self, *, steps: float, fit: Any = None, file: str | None = None) -> None:

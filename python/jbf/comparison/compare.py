@@ -57,11 +57,12 @@ def compare(
     >>> import numpy as np
     >>> t = np.arange(0.0, 10.0, 0.02)
     >>> v = 0.1 * np.sin(2.0 * t)
-    >>> run = jbf.Run.from_arrays(t, v, 6.0 * np.sign(v) + 20.0 * v)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 6.0 * np.sign(v) + 20.0 * v + noise)
     >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
     >>> compared = jbf.compare(model, [run])
-    >>> [failure.axis for failure in compared.failures][0]
-    'direction'
+    >>> "direction" in [failure.axis for failure in compared.failures]
+    True
     """
     if isinstance(model, Mapping):
         named = by_name(model, "model")

@@ -48,6 +48,18 @@ class Comparison(Result):
         Axes along which the residual has a pattern, strongest first.
     predictions, residuals
         One array a run, N; residual is record minus prediction.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
+    >>> compared = jbf.compare(model, [run])
+    >>> round(compared.rms, 1), len(compared.failures)
+    (0.2, 0)
     """
 
     model: Model

@@ -125,6 +125,18 @@ class Check(Result):
         Model that generated the campaigns.
     answers
         Results, one per campaign.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
+    >>> found = jbf.check(model, [run], campaigns=1)
+    >>> [answer.verdict for answer in found.answers]
+    ['adequate']
     """
 
     model: Model
@@ -205,10 +217,31 @@ def check(
     keep
         Called with each new result as soon as it is available.
 
+    Returns
+    -------
+    Check
+        Rates of each outcome, with confidence intervals.
+
     Raises
     ------
     InputError
         The number of campaigns is not positive, or the runs cannot be prepared.
+
+    Notes
+    -----
+    The intervals are those of Clopper & Pearson (1934) for a binomial proportion.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
+    >>> found = jbf.check(model, [run], campaigns=1)
+    >>> found.rates[0].campaigns
+    1
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     check_callable(progress, "progress")

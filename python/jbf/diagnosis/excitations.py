@@ -50,6 +50,11 @@ class Limits:
     ------
     InputError
         A limit is not positive, or a lower limit exceeds the upper one.
+
+    Examples
+    --------
+    >>> jbf.Limits(velocity_m_s=0.2, duration_s=30.0).duration_s
+    30.0
     """
 
     velocity: float | None = None

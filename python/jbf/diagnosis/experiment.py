@@ -32,6 +32,17 @@ class Experiment:
         `separation_n` in units of the noise.
     evidence
         Expected value of twice the log-likelihood ratio between the rival models.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> diagnosis = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
+    >>> diagnosis.experiment.run.duration_s > 10.0
+    True
     """
 
     words: str

@@ -55,6 +55,17 @@ def diagnose_many(
     ------
     InputError
         An option is wrong for all campaigns.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> found = jbf.diagnose_many({"slide": (jbf.Rig(), [run])}, law="coulomb")
+    >>> found["slide"].verdict
+    'adequate'
     """
     for option in options:
         one_of(option, OPTIONS, "option")

@@ -60,6 +60,14 @@ class Plan(Result):
         Description of each motion.
     planned
         Power of these runs.
+
+    Examples
+    --------
+    >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
+    >>> limits = jbf.Limits(velocity_m_s=0.2, duration_s=4.0)
+    >>> plan = jbf.plan(model, limits=limits, minutes=0.2, noise_rms=0.2, step_s=0.05)
+    >>> [run.duration_s for run in plan.runs], len(plan.words)
+    ([3.95, 3.95, 3.95], 3)
     """
 
     runs: tuple[Run, ...]
@@ -102,11 +110,24 @@ def plan(
     policy
         Numbers by which an effect will be named.
 
+    Returns
+    -------
+    Plan
+        Motions, most informative first, and their power.
+
     Raises
     ------
     InputError
         No speed is given, a number is not above zero, or the time is too short for three runs or
         too long.
+
+    Examples
+    --------
+    >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
+    >>> limits = jbf.Limits(velocity_m_s=0.2, duration_s=4.0)
+    >>> plan = jbf.plan(model, limits=limits, minutes=0.2, noise_rms=0.2, step_s=0.05)
+    >>> len(plan.runs)
+    3
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     of_kind(limits, Limits, "limits", "give a jbf.Limits")

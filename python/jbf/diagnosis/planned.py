@@ -42,6 +42,18 @@ class PlannedPower(Result):
         Names of the runs.
     level
         Threshold for the gain of an effect.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
+    >>> planned = jbf.planned_power(model, [run], noise_rms=0.2)
+    >>> planned.runs, len(planned.power) > 10
+    (('run',), True)
     """
 
     model: Model
@@ -110,11 +122,28 @@ def planned_power(
     policy
         Numbers by which an effect will be named.
 
+    Returns
+    -------
+    PlannedPower
+        Detection limit of each effect.
+
     Raises
     ------
     InputError
         The noise is not above zero, nothing moves in a run, or a column that the model needs is
         missing.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
+    >>> planned = jbf.planned_power(model, [run], noise_rms=0.2)
+    >>> len(planned.power) > 10
+    True
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     noise_rms = number(noise_rms, "noise_rms")

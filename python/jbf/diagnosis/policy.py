@@ -21,7 +21,14 @@ def _number(value: Any, decides: str, source: str) -> Any:
 
 @dataclass(frozen=True)
 class Policy:
-    """Numbers that determine a verdict; evidence is in units of twice the log likelihood."""
+    """Numbers that determine a verdict; evidence is in units of twice the log likelihood.
+
+    Examples
+    --------
+    >>> policy = jbf.Policy(false_alarm_rate=0.001)
+    >>> policy.false_alarm_rate
+    0.001
+    """
 
     # ---- evidence for an effect -------------------------------------------------------------
     false_alarm_rate: float = _number(

@@ -86,6 +86,23 @@ def diagnose(
         The diagnosis was interrupted; the exception holds the model of the last round's start.
     Unfinished
         The diagnosis would take too long; the exception holds the same model.
+
+    Notes
+    -----
+    Each candidate is fitted with the present model. It is accepted if twice its log-likelihood gain
+    exceeds a threshold, and if the held-out runs confirm it. The threshold limits the family-wise
+    false-alarm rate and includes an artefact margin (docs/diagnosis.md).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> diagnosis = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
+    >>> diagnosis.verdict, diagnosis.effects
+    ('adequate', ())
     """
     reached = Reached()
     try:

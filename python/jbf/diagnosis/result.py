@@ -78,6 +78,17 @@ class Diagnosis(Result):
         Another law whose held-out error and number of parameters do not exceed those of the final
         model. It has only effects that are not friction (offset, mass, weight). None where no such
         law was found or a search was not necessary.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> diagnosis = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
+    >>> diagnosis.model.effects, len(diagnosis.steps)
+    ((), 1)
     """
 
     verdict: Verdict

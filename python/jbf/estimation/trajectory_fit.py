@@ -50,6 +50,18 @@ class TrajectoryFit(Estimates):
         Number of simulations of all runs, each with its derivatives.
     converged, message
         Convergence flag and message of the search.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rig = jbf.Rig.thesis()
+    >>> law = {"f_m": 0.25, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
+    >>> t = np.linspace(0.0, 2.0, 201)
+    >>> runs = [(t, (0.05, 6.0, 0.04))]
+    >>> measured = [jbf.trajectories(rig, law, runs)[0].friction_coefficient]
+    >>> fit = jbf.fit_trajectories(rig, runs, measured, start={"f_m": 0.3})
+    >>> fit.converged, fit.nobs
+    (True, 201)
     """
 
     parameters: dict[str, ParameterValue]
@@ -87,6 +99,8 @@ def fit_trajectories(
 
     Parameters
     ----------
+    rig
+        Bearing, lubricant and load.
     runs, model, clock, tolerance, eps, phi_rad
         As in :func:`jbf.trajectories`.
     friction_coefficient
@@ -95,11 +109,34 @@ def fit_trajectories(
     start
         Starting values; those of the catalogue by default.
 
+    Returns
+    -------
+    TrajectoryFit
+        The estimates with their standard errors.
+
     Raises
     ------
     InputError
         As :func:`jbf.trajectories`; also if the friction of a run differs in shape from its times,
         or has too few samples.
+
+    Notes
+    -----
+    The sum of squared differences between simulated and measured coefficients is minimised in the
+    logarithms of the parameters, with derivatives that are exact for the steps taken. The standard
+    errors are those of linear least squares at the minimum.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rig = jbf.Rig.thesis()
+    >>> law = {"f_m": 0.25, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
+    >>> t = np.linspace(0.0, 2.0, 201)
+    >>> runs = [(t, (0.05, 6.0, 0.04))]
+    >>> measured = [jbf.trajectories(rig, law, runs)[0].friction_coefficient]
+    >>> fit = jbf.fit_trajectories(rig, runs, measured, start={"f_m": 0.3})
+    >>> round(fit.params["f_m"], 4)
+    0.25
     """
     from scipy import optimize  # most of a second to import
 

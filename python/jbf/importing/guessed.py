@@ -76,6 +76,15 @@ class Guess:
         Further files of the recording, with separate clocks.
     align, align_notes
         Alignment of these clocks, and its evidence.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> jbf.Run.from_arrays(t, np.cos(t), np.sign(np.cos(t))).write_csv("sweep.csv")
+    >>> guess = jbf.look("sweep.csv")
+    >>> guess.rig["drive"]["motion"], guess.questions
+    ('linear', ())
     """
 
     path: Path

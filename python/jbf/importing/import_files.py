@@ -61,15 +61,31 @@ def look(path: PathLike, joint: str | None = None, beside: Sequence[PathLike] = 
 
     Parameters
     ----------
+    path
+        The file.
     joint
         Name or number of one joint, if the file holds several.
     beside
         Further files that were recorded at the same time with separate clocks.
 
+    Returns
+    -------
+    Guess
+        Columns, rig and open questions; its `map()` contains the answers that are known.
+
     Raises
     ------
     InputError
         If the file does not exist or is broken, or its library is not installed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> jbf.Run.from_arrays(t, np.cos(t), np.sign(np.cos(t))).write_csv("sweep.csv")
+    >>> guess = jbf.look("sweep.csv")
+    >>> guess.sure, [entry.key for entry in guess.entries][0]
+    (True, 'time_s')
     """
     with open_recording(path, _further(beside)) as source:
         found = guess(source, joint)
@@ -113,10 +129,24 @@ def import_files(
     progress : callable, optional
         Function that is called with a message, the amount done and the total amount.
 
+    Returns
+    -------
+    Import
+        Folder, rig, runs and ledger.
+
     Raises
     ------
     InputError
         If a file, the map or a unit is invalid, or information is missing; nothing is written.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> jbf.Run.from_arrays(t, np.cos(t), np.sign(np.cos(t))).write_csv("sweep.csv")
+    >>> imported = jbf.import_files("sweep.csv", whole=True)
+    >>> [run.name for run in imported.runs]
+    ['sweep']
     """
     paths = _paths(files)
     folder = None if out is None else path_of(out)
@@ -168,10 +198,24 @@ def read_recording(
 
     The parameters are those of `import_files`.
 
+    Returns
+    -------
+    (Rig, list of Run)
+        The rig and the runs.
+
     Raises
     ------
     InputError
         As `import_files`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> jbf.Run.from_arrays(t, np.cos(t), np.sign(np.cos(t))).write_csv("sweep.csv")
+    >>> rig, runs = jbf.read_recording("sweep.csv", whole=True)
+    >>> rig.quantities.motion, len(runs)
+    ('linear', 1)
     """
     found = import_files(files, map, whole=whole, joint=joint, beside=beside, progress=progress)
     return found.rig, found.runs

@@ -51,6 +51,14 @@ class Map:
         Further files of the recording, with separate clocks.
     align
         Common signal, or seconds added to the times, by stem of a further file.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> jbf.Run.from_arrays(t, np.cos(t), np.sign(np.cos(t))).write_csv("sweep.csv")
+    >>> jbf.look("sweep.csv").map().columns["time_s"]
+    '`time_s`'
     """
 
     columns: Mapping[str, str]
@@ -125,10 +133,27 @@ class Map:
 def read_map(path: PathLike) -> Map:
     """Read a map; open questions are reported later.
 
+    Parameters
+    ----------
+    path : path
+        The file `map.toml`.
+
+    Returns
+    -------
+    Map
+        Contents of the file.
+
     Raises
     ------
     InputError
         If the file is not TOML, or a key is unknown or has an invalid value.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> _ = Path("map.toml").write_text('[columns]\\nfriction_n = "force * 9.81"\\n')
+    >>> jbf.read_map("map.toml").columns
+    {'friction_n': 'force * 9.81'}
     """
     content = read_toml(path)
     try:

@@ -33,6 +33,15 @@ class Import(Result):
         rows and reasons.
     overviews : tuple of Overview
         Each recording reduced to few points, for plotting.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> jbf.Run.from_arrays(t, np.cos(t), np.sign(np.cos(t))).write_csv("sweep.csv")
+    >>> imported = jbf.import_files("sweep.csv", whole=True)
+    >>> [(piece.name, piece.keep) for piece in imported.pieces]
+    [('sweep', True)]
     """
 
     folder: Path

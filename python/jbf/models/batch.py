@@ -80,6 +80,8 @@ def batch(
 
     Parameters
     ----------
+    rig : Rig
+        Bearing, lubricant and load.
     velocity : array, shape (n,) or (n, sets)
         Surface speed, m/s, at samples `dt_s` apart: one motion for all sets, or one per set.
     dt_s : float
@@ -105,6 +107,15 @@ def batch(
     ------
     InputError
         An array has the wrong shape, or a parameter is out of its range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> speed = 0.1 * np.sin(np.arange(0.0, 2.0, 0.001))
+    >>> sets = np.array([0.2, 0.3])
+    >>> one = {"U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
+    >>> jbf.batch(jbf.Rig.thesis(), speed, 1e-3, f_m=sets, **one).shape
+    (2000, 2)
     """
     the_rig(rig)
     find_clock(clock)

@@ -64,6 +64,12 @@ class Parameter:
         speed, "catalogue" means no such bound.
     stated
         True for a number that no fit estimates: it is held at its start, or is fixed elsewhere.
+
+    Examples
+    --------
+    >>> level = jbf.Parameter("c", "N", "level", lower=0.0, upper=100.0, null=0.0, starts=(1.0,))
+    >>> level.upper
+    100.0
     """
 
     name: str
@@ -204,7 +210,18 @@ def drop(name: str) -> bool:
 
 
 def effects() -> Pages[Effect]:
-    """All effects by name, in the order of the signal chain; user-defined ones come last."""
+    """All effects by name, in the order of the signal chain; user-defined ones come last.
+
+    Returns
+    -------
+    dict of str to Effect
+        Equation, source, limits and parameters of each effect.
+
+    Examples
+    --------
+    >>> jbf.effects()["sensor_offset"].parameters[0].unit
+    'N'
+    """
     return Pages({**built_in(), **_user_effects})
 
 
@@ -240,7 +257,18 @@ def drop_law(name: str) -> bool:
 
 
 def laws() -> Pages[Law]:
-    """All base laws by name; user-defined ones come last."""
+    """All base laws by name; user-defined ones come last.
+
+    Returns
+    -------
+    dict of str to Law
+        Equation, source and parameters of each law.
+
+    Examples
+    --------
+    >>> [p.unit for p in jbf.laws()["coulomb"].parameters]
+    ['N', 'N', 'N s/m']
+    """
     return Pages({**built_in_laws(), **_user_laws})
 
 

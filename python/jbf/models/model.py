@@ -75,6 +75,16 @@ class Model(Shown):
     InputError
         A name is unknown, a value is out of bounds, the rig lacks a section that the law needs, or
         an effect cannot be combined with the law.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> parameters = {"F_c": 5.0, "F_v": 20.0, "sensor_offset.b": 0.5}
+    >>> model = jbf.Model(jbf.Rig(), "coulomb", ["sensor_offset"], parameters)
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> run = jbf.Run.from_arrays(t, np.full(len(t), 0.1))
+    >>> round(float(model.predict(run)[-1]), 3)
+    7.5
     """
 
     rig: Rig

@@ -194,11 +194,28 @@ def register_effect(
     summary, equation, source, limits
         Texts for `jbf effects NAME`.
 
+    Returns
+    -------
+    Effect
+        The catalogue entry.
+
     Raises
     ------
     InputError
         A name is taken or not an identifier, the stage is unknown, or a parameter lacks bounds,
         start or null. Also if an argument of the function is neither a parameter nor a column name.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> def drag(velocity_m_s, c_n):
+    ...     return c_n * np.tanh(velocity_m_s / 0.01)
+    >>> c = jbf.Parameter("c_n", "N", "level", lower=-10.0, upper=10.0, null=0.0, starts=(1.0,))
+    >>> jbf.register_effect(drag, parameters=[c], summary="drag").name
+    'drag'
+    >>> "drag" in jbf.effects()
+    True
+    >>> jbf.forget_effect("drag")
     """
     own = name if name is not None else function.__name__
     pages = tuple(parameters)
@@ -240,7 +257,26 @@ def register_effect(
 
 
 def forget_effect(name: str) -> None:
-    """Unregister a user-defined effect; an InputError names one that is not registered."""
+    """Unregister a user-defined effect; an InputError names one that is not registered.
+
+    Parameters
+    ----------
+    name : str
+        Name of the effect.
+
+    Raises
+    ------
+    InputError
+        No effect of this name is registered.
+
+    Examples
+    --------
+    >>> c = jbf.Parameter("c_n", "N", "level", lower=-9.0, upper=9.0, null=0.0, starts=(1.0,))
+    >>> _ = jbf.register_effect(lambda c_n: c_n, parameters=[c], name="level")
+    >>> jbf.forget_effect("level")
+    >>> "level" in jbf.effects()
+    False
+    """
     if not catalogue.drop(name):
         raise InputError(problem=f"{quoted(name)} is no effect of your own", mend="check the name")
 
@@ -293,10 +329,27 @@ def columns_of(
 def load_effects(path: PathLike) -> None:
     """Run a Python file that registers effects or laws, with all permissions of the user.
 
+    Parameters
+    ----------
+    path : path
+        The Python file.
+
     Raises
     ------
     InputError
         The file cannot be read, fails, or registers nothing.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> _ = Path("own.py").write_text('''import jbf
+    ... def level(velocity_m_s, c_n):
+    ...     return c_n + 0.0 * velocity_m_s
+    ... c = jbf.Parameter("c_n", "N", "level", lower=-9.0, upper=9.0, null=0.0, starts=(1.0,))
+    ... jbf.register_effect(level, parameters=[c])
+    ... ''')
+    >>> jbf.load_effects("own.py")
+    >>> jbf.forget_effect("level")
     """
     before = dict(catalogue.user_effects()) | dict(catalogue.user_laws())
     file = Path(path)

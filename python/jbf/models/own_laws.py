@@ -83,11 +83,26 @@ def register_law(
     summary, equation, source, limits
         Texts for `jbf effects` and reports.
 
+    Returns
+    -------
+    Law
+        The catalogue entry.
+
     Raises
     ------
     InputError
         A name is taken or not an identifier, a parameter lacks bounds or start, or an argument of
         the function is neither a parameter nor a column name.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> def dry(velocity_m_s, c_n):
+    ...     return c_n * np.sign(velocity_m_s)
+    >>> c = jbf.Parameter("c_n", "N", "level", lower=0.0, upper=10.0, starts=(1.0,))
+    >>> jbf.register_law(dry, parameters=[c], summary="dry friction").name
+    'dry'
+    >>> jbf.forget_law("dry")
     """
     own = name if name is not None else function.__name__
     pages = tuple(parameters)
@@ -140,6 +155,25 @@ def register_law(
 
 
 def forget_law(name: str) -> None:
-    """Unregister a user-defined law; an InputError names one that is not registered."""
+    """Unregister a user-defined law; an InputError names one that is not registered.
+
+    Parameters
+    ----------
+    name : str
+        Name of the law.
+
+    Raises
+    ------
+    InputError
+        No law of this name is registered.
+
+    Examples
+    --------
+    >>> c = jbf.Parameter("c_n", "N", "level", lower=0.0, upper=9.0, starts=(1.0,))
+    >>> _ = jbf.register_law(lambda velocity_m_s, c_n: c_n, parameters=[c], name="line")
+    >>> jbf.forget_law("line")
+    >>> "line" in jbf.laws()
+    False
+    """
     if not catalogue.drop_law(name):
         raise InputError(problem=f"{quoted(name)} is no law of your own", mend="check the name")

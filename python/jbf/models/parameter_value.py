@@ -25,6 +25,17 @@ class ParameterValue:
     held : bool
         True if no fit determined the parameter. The value is used for predictions but is not an
         estimate, so it has no standard error. The note states the reason.
+
+    Raises
+    ------
+    InputError
+        A value is nan, an error is negative, or a held parameter has an error.
+
+    Examples
+    --------
+    >>> p = jbf.ParameterValue(5.0, 0.1)
+    >>> p.to_dict()
+    {'value': 5.0, 'stderr': 0.1, 'note': None}
     """
 
     value: float

@@ -45,6 +45,16 @@ class Trajectory:
     derivatives : array, shape (n, 4), or None
         Derivatives of the friction coefficient by ``f_m``, ``U_tr_m_s`` (also through eps_tr),
         ``K0`` and ``gamma``, if they were requested.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rig = jbf.Rig.thesis()
+    >>> law = {"f_m": 0.25, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
+    >>> t = np.linspace(0.0, 2.0, 201)
+    >>> along = jbf.trajectory(rig, law, t, sine=(0.1, 6.0), derivatives=True)
+    >>> along.derivatives.shape
+    (201, 4)
     """
 
     time_s: Array
@@ -107,10 +117,25 @@ def trajectory(
         exact for the steps taken (dual numbers, not differences), so a fit that uses them
         converges.
 
+    Returns
+    -------
+    Trajectory
+        State of the film and friction coefficient at each time.
+
     Raises
     ------
     InputError
         The rig lacks bearing, lubricant or load, a name is unknown, or a value is out of bounds.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rig = jbf.Rig.thesis()
+    >>> law = {"f_m": 0.25, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
+    >>> t = np.linspace(0.0, 2.0, 201)
+    >>> along = jbf.trajectory(rig, law, t, sine=(0.1, 6.0))
+    >>> along.friction_coefficient.shape
+    (201,)
     """
     if (velocity is None) == (sine is None):
         raise InputError(
@@ -156,6 +181,26 @@ def trajectories(
     runs
         Pairs of sample times and either speeds at them (an array), or the tuple ``(amplitude,
         omega, bias)`` of a sine. A tuple of three numbers is a sine.
+
+    Returns
+    -------
+    list of Trajectory
+        One per run.
+
+    Raises
+    ------
+    InputError
+        As in `trajectory`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rig = jbf.Rig.thesis()
+    >>> law = {"f_m": 0.25, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}
+    >>> t = np.linspace(0.0, 2.0, 201)
+    >>> runs = [(t, (0.1, omega, 0.0)) for omega in (3.0, 6.0)]
+    >>> len(jbf.trajectories(rig, law, runs))
+    2
     """
     the_rig(rig)
     for section in ("bearing", "lubricant", "load"):

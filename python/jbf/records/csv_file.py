@@ -219,10 +219,23 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     need_friction : bool
         False allows ``friction_n`` to be absent, as in a motion for a prediction.
 
+    Returns
+    -------
+    Run
+        The checked columns, named for the file.
+
     Raises
     ------
     InputError
         The file or a cell of it is invalid; the message names file, row, column and remedy.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> jbf.Run.from_arrays(t, np.cos(t), np.sign(np.cos(t))).write_csv("sweep.csv")
+    >>> len(jbf.read_run("sweep.csv"))
+    20
     """
     path = path_of(path)
     name_of_run = name_of(path)

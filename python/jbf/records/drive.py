@@ -66,6 +66,17 @@ class Drive:
     inertia_kg_m2, mass_kg : float, optional
         Known moved inertia or mass. It is reported next to the estimate of `inertia`. It is
         required for `friction = "none"`, where it converts the deceleration into a force.
+
+    Raises
+    ------
+    InputError
+        A constant that the recorded quantity requires is missing, or is not above zero.
+
+    Examples
+    --------
+    >>> drive = jbf.Drive("rotary", "current", torque_constant_n_m_a=0.05, gear_ratio=100.0)
+    >>> jbf.Rig(drive=drive).quantities.force
+    'N m'
     """
 
     motion: Kind

@@ -40,6 +40,16 @@ class Bearing:
         Rotating mass, kg.
     count : int
         Number of bearings on the shaft, at least 1.
+
+    Raises
+    ------
+    InputError
+        A dimension is not above zero, or the clearance is not less than the radius.
+
+    Examples
+    --------
+    >>> jbf.Bearing(radius_m=0.02, length_m=0.03, clearance_m=5e-5, mass_kg=2.0, count=2).count
+    2
     """
 
     radius_m: float
@@ -81,6 +91,16 @@ class Lubricant:
     temperature_c : float, optional
         Temperature at which the viscosity holds, degrees Celsius. In a model with
         `vogel_viscosity`, the parameters of the law refer to this temperature.
+
+    Raises
+    ------
+    InputError
+        The viscosity is not above zero, or the temperature is out of range.
+
+    Examples
+    --------
+    >>> jbf.Lubricant(viscosity_pa_s=0.02, temperature_c=40.0)
+    Lubricant(viscosity_pa_s=0.02, temperature_c=40.0)
     """
 
     viscosity_pa_s: float
@@ -102,7 +122,18 @@ class Lubricant:
 
 @dataclass(frozen=True)
 class Load:
-    """The load; `normal_n` is the normal load on one bearing, N."""
+    """The load; `normal_n` is the normal load on one bearing, N.
+
+    Raises
+    ------
+    InputError
+        The load is not above zero.
+
+    Examples
+    --------
+    >>> jbf.Load(100.0)
+    Load(normal_n=100.0)
+    """
 
     normal_n: float
 
@@ -139,6 +170,25 @@ class Rig:
 
     A `drive` defines the quantities of the recording and of the results for a machine without
     journal bearings.
+
+    Attributes
+    ----------
+    bearing : Bearing, optional
+        Journal bearings; required for laws with a lubricant film.
+    lubricant : Lubricant, optional
+        Viscosity of the lubricant; required for laws with a film.
+    load : Load, optional
+        Load on one bearing; required for laws whose coefficients are relative to the load.
+    drive : Drive, optional
+        Rotary or linear drive whose columns the runs have.
+
+    Examples
+    --------
+    >>> rig = jbf.Rig(load=jbf.Load(50.0))
+    >>> rig.bearing is None
+    True
+    >>> jbf.Rig.thesis().bearing.count
+    4
     """
 
     bearing: Bearing | None = None
@@ -250,9 +300,26 @@ class Rig:
 def read_rig(path: PathLike) -> Rig:
     """Read a rig from TOML.
 
+    Parameters
+    ----------
+    path : path
+        The file `rig.toml`.
+
+    Returns
+    -------
+    Rig
+        Bearing, lubricant, load and drive, as far as the file has their sections.
+
     Raises
     ------
     InputError
         The file is not TOML, or a key is unknown, missing, of the wrong type or out of range.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> _ = Path("rig.toml").write_text("[load]\\nnormal_n = 50.0\\n")
+    >>> jbf.read_rig("rig.toml").load
+    Load(normal_n=50.0)
     """
     return Rig.from_mapping(read_toml(path), file=path)

@@ -82,6 +82,15 @@ class Run(Shown):
         Mask of the instants at which a channel with its own clock was sampled, bool, shape (N,).
         Between them its array is linearly interpolated. A column without a mask was sampled at
         every instant.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v, name="sweep")
+    >>> len(run), run.duration_s
+    (200, 3.98)
     """
 
     name: str

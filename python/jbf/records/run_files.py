@@ -59,10 +59,32 @@ def read_runs(
 
     Names are the file stems; runs with equal stems are prefixed by parent folders: ``a/sweep``.
 
+    Parameters
+    ----------
+    paths : path or iterable of path
+        Files, folders and glob patterns.
+    rig : Rig, optional
+        The rig of the recordings.
+    need_friction : bool
+        False allows the friction to be absent.
+
+    Returns
+    -------
+    list of Run
+        One run per file, in the order of the paths.
+
     Raises
     ------
     InputError
         As in `read_run`; also if no file is found or a file is given twice.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 2.0, 0.1)
+    >>> jbf.Run.from_arrays(t, np.cos(t), np.sign(np.cos(t))).write_csv("sweep.csv")
+    >>> [run.name for run in jbf.read_runs("*.csv")]
+    ['sweep']
     """
     if isinstance(paths, str | os.PathLike) or not isinstance(paths, Iterable):
         items = [path_of(paths)]

@@ -87,11 +87,11 @@ class Estimates(Result):
         except InputError:
             return False
 
-    def facts(self) -> Mapping[str, Any]:
+    def _facts(self) -> Mapping[str, Any]:
         """Entries of `to_dict` in addition to the parameters."""
         return {}
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result as a dictionary for JSON."""
         named = {name: p.to_dict() for name, p in self.parameters.items()}
-        return {**self.facts(), "parameters": named}
+        return {**self._facts(), "parameters": named}

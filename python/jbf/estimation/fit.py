@@ -166,7 +166,7 @@ class Fit(Estimates):
         """Return `summary`: statistics, parameters with errors, and the strongest correlations."""
         return self.summary()
 
-    def facts(self) -> Mapping[str, Any]:
+    def _facts(self) -> Mapping[str, Any]:
         """Entries of `to_dict` in addition to the parameters."""
         return {
             "law": self.model.law,

@@ -71,7 +71,7 @@ class TrajectoryFit(Estimates):
     converged: bool
     message: str
 
-    def facts(self) -> Mapping[str, Any]:
+    def _facts(self) -> Mapping[str, Any]:
         """Entries of `to_dict` in addition to the parameters."""
         return {
             "sum_of_squares": self.sum_of_squares,

@@ -3,6 +3,8 @@
 Long-run variances of scores (Newey & West 1987) are compared with closed forms.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from by_hand import Array, coulomb, four_runs
@@ -16,8 +18,9 @@ from coulomb_problems import (
     values_of,
 )
 from jbf.estimation import likelihood, long_run
+from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.robust import clipped_square, robust_size
-from scipy import stats
+from scipy import linalg, stats
 
 
 def white(seed: int, n: int) -> Array:
@@ -31,6 +34,21 @@ def test_likelihood_gain_is_n_times_the_log_ratio_of_squares() -> None:
     after = solution_of([np.full(60, 3.0), np.full(40, 3.0)], samples)
     assert likelihood.likelihood_gain(after, before) == pytest.approx(100.0 * np.log(4.0))
     assert likelihood.likelihood_gain(before, after) == pytest.approx(-100.0 * np.log(4.0))
+
+
+def test_log_likelihood_is_that_of_a_normal_vector_with_weights_and_random_effects() -> None:
+    """Two runs with unequal noise and a random offset, against the density of the whole vector."""
+    residuals = [white(1, 30) + 1.5, white(2, 20) - 0.5]
+    weights = [np.linspace(0.3, 1.0, 30), np.full(20, 0.8)]
+    offset = BetweenRuns(("offset",), tuple(np.full((len(r), 1), 0.7) for r in residuals), 1.2)
+    samples = replace(samples_of(weights), between=offset)
+    found = likelihood.log_likelihood(solution_of(residuals, samples))
+    # In units of the noise of a sample with full weight: w^2 (I + u u') of each run.
+    blocks = [np.diag(1.0 / w**2) + (0.7 / 1.2) ** 2 * np.ones((len(w), len(w))) for w in weights]
+    covariance, y = linalg.block_diag(*blocks), np.concatenate(residuals)
+    variance = y @ np.linalg.solve(covariance, y) / len(y)
+    expected = stats.multivariate_normal.logpdf(y, cov=variance * covariance)
+    assert found == pytest.approx(expected, rel=1e-9)
 
 
 def test_likelihood_gain_uses_the_smaller_of_two_weights_of_a_sample() -> None:

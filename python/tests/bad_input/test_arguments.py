@@ -19,7 +19,7 @@ ANYTHING: Any = None
 CASES: dict[str, tuple[Callable[[], Any], str]] = {
     "law": (lambda: jbf.fit(RIG, [RUN], law="Journal"), 'did you mean "journal"?'),
     "rig a path": (lambda: jbf.fit("rig.toml", [RUN]), 'read it: jbf.read_rig("rig.toml")'),
-    "runs and model swapped": (lambda: jbf.compare([RUN], MODEL), "the model is a list"),
+    "runs and model swapped": (lambda: jbf.compare([RUN], MODEL), "the model is a Run"),
     "speed of zero": (lambda: MODEL.steady_friction([0.0]), "must be finite and not zero"),
     "text": (lambda: jbf.trajectory(RIG, TEXT, T, T), 'key parameters.K0: "a" is not a number'),
     "sine without omega": (lambda: jbf.trajectory(RIG, LAW, T, sine=(1.0,)), "omega in rad/s"),

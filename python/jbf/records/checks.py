@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from textwrap import shorten
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +26,14 @@ COLUMNS = (
     "temperature_c",
 )
 """Columns with a defined meaning, in the order in which `Run.write_csv` writes them."""
+UNITS = {
+    "time_s": "s",
+    "angle_rad": "rad",
+    "position_m": "m",
+    "load_n": "N",
+    "temperature_c": "degC",
+}
+"""Units of the columns that do not depend on the rig."""
 ATTRIBUTES = {"velocity_m_s": "velocity", "friction_n": "friction"}
 """Attributes of `Run` without a unit, by column: their unit is that of the rig."""
 POINT = "point"
@@ -183,3 +192,29 @@ def check_columns(
                 f"a load of {columns['load_n'][bad[0]]} N is not above zero",
                 "correct the cell or drop the row",
             )
+
+
+def selection(which: slice | npt.ArrayLike, count: int, name: str) -> Any:
+    """Return a slice or a boolean mask of shape (count,) that selects samples.
+
+    Raises
+    ------
+    InputError
+        The mask is not boolean or not of shape (count,), or the slice runs backwards.
+    """
+    if isinstance(which, slice):
+        if which.step is not None and which.step < 1:
+            raise InputError(
+                file=name,
+                problem="a selection cannot run backwards",
+                mend="use a step > 0",
+            )
+        return which
+    index = np.asarray(which)
+    if np.ma.is_masked(which) or index.dtype != np.bool_ or index.shape != (count,):
+        raise InputError(
+            file=name,
+            problem=f"a mask of {index.dtype} and shape {index.shape} cannot select",
+            mend=f"give a slice or a boolean mask of shape ({count},)",
+        )
+    return index

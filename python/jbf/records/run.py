@@ -19,11 +19,13 @@ from jbf.records.checks import (
     MOTION,
     POINT,
     SLOW,
+    UNITS,
     as_array,
     attribute,
     check_columns,
     frozen,
     listed,
+    selection,
 )
 from jbf.records.csv_output import csv_of_columns
 from jbf.records.derived_columns import fill_gaps, made_speed
@@ -35,14 +37,6 @@ from jbf.text_files import write_text
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-UNITS = {
-    "time_s": "s",
-    "angle_rad": "rad",
-    "position_m": "m",
-    "load_n": "N",
-    "temperature_c": "degC",
-}
-"""Units of the columns that do not depend on the rig."""
 PathLike = str | os.PathLike[str]
 
 
@@ -154,22 +148,7 @@ class Run(Shown):
         InputError
             The mask is not boolean or not of shape (N,), or the slice runs backwards.
         """
-        if isinstance(which, slice):
-            if which.step is not None and which.step < 1:
-                raise InputError(
-                    file=self.name,
-                    problem="a selection cannot run backwards",
-                    mend="use a step > 0",
-                )
-            index: Any = which
-        else:
-            index = np.asarray(which)
-            if np.ma.is_masked(which) or index.dtype != np.bool_ or index.shape != (len(self),):
-                raise InputError(
-                    file=self.name,
-                    problem=f"a mask of {index.dtype} and shape {index.shape} cannot select",
-                    mend=f"give a slice or a boolean mask of shape ({len(self)},)",
-                )
+        index = selection(which, len(self), self.name)
         kept = {name: frozen(a[index]) for name, a in self._arrays().items()}
         extra = {name: kept.pop(name) for name in self.extra}
         read = {name: there[index] for name, there in self.read.items()}

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from jbf.comparison.comparison import Comparison
 from jbf.errors import InputError
-from jbf.estimation.units import LEAST_UNITS, independent_units
+from jbf.estimation.settings import DEFAULT
+from jbf.estimation.units import independent_units
 from jbf.results import Result
 
 Array = npt.NDArray[np.float64]
@@ -159,7 +160,7 @@ def compare_models(comparisons: Mapping[str, Comparison]) -> ModelComparison:
         for name in order
     )
     runs = sum(bool(mask.any()) for mask in masks)
-    unit: Unit = "run" if runs >= LEAST_UNITS else "stroke"
+    unit: Unit = "run" if runs >= DEFAULT.held_out.min_units else "stroke"
     return ModelComparison(
         rows, {name: comparisons[name] for name in order}, nobs, unit, len(units)
     )

@@ -27,12 +27,15 @@ Array = npt.NDArray[np.float64]
 
 EVERY = slice(None)
 NEVER = 30.0
-"""Multiple of the detectable strength from which two effects count as indistinguishable."""
+"""Multiple of the detectable strength from which two effects count as indistinguishable.
+
+It enters no verdict.
+"""
 MOST = 9.0
 """Limit of the squared change of one sample, in units of the noise variance.
 
 A single larger change is no evidence of a law. It is an outlier, or the uncertain instant of a
-reversal.
+reversal. It enters no verdict.
 """
 
 

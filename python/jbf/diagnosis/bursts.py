@@ -23,13 +23,14 @@ from jbf.records.counts import count_of
 Array = npt.NDArray[np.float64]
 
 APART_S = 0.5
-"""Largest time between two large innovations of the same burst, s."""
-CLIPPED = 3.0
-"""Standard deviations at which innovations are clipped."""
+"""Largest time between two large innovations of the same burst, s. It concerns the text only."""
 NO_NOISE = 1e-9
-"""Share of the largest innovation below which the other innovations are rounding errors."""
+"""Share of the largest innovation below which the other innovations are rounding errors.
+
+It is a numerical tolerance.
+"""
 NAMED = 4
-"""Number of bursts listed in the description."""
+"""Number of bursts listed in the description. It concerns the text only."""
 
 
 def find_bursts(
@@ -52,16 +53,16 @@ def find_bursts(
     sigma = max(float(np.median(np.abs(every))) / 0.6745, NO_NOISE * float(np.max(np.abs(every))))
     if sigma == 0.0:
         return []
-    far = np.abs(every) > policy.burst_sigma * sigma
+    far = np.abs(every) > policy.bursts.min_sigma * sigma
     square = float(every @ every)
     share = float(np.sum(every[far] ** 2)) / max(square, 1e-300)
-    if share < policy.burst_share:
+    if share < policy.bursts.min_share:
         return []
-    if _lasting_chance(innovations, samples, sigma, policy) > policy.burst_chance:
+    if _lasting_chance(innovations, samples, sigma, policy) > policy.bursts.chance:
         return []
     bursts: list[tuple[float, float, str]] = []
     for e, r, counted, p in zip(innovations, residuals, samples.counted, prepared, strict=True):
-        index = np.flatnonzero((np.abs(e) > policy.burst_sigma * sigma) & counted)
+        index = np.flatnonzero((np.abs(e) > policy.bursts.min_sigma * sigma) & counted)
         time = p.run.time_s[index]
         for group in np.split(index, np.flatnonzero(np.diff(time) > APART_S) + 1):
             if len(group):
@@ -79,13 +80,13 @@ def _lasting_chance(
     innovations: Sequence[Array], samples: Samples, sigma: float, policy: Policy
 ) -> float:
     """Probability by chance of such sign agreement of large innovations with neighbours."""
-    product = square = 0.0
-    clipped = np.clip(samples.flat(innovations) / sigma, -CLIPPED, CLIPPED)
+    product, square, clip = 0.0, 0.0, policy.bursts.clip_sigma
+    clipped = np.clip(samples.flat(innovations) / sigma, -clip, clip)
     usual = float(np.mean(clipped**2))
     for e, counted in zip(innovations, samples.counted, strict=True):
-        x = np.clip(e / sigma, -CLIPPED, CLIPPED)
-        large = np.abs(e) > policy.burst_sigma * sigma
+        x = np.clip(e / sigma, -clip, clip)
+        large = np.abs(e) > policy.bursts.min_sigma * sigma
         pairs = counted[1:] & counted[:-1] & (large[1:] | large[:-1])
         product += float(np.sum((x[1:] * x[:-1])[pairs]))
-        square += CLIPPED**2 * usual * int(pairs.sum())
+        square += clip**2 * usual * int(pairs.sum())
     return float(special.ndtr(-product / np.sqrt(square))) if square > 0.0 else 1.0

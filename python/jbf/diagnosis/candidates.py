@@ -46,7 +46,7 @@ Array = npt.NDArray[np.float64]
 RANKING_EVALUATIONS = 6
 """Number of steps after which candidates are ranked.
 
-Only competitive candidates are fitted further.
+Only competitive candidates are fitted further. It limits the effort only.
 """
 
 
@@ -283,7 +283,7 @@ class Candidates:
         if len(frozenset(effects)) > 1 and many_peaks(effects):
             # Repeat the fit from default values, without the earlier solutions.
             fresh = approach(fitted.problem, [{}], RANKING_EVALUATIONS)
-            if likelihood_gain(fresh, found) > -self.policy.contender:
+            if likelihood_gain(fresh, found) > -self.policy.search.rank_margin:
                 fresh = search_peaks(fitted.problem, settle(fitted.problem, fresh))
                 found = fresh if likelihood_gain(fresh, found) > 0.0 else found
         fitted.improve(found)
@@ -302,7 +302,7 @@ class Candidates:
         there = problem.solution(start, samples, near.noise, False)
         there = settle(problem, there, samples)
         # With run-specific parameters a wrong law can be more likely and yet have a far larger RMS.
-        astray = there.rms > self.policy.leader_rms * near.rms
+        astray = there.rms > self.policy.selection.max_rms_ratio * near.rms
         if likelihood_gain(there, near) > 0.0 and not astray:
             fitted.improve(there)
         return fitted.current_solution()
@@ -325,7 +325,8 @@ class Candidates:
             self.held_out_parts(richer, halved),
         )
         names = tuple(self.campaign.samples.runs[i] for i in halved)
-        return Confirmation.of(before, after, left, richer_left, names, self.campaign.prepared)
+        prepared = self.campaign.prepared
+        return Confirmation.of(before, after, left, richer_left, names, prepared)
 
     def held_out_parts(
         self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
@@ -377,7 +378,7 @@ class Candidates:
             return np.inf
         every = self.campaign.samples
         square, samples = every.square(near.residuals), every.count
-        shows = self.policy.least_score * self.level.price(1, samples)
+        shows = self.policy.search.min_score_share * self.level.price(1, samples)
         return square * float(np.exp(-shows / samples))
 
     def tell(self, message: str, done: int, total: int) -> None:

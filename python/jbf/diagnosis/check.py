@@ -26,7 +26,7 @@ Names = tuple[str, ...]
 Progress = Callable[[str, int, int], None]
 
 SURE = 0.95
-"""Confidence level of the interval of a rate (Clopper & Pearson 1934)."""
+"""Confidence level of the interval of a rate (Clopper & Pearson 1934). It enters no verdict."""
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,9 @@ from jbf.estimation.left_out import HeldOutPart, errors_by_run
 from jbf.estimation.predictive import mean_square, surprise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import common_samples
+from jbf.estimation.settings import HeldOutSettings
 from jbf.estimation.solution import Solution
-from jbf.estimation.units import LEAST_UNITS, independent_units
+from jbf.estimation.units import independent_units
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
@@ -37,7 +38,7 @@ class Confirmation:
     halved
         Runs that alone determine a parameter: their halves were held out in turn, in both fits.
     units
-        Number of independent units: runs, or strokes where there are fewer than `LEAST_UNITS` runs.
+        Number of independent units: runs, or strokes where there are few runs.
     chance
         Probability of so large a mean improvement of the units by chance: one-sided t-test of the
         logarithms of the ratios of their mean squares. It is 1 where there are too few units.
@@ -74,6 +75,7 @@ class Confirmation:
         prepared
             The runs, whose strokes are the units where there are too few runs.
         """
+        settings = simpler.samples.settings.held_out
         # Compare on common samples: a model may exclude those next to its jumps.
         counted = common_samples(simpler.samples, richer.samples).counted
         errors = [
@@ -83,7 +85,7 @@ class Confirmation:
         before_n, after_n = (_rms(np.concatenate(list(own.values()))) for own in errors)
         better = [_rms(errors[1][i]) < _rms(own) for i, own in errors[0].items() if len(own)]
         density = _density_share(simpler, richer, left, richer_left)
-        ratios = _unit_ratios(errors[0], errors[1], prepared, counted)
+        ratios = _unit_ratios(errors[0], errors[1], prepared, counted, settings)
         return cls(
             before_n,
             after_n,
@@ -91,7 +93,7 @@ class Confirmation:
             density,
             halved,
             len(ratios),
-            _chance(ratios),
+            _chance(ratios, settings.min_units),
         )
 
     def units_confirm(self, chance: float) -> bool:
@@ -129,9 +131,10 @@ def _unit_ratios(
     after: Mapping[int, Array],
     prepared: Sequence[Prepared],
     counted: Sequence[npt.NDArray[np.bool_]],
+    settings: HeldOutSettings,
 ) -> Array:
     """Log ratios of the mean squares without and with a candidate, one per unit."""
-    units = independent_units({i: counted[i] for i in before}, prepared)
+    units = independent_units({i: counted[i] for i in before}, prepared, settings)
     squares = np.array(
         [(np.mean(before[i][own] ** 2), np.mean(after[i][own] ** 2)) for i, own in units]
     ).reshape(-1, 2)
@@ -140,9 +143,9 @@ def _unit_ratios(
     return ratios
 
 
-def _chance(ratios: Array) -> float:
+def _chance(ratios: Array, min_units: int) -> float:
     """Probability of so large a mean by chance (Student's t, one-sided)."""
-    if len(ratios) < LEAST_UNITS:
+    if len(ratios) < min_units:
         return 1.0
     error = float(np.std(ratios, ddof=1)) / np.sqrt(len(ratios))
     if error == 0.0:
@@ -192,7 +195,7 @@ def held_out_runs_confirm(
     little information where the other runs cannot determine a parameter, for example where one run
     dominates the estimate of the law's own parameters. Where the evidence is strong, any gain in
     mean square suffices, or a better prediction of most of the runs. A candidate that increases the
-    held-out RMS by more than `policy.left_out_worse` is never confirmed.
+    held-out RMS by more than `policy.held_out.max_rms_ratio` is never confirmed.
 
     Parameters
     ----------
@@ -205,8 +208,8 @@ def held_out_runs_confirm(
     times
         Held-out RMS divided by the held-out RMS without the candidate.
     """
-    if times > policy.left_out_worse:
+    if times > policy.held_out.max_rms_ratio:
         return False
-    if evidence <= policy.weak:
-        return density > policy.least_left_out_gain
-    return gained_share > 0.0 or better >= policy.least_better_runs
+    if evidence <= policy.selection.weak_evidence:
+        return density > policy.held_out.min_gain_share
+    return gained_share > 0.0 or better >= policy.held_out.min_better_share

@@ -29,17 +29,15 @@ from jbf.models.parameter_units import unit_of
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-SENSITIVE = 1e-3
-"""Relative sensitivity of a run below which a direction of the parameters is not determined."""
 OIL = {"U_tr_m_s", "gamma"}
 """Parameters that both depend on the oil temperature: a run that differs in one differs in both."""
 TOLD = float(np.log(20.0))
 """Largest change of a logarithm that is reported as a number.
 
-One Gauss-Newton step is not accurate beyond it.
+One Gauss-Newton step is not accurate beyond it. It concerns the text only.
 """
 NAMED = 3
-"""Number of runs listed in the description."""
+"""Number of runs listed in the description. It concerns the text only."""
 
 
 @dataclass(frozen=True)
@@ -62,12 +60,17 @@ class Disagreement:
 
     def beyond_chance(self, policy: Policy = DEFAULT) -> bool:
         """True where one set of parameters is rejected for all runs."""
-        if self.degrees == 0 or self.gain <= policy.constancy_ratio * self.degrees:
+        if self.degrees == 0 or self.gain <= policy.constancy.min_ratio * self.degrees:
             return False
-        return bool(special.chdtrc(self.degrees, self.gain) < policy.constancy_chance)
+        return bool(special.chdtrc(self.degrees, self.gain) < policy.constancy.chance)
 
 
-def disagreement(problem: Problem, solution: Solution, effect: str | None = None) -> Disagreement:
+def disagreement(
+    problem: Problem,
+    solution: Solution,
+    effect: str | None = None,
+    policy: Policy = DEFAULT,
+) -> Disagreement:
     """Compute how far the runs disagree on the parameters of a solution.
 
     Parameters
@@ -87,8 +90,9 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
             known |= OIL
         aside = aside | np.array([problem.names[i] in known for i in problem.open])
     residuals, jacobian, noise = solution.residuals, solution.jacobian, solution.noise
+    least = policy.constancy.min_sensitivity
     parts = [
-        _set_aside(*samples.stacked(residuals, jacobian, noise, [i]), aside)
+        _set_aside(*samples.stacked(residuals, jacobian, noise, [i]), aside, least)
         for i in range(len(residuals))
     ]
     size = np.sqrt(np.sum([np.sum(j**2, axis=0) for _, j in parts], axis=0))
@@ -96,12 +100,12 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
     gain, degrees, by_run = 0.0, 0, {}
     together: list[tuple[Array, Array]] = []
     for (r, j), name, step_s in zip(parts, samples.runs, samples.steps_s, strict=True):
-        directions = _directions(j / scale)
+        directions = _directions(j / scale, least)
         count = directions.shape[1]
         if len(r) <= count:
             continue
         sigma = max(float(np.sqrt(np.mean(r**2))), 1e-150)
-        own = score_square(directions, r / sigma, step_s)
+        own = score_square(directions, r / sigma, step_s, samples.settings.variance)
         gain += own
         degrees += count
         by_run[name] = own / max(count, 1)
@@ -112,7 +116,7 @@ def disagreement(problem: Problem, solution: Solution, effect: str | None = None
     # A gain of common parameters is not a disagreement. It is not zero at a bound, or where the
     # noise colour is only partly accounted for, because the fit is not at the maximum.
     r, j = (np.concatenate(a) for a in zip(*together, strict=True))
-    common = float(np.sum((_directions(j).T @ r) ** 2))
+    common = float(np.sum((_directions(j, least).T @ r) ** 2))
     shared = int(np.sum(size > 0.0))
     return Disagreement(max(gain - common, 0.0), max(degrees - shared, 1), ranked)
 
@@ -127,32 +131,35 @@ def _of_many_peaks(problem: Problem) -> Mask:
     return _of(problem, {name for name in problem.effects if find_effect(name).peaks})
 
 
-def _directions(j: Array) -> Array:
+def _directions(j: Array, least: float) -> Array:
     """Orthonormal directions of the record in which the parameters change it."""
     directions, size, _ = np.linalg.svd(j, full_matrices=False)
-    found: Array = directions[:, size > SENSITIVE * max(float(size.max(initial=0.0)), 1e-300)]
+    found: Array = directions[:, size > least * max(float(size.max(initial=0.0)), 1e-300)]
     return found
 
 
-def _set_aside(r: Array, j: Array, aside: Mask) -> tuple[Array, Array]:
+def _set_aside(r: Array, j: Array, aside: Mask, least: float) -> tuple[Array, Array]:
     """Project out of residuals and derivatives what the parameters set aside could explain.
 
     For an effect with many peaks, each run may select its own peak according to its motion errors.
     """
     if not aside.any():
         return r, j
-    taken = _directions(j[:, aside])
+    taken = _directions(j[:, aside], least)
     rest = j[:, ~aside]
     return r - taken @ (taken.T @ r), rest - taken @ (taken.T @ rest)
 
 
 def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
     """Report that the runs require different parameters, where they do."""
-    found = disagreement(problem, solution)
+    found = disagreement(problem, solution, policy=policy)
     if not found.beyond_chance(policy):
         return []
     ranked = list(found.by_run)[:NAMED]
-    first, others = ranked[0], [n for n in ranked[1:] if found.by_run[n] > policy.constancy_ratio]
+    first, others = (
+        ranked[0],
+        [n for n in ranked[1:] if found.by_run[n] > policy.constancy.min_ratio],
+    )
     step = run_specific_step(problem, solution, first)
     where = (
         f"the runs ask for parameters that differ: run {first} asks for "

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 DRAWS = 200
-"""Number of decoy campaigns."""
+"""Number of decoy campaigns. It enters no verdict."""
 SURE = 0.95
-"""Confidence level of the reported upper limit of the rate."""
+"""Confidence level of the reported upper limit of the rate. It enters no verdict."""
 
 
 def decoy_gains(directions: Sequence[Directions]) -> list[Array]:

@@ -128,24 +128,24 @@ def swap_cost(
 
     policy = candidates.policy
     score = candidates.score_test(effects, near)
-    shows = policy.least_score * price_of(candidates, 1)
+    shows = policy.search.min_score_share * price_of(candidates, 1)
     # Subtract the step that the law itself would still make; it is not due to the effect.
-    least = policy.least_swap * likelihood_gain(whole, near)
+    least = policy.search.min_swap_share * likelihood_gain(whole, near)
     if score <= shows or score - next_step_gain(near) <= least:
         return cost(near)
     if not many_peaks(effects):
         # With many peaks, a step from one peak does not predict another.
         looked = candidates.look(effects, near)
-        could_gain = policy.foreseen * looked.promised - likelihood_gain(
+        could_gain = policy.search.linear_gain_factor * looked.promised - likelihood_gain(
             looked.current_solution(), near
         )
-        if cost(looked.current_solution()) - share * could_gain >= policy.contender:
+        if cost(looked.current_solution()) - share * could_gain >= policy.search.rank_margin:
             return cost(looked.current_solution())
     first = cost(candidates.rank(effects, near))
-    if first >= policy.contender:
+    if first >= policy.search.rank_margin:
         return first
     solution = candidates.converge(effects, near)
-    if solution.rms > policy.leader_rms * whole.rms:
+    if solution.rms > policy.selection.max_rms_ratio * whole.rms:
         # Where the model is wrong, the whitest residual is not the smallest one.
         return float("inf")
     # An effect without evidence of its own replaces nothing: its fit may be better only because it

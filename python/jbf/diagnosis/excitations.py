@@ -10,22 +10,24 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.estimation.campaign import TEMPERATURES_DIFFER_K, Campaign
+from jbf.estimation.campaign import Campaign
 
 Array = npt.NDArray[np.float64]
 
 RATES_RAD_S = (0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+"""Rates of the sines, rad/s. It enters no verdict."""
 SHARES = (1.0, 0.3, 0.1, 0.02)
-"""Amplitudes of the sines, as shares of the largest speed."""
+"""Amplitudes of the sines, as shares of the largest speed. It enters no verdict."""
 STOP_SHARES = (0.4, 1.0)
-"""Amplitudes of stop-and-go motions, as shares of the largest speed."""
+"""Amplitudes of stop-and-go motions, as shares of the largest speed. It enters no verdict."""
 REST_S = 8.0
+"""Duration of a rest of a stop-and-go motion, s. It enters no verdict."""
 USUAL_RATE_RAD_S = 2.0
-"""Rate of a sine at which a drive is assumed to reach its largest speed."""
+"""Rate of a sine at which a drive is assumed to reach its largest speed. It enters no verdict."""
 MOST = 1e6
-"""Upper limit of any speed, acceleration or load of a rig, SI units."""
+"""Upper limit of any speed, acceleration or load of a rig, SI units. It only limits the input."""
 LONGEST_S = 86400.0
-"""Longest run that is planned, s."""
+"""Longest run that is planned, s. It only limits the input."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,8 @@ class Limits:
             middles = [float(np.median(values)) for values in loads]
             load = min(middles), max(middles)
         celsius = self.temperature_c
-        if celsius is None and (campaign.temperatures_k or 0.0) >= TEMPERATURES_DIFFER_K:
+        least_k = campaign.settings.conditions.min_temperature_difference_k
+        if celsius is None and (campaign.temperatures_k or 0.0) >= least_k:
             celsius = campaign.temperature_range_c
         return Limits(top, sharp, self.duration_s, load, celsius)
 

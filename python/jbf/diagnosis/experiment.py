@@ -93,7 +93,7 @@ def propose(
         if least > best:
             best, chosen = least, (excitation, run)
     names = _names(rivals)
-    if chosen is None or best < candidates.policy.least_separation:
+    if chosen is None or best < candidates.policy.experiments.min_evidence:
         return (
             f"{names} predict the same friction in every motion within the limits, once each is "
             "fitted: no such run would part them"

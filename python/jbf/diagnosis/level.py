@@ -42,7 +42,10 @@ from jbf.estimation.solution import Solution
 Array = npt.NDArray[np.float64]
 
 DRAWS = 4000
-"""Number of sign draws of the bootstrap; forty of them exceed a level of one per cent."""
+"""Number of sign draws of the bootstrap; forty of them exceed a level of one per cent.
+
+It is a numerical resolution.
+"""
 
 
 @dataclass(frozen=True)
@@ -193,8 +196,10 @@ class Directions:
         ways = np.linalg.qr(left[:, told] / length[told])[0]
         ends = _ends(samples)
         unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
-        parts = np.split(unit, ends)
-        more = [sure_inflation(np.split(way, ends), parts, samples.steps_s) for way in ways.T]
+        parts, settings = np.split(unit, ends), samples.settings.variance
+        more = [
+            sure_inflation(np.split(way, ends), parts, samples.steps_s, settings) for way in ways.T
+        ]
         counted = np.array([min(share, 1.0 / m) for m in more])
         return cls(ways, unit, counted, blocks_of(samples, share), ends)
 

@@ -87,7 +87,7 @@ def one_round(
         progress("fitting", 0, 0)
     # The model is exactly that of `fit`, so that the step can be reproduced by hand.
     fitted = fit(rig, runs, effects, law=law, clock=clock)
-    chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs)
+    chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs, policy.estimation)
     comparison = compare_prepared(fitted.model, campaign)
     if fitted_as is not None:
         fitted_as(fitted, comparison)

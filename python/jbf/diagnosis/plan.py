@@ -40,11 +40,20 @@ from jbf.threads import one_blas_thread
 Array = npt.NDArray[np.float64]
 
 ENOUGH, MORE = 4.0, 0.05
-"""Sufficient multiple of an effect's threshold, and the weight of information beyond it."""
+"""Sufficient multiple of an effect's threshold, and the weight of information beyond it.
+
+It enters no verdict.
+"""
 LEAST_RUNS = 3
-"""Smallest number of runs; fewer are not enough for a prediction of a held-out run."""
+"""Smallest number of runs; fewer are not enough for a prediction of a held-out run.
+
+It only limits the input.
+"""
 MOST_RUNS = 200
-"""Largest number of runs; more are not practical, and each is simulated."""
+"""Largest number of runs; more are not practical, and each is simulated.
+
+It only limits the input.
+"""
 
 
 @dataclass(frozen=True, repr=False)

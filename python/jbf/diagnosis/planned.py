@@ -84,9 +84,9 @@ def as_recorded(model: Model, runs: Sequence[Run], noise_rms: float, policy: Pol
         replace(run, friction=friction + noise_rms * random.standard_normal(len(run)))
         for run, friction in zip(runs, model.predict_many(runs), strict=True)
     ]
-    exact = Campaign.prepare(model.rig, recorded)
+    exact = Campaign.prepare(model.rig, recorded, policy.estimation)
     prepared = tuple(replace(p, motion=_as_read(p.motion)) for p in exact.prepared)
-    campaign = replace(exact, prepared=prepared, samples=Samples.of(prepared))
+    campaign = replace(exact, prepared=prepared, samples=Samples.of(prepared, policy.estimation))
     return Candidates(campaign, model.law, model.clock, policy)
 
 

@@ -40,26 +40,40 @@ Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
 LEVELS = (0.80, 0.95)
-"""Detection probabilities for which a strength is computed."""
+"""Detection probabilities for which a strength is computed. It enters no verdict."""
 LOOKS = 14
-"""Largest number of strengths evaluated for each."""
+"""Largest number of strengths evaluated for each. It limits the effort only."""
 POWERS = (1.0, 8.0)
-"""Range of the exponents with which the non-centrality may grow with strength."""
+"""Range of the exponents with which the non-centrality may grow with strength.
+
+It bounds a search only.
+"""
 AGREES = 0.05
-"""Relative difference in strength at which the search ends; the power law gives the rest."""
+"""Relative difference in strength at which the search ends; the power law gives the rest.
+
+It is a numerical tolerance.
+"""
 NEARLY_ALL = 0.97
-"""Share of the gain above which a refitted noise model is considered to absorb no part of it."""
+"""Share of the gain above which a refitted noise model is considered to absorb no part of it.
+
+It enters no verdict.
+"""
 BEYOND = 1.2
 """Factor on the strength at which that share is evaluated.
 
-It avoids a strength at which the colour of the noise just reaches its threshold.
+It avoids a strength at which the colour of the noise just reaches its threshold. It enters no
+verdict.
 """
 LOOKS_ALONE = 3
-"""Iterations of the distinguishable strength for effects that move jumps."""
+"""Iterations of the distinguishable strength for effects that move jumps.
+
+It limits the effort only.
+"""
 FURTHER = 2.0
 """Factor on the detectable strength at which a rival is also evaluated.
 
-The shape of its change is different there where it is not proportional to the strength.
+The shape of its change is different there where it is not proportional to the strength. It enters
+no verdict.
 """
 
 
@@ -278,7 +292,7 @@ def _power(
 
     most, confounded = np.inf, []
     if np.isfinite(own.times[0]):
-        parameters, tie = _parameters(runs.base, model), candidates.policy.tie
+        parameters, tie = _parameters(runs.base, model), candidates.policy.selection.tie
         price = price_of(candidates, parameters)
         rivals: dict[str, tuple[float, float]] = {}
         for other, rival in seen.items():

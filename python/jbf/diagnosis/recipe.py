@@ -135,11 +135,11 @@ def _diagnose(
     check_callable(progress, "progress")
     if limits is not None:
         of_kind(limits, Limits, "limits", "give a jbf.Limits, or None")
-    recorded = Campaign.prepare(rig, runs)
+    recorded = Campaign.prepare(rig, runs, policy.estimation)
     laws: tuple[LawTried, ...] = ()
     no_law: dict[str, str] = {}
     names: tuple[str, ...] = (law,)
-    margin = policy.no_worse
+    margin = policy.held_out.no_worse_ratio
     if law == AUTO:
         known = comparable(recorded, clock, policy)
         laws, no_law = which_law(known, clock, policy, progress)

@@ -74,7 +74,7 @@ def find_patterns(
     # The force axis shows a nonlinear force sensor.
     unit = problem.campaign.rig.quantities.force
     force = force_axis(*_likeliest_forces(problem, solution), unit)
-    share, sigma = policy.pattern_share, policy.pattern_sigma
+    share, sigma = policy.patterns.min_share, policy.patterns.min_sigma
     found = (
         pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)
         for axis in (*all_axes(problem.campaign, u_tr), force)

@@ -19,11 +19,6 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.replicates import period_samples
 from jbf.estimation.solution import Solution
 
-MIN_PAIRS = 100
-"""Smallest number of pairs of replicates for a run to be tested."""
-BETWEEN = (0.5, 0.6, 0.7, 0.8, 0.9)
-"""Lags in periods at which a correlation can only be due to the noise's memory."""
-
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
@@ -33,30 +28,35 @@ def find_replicates(
 ) -> list[Remainder]:
     """Find the part of the residual that repeats with the motion, over all periodic runs."""
     product, spread, square, names = 0.0, 0.0, 0.0, []
-    least = policy.replicate_share
+    settings = solution.samples.settings
+    least = policy.replicates.min_share
     left = solution.samples.without_deviations(solution.residuals, solution.noise)
     for residual, counted, p in zip(left, solution.samples.counted, prepared, strict=True):
-        shift = period_samples(p.motion.velocity)
+        shift = period_samples(p.motion.velocity, settings.periods)
         if shift is None:
             continue
         both = counted[shift:] & counted[:-shift]
         first, second = residual[:-shift][both], residual[shift:][both]
-        if len(first) < MIN_PAIRS:
+        if len(first) < policy.replicates.min_pairs:
             continue
         level = float(first @ first + second @ second) / (2.0 * len(first))
         # Noise with a long memory is correlated over a period, and more over half a period.
-        own = float(first @ second) - len(first) * _remembered(residual, counted, shift)
+        own = float(first @ second) - len(first) * _remembered(
+            residual, counted, shift, policy.replicates.memory_lags
+        )
         product += own
         square += level * len(first)
         products = first * second
-        strayed = long_run_variance((products - np.mean(products))[:, None], p.step_s)
+        strayed = long_run_variance(
+            (products - np.mean(products))[:, None], p.step_s, settings.variance
+        )
         spread += max(level**2 * len(first), float(strayed[0, 0]))
         if own > least * level * len(first):
             names.append(p.run.name)
     if spread == 0.0:
         return []
     share = product / square
-    if share < least or product < policy.replicate_sigma * np.sqrt(spread):
+    if share < least or product < policy.replicates.min_sigma * np.sqrt(spread):
         return []
     size = float(np.sqrt(share))
     where = (
@@ -66,14 +66,14 @@ def find_replicates(
     return [Remainder("period", where, min(share, 1.0))]
 
 
-def _remembered(residual: Array, counted: Mask, shift: int) -> float:
+def _remembered(residual: Array, counted: Mask, shift: int, lags: Sequence[float]) -> float:
     """Mean product one period apart that is due to the noise's memory, N^2.
 
     It is the smallest mean product at lags between half a period and a whole one, where a repeating
     error has both signs.
     """
     products = []
-    for share in BETWEEN:
+    for share in lags:
         lag = max(int(share * shift), 1)
         both = counted[lag:] & counted[:-lag]
         if both.any():

@@ -120,7 +120,7 @@ class Diagnosis(Result):
     def negligible(self) -> tuple[str, ...]:
         """Effects that are significant but below the minimum effect size.
 
-        They are tested in addition to the final model; the size is the policy's `min_effect_share`.
+        They are tested in addition to the final model, with the minimum effect size of the policy.
         """
         trials = next((s.trials for s in reversed(self.steps) if s.trials), ())
         return tuple(t.effect for t in trials if t.outcome == "negligible")

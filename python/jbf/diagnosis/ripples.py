@@ -20,36 +20,17 @@ from scipy import special
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.policy_residual import Ripples
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 
 Array = npt.NDArray[np.float64]
 
-LEAST_PERIODS = 8.0
-"""Smallest number of periods in the travel of a run.
-
-Longer periods are tested as patterns along axes.
-"""
-BINS_A_PITCH = 4.0
-"""Number of travel bins in the shortest pitch that is tested."""
 MOST_BINS = 2**16
+"""Largest number of travel bins. It is a numerical resolution."""
 PADDING = 4
-"""Number of spectral lines per line width."""
-ONE_PHASE = 0.5
-"""Share of the ripple's power from which one common phase explains it."""
-LEAST_RUNS = 3
-IN_MOST = 2.0 / 3.0
-"""Share of the runs, the weakest, that must also show the ripple.
-
-A tone has this pitch in a few runs only.
-"""
-IN_MOST_CHANCE = 1e-3
-AS_MUCH = 0.8
-"""Share of a pitch's sum of squares from which a frequency explains the ripple equally well.
-
-At half a line width from its centre a line loses a fifth of its power.
-"""
+"""Number of spectral lines per line width. It is a numerical resolution."""
 
 
 def find_ripples(
@@ -65,7 +46,7 @@ def find_ripples(
     element.
     """
     prepared = campaign.prepared
-    if campaign.rig.bearing is not None or len(prepared) < LEAST_RUNS:
+    if campaign.rig.bearing is not None or len(prepared) < policy.ripples.min_runs:
         return []
     ways = [_travel(p) for p in prepared]
     turned = [np.sign(p.motion.velocity) for p in prepared]
@@ -80,7 +61,7 @@ def find_ripples(
         share, size, one = _waves(ways, r, samples, pitch)
         if _is_a_tone(campaign, e, r, samples, share, policy):
             continue
-        if share >= policy.tone_share and one < ONE_PHASE:
+        if share >= policy.tones.min_share and one < policy.ripples.max_common_share:
             words = _words(campaign, pitch, size, along)
             found.append(Remainder("way", words, min(share, 1.0)))
     return sorted(found, key=lambda x: -x.share)[:1]
@@ -97,7 +78,8 @@ def _is_a_tone(
     """Whether one frequency explains about as much as one pitch, as it does at constant speed."""
     times = [p.run.time_s - p.run.time_s[0] for p in campaign.prepared]
     period = _pitch(times, innovations, samples, policy)
-    return period is not None and _waves(times, residuals, samples, period)[0] > AS_MUCH * share
+    least = policy.ripples.max_tone_share * share
+    return period is not None and _waves(times, residuals, samples, period)[0] > least
 
 
 def _travel(p: Prepared) -> Array:
@@ -110,7 +92,7 @@ def _pitch(
     ways: Sequence[Array], innovations: Sequence[Array], samples: Samples, policy: Policy
 ) -> float | None:
     """The pitch whose lines, summed over the runs, are significant; None without such a pitch."""
-    spans = np.array([float(np.ptp(w)) for w in ways])
+    ripples, spans = policy.ripples, np.array([float(np.ptp(w)) for w in ways])
     longest = float(np.max(spans))
     steps = np.concatenate([np.abs(np.diff(w)) for w in ways])
     if not np.any(steps):
@@ -122,39 +104,43 @@ def _pitch(
     total, degrees = np.zeros(len(waves)), np.zeros(len(waves))
     for way, e, counted, span in zip(ways, innovations, samples.counted, spans, strict=True):
         level = float(np.mean(e[counted] ** 2)) if counted.any() else 0.0
-        if level <= 0.0 or span <= LEAST_PERIODS * fine:
+        if level <= 0.0 or span <= ripples.min_periods * fine:
             continue
         bins = ((way - way.min()) / fine).astype(np.intp)
         signal = np.where(counted, e - np.mean(e[counted]), 0.0)
         power = np.abs(np.fft.rfft(np.bincount(bins, signal, length), length)) ** 2
-        told = waves * span >= LEAST_PERIODS
+        told = waves * span >= ripples.min_periods
         total += np.where(told, 2.0 * power / (level * counted.sum()), 0.0)
         degrees += 2.0 * told
-    band = (degrees >= 2.0 * LEAST_RUNS) & (waves * fine * BINS_A_PITCH <= 1.0)
+    band = (degrees >= 2.0 * ripples.min_runs) & (waves * fine * ripples.min_bins <= 1.0)
     if not band.any():
         return None
     chance = np.ones(len(waves))
     # Upper tail of chi-square; where it underflows, the excess over the expectation decides.
     chance[band] = special.gammaincc(0.5 * degrees[band], 0.5 * total[band])
     k = int(np.argmax(np.where(chance <= chance.min(), total - degrees, -np.inf)))
-    if chance[k] * band.sum() > policy.tone_chance:
+    if chance[k] * band.sum() > policy.tones.chance:
         return None
     pitch = 1.0 / float(waves[k])
-    return pitch if _in_weaker_runs(ways, innovations, samples, pitch) else None
+    return pitch if _in_weaker_runs(ways, innovations, samples, pitch, ripples) else None
 
 
 def _in_weaker_runs(
-    ways: Sequence[Array], innovations: Sequence[Array], samples: Samples, pitch: float
+    ways: Sequence[Array],
+    innovations: Sequence[Array],
+    samples: Samples,
+    pitch: float,
+    ripples: Ripples,
 ) -> bool:
     """Whether the weaker two thirds of the runs also show the ripple significantly."""
     lines = []
     for way, e, counted in zip(ways, innovations, samples.counted, strict=True):
         level = float(np.sum(e[counted] ** 2))
-        if level > 0.0 and np.ptp(way) >= LEAST_PERIODS * pitch:
+        if level > 0.0 and np.ptp(way) >= ripples.min_periods * pitch:
             line = abs(np.sum((e * np.exp(2j * np.pi * way / pitch))[counted])) ** 2
             lines.append(2.0 * float(line) / level)
-    weakest = sorted(lines)[: int(np.ceil(IN_MOST * len(lines)))]
-    return bool(special.gammaincc(len(weakest), 0.5 * sum(weakest)) < IN_MOST_CHANCE)
+    weakest = sorted(lines)[: int(np.ceil(ripples.weaker_runs * len(lines)))]
+    return bool(special.gammaincc(len(weakest), 0.5 * sum(weakest)) < ripples.weaker_chance)
 
 
 def _waves(

@@ -97,12 +97,12 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         found = try_candidates(candidates, present, follow)
         steps.append(step(candidates, present, found.trials))
         completed.append(Selected(candidates, present, list(steps)))
-        may_update = updates < policy.most_terms
+        may_update = updates < policy.terms.max_updates
         update, grown = None, present
         if found.leader is not None:
             least = _evidence_of_leader(candidates, present, found)
             update = best_term_update(candidates, present, least) if may_update else None
-            if update is None and len(present) < policy.most_effects:
+            if update is None and len(present) < policy.selection.max_effects:
                 grown = _grown(candidates, present, found)
         ended = frozenset(grown) in visited
         if update is None and ended and follow == "promising" and may_update:
@@ -121,7 +121,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         if ended and follow == "all":
             grown = _pair(candidates, present, found)
         if frozenset(grown) in visited:
-            if found.leader is not None and len(present) >= policy.most_effects:
+            if found.leader is not None and len(present) >= policy.selection.max_effects:
                 refused: tuple[Remainder, ...] = (
                     _effect_limit_reached(candidates, present, found.leader),
                 )
@@ -175,9 +175,9 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     smooth.
     """
     policy = candidates.policy
-    if len(present) + 2 > policy.most_effects:
+    if len(present) + 2 > policy.selection.max_effects:
         return present
-    ahead = [t.effect for t in sorted(found.trials, key=lambda t: t.rms)[: policy.paired]]
+    ahead = [t.effect for t in sorted(found.trials, key=lambda t: t.rms)[: policy.search.paired]]
     pairs = [(*present, *pair) for pair in itertools.combinations(ahead, 2)]
     pairs += [
         (*present, name, other)
@@ -195,7 +195,10 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     candidates.rank_all(pairs, base)
     best = max(pairs, key=lambda pair: likelihood_gain(candidates.rank(pair), base))
     whole = candidates.converge(best)
-    if candidates.held_out_rms(best) > candidates.held_out_rms(present) / policy.no_worse:
+    if (
+        candidates.held_out_rms(best)
+        > candidates.held_out_rms(present) / policy.held_out.no_worse_ratio
+    ):
         return present
     if evidence(candidates, whole, base) <= 0.0 and full_gain(candidates, whole, base) <= 0.0:
         return present
@@ -209,7 +212,7 @@ def _promising(candidates: Candidates, present: Names) -> list[str]:
     candidates.score_all([(*present, name) for name in names], near)
     scores = {name: candidates.score_test((*present, name), near) for name in names}
     finite = [name for name in names if np.isfinite(scores[name])]
-    return sorted(finite, key=lambda name: -scores[name])[: candidates.policy.paired]
+    return sorted(finite, key=lambda name: -scores[name])[: candidates.policy.search.paired]
 
 
 def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -> Remainder:
@@ -266,9 +269,10 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
         richer = problem.current_solution()
         samples = common_samples(richer.samples, away)
         with_it, without = (replace(s, samples=samples) for s in (richer, base))
-        better = with_it.rms < policy.refused_rms * without.rms
+        better = with_it.rms < policy.selection.max_refused_rms_ratio * without.rms
         gains = (
-            evidence_on_common_samples(candidates, with_it, without, anywhere=True) > policy.weak
+            evidence_on_common_samples(candidates, with_it, without, anywhere=True)
+            > policy.selection.weak_evidence
         )
         if better and gains:
             found.append((richer.rms, name))

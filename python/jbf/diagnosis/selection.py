@@ -33,10 +33,11 @@ from jbf.models.catalogue import can_be_added, can_be_removed
 Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
 
-AHEAD = 3
-"""Number of candidates with the largest gains that are considered as leaders."""
 LESS = 0.95
-"""Ratio of two RMS values below which a reader of the ledger regards one as smaller."""
+"""Ratio of two RMS values below which a reader of the ledger regards one as smaller.
+
+It concerns the text only.
+"""
 CHANCE = "gains no more than chance would"
 SLIGHT = "gains more than noise would, but no more than what recordings do to a record"
 SMOOTH = "fits better, but by no more than so smooth a residual strays: too few independent samples"
@@ -131,7 +132,7 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
                 unconfirmed.add(name)
         elif gain > 0 and _has_larger_rms(found, least, policy):
             outcome, reason = "rejected", f"leaves {rms:.3g} {unit} where {leader} does not"
-        elif gain > 0 and gain > best - policy.tie:
+        elif gain > 0 and gain > best - policy.selection.tie:
             outcome, reason = "ties", f"fits as well as {leader}"
         elif gain > 0:
             outcome = "rejected"
@@ -160,7 +161,7 @@ def _by_units(
     gains = {
         r.effect: full_gain(candidates, r.solution, base) for r in ranked if not np.isfinite(r.most)
     }
-    for name in sorted(gains, key=lambda name: -gains[name])[:AHEAD]:
+    for name in sorted(gains, key=lambda name: -gains[name])[: candidates.policy.search.leaders]:
         if gains[name] > 0.0 and units_confirm(candidates, present, name):
             out = candidates.confirmation(present, name)
             unit = candidates.campaign.rig.quantities.force
@@ -197,12 +198,12 @@ def _gain_is_from_local_minimum(
     If so, the gain came from leaving a local minimum and not from the effect.
     """
     better = candidates.refit_from(present, (*present, name))
-    return likelihood_gain(better, base) > candidates.policy.contender
+    return likelihood_gain(better, base) > candidates.policy.search.rank_margin
 
 
 def _has_larger_rms(found: Ranked, least_n: float, policy: Policy) -> bool:
     """Whether a candidate has a much larger RMS than another one that also has evidence."""
-    return found.solution.rms > policy.leader_rms * least_n
+    return found.solution.rms > policy.selection.max_rms_ratio * least_n
 
 
 def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow) -> list[Ranked]:
@@ -216,7 +217,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     candidates.score_all([(*present, name) for name in rivals], base)
     scores = {name: candidates.score_test((*present, name), base) for name in rivals}
     candidates.calibrate(present)
-    least = policy.least_score * price_of(candidates, 1)
+    least = policy.search.min_score_share * price_of(candidates, 1)
     # In a smooth residual a sample carries less information, and any candidate gains a little.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
     first = dict.fromkeys(rivals, -np.inf)
@@ -225,7 +226,10 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     candidates.rank_all([(*present, name) for name in followed], base)
     for name in followed:
         first[name] = evidence(candidates, candidates.rank((*present, name)), base)
-    line = policy.close * max(max(first.values(), default=0.0), 0.0) - policy.contender
+    line = (
+        policy.search.rank_fraction * max(max(first.values(), default=0.0), 0.0)
+        - policy.search.rank_margin
+    )
     found: list[Ranked] = []
     for name in rivals:
         effects = (*present, name)
@@ -235,7 +239,9 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
             solution = base
         else:
             solution = candidates.rank(effects)
-            promised = first[name] + policy.promise * next_step_gain(solution) * share
+            promised = (
+                first[name] + policy.search.step_gain_factor * next_step_gain(solution) * share
+            )
             if first[name] > line and promised > 0.0:
                 solution = candidates.converge(effects)
         # At its null an effect does not change the model: evidence has this lower bound.
@@ -246,7 +252,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     # Search the other peaks of candidates that might lead from a higher one.
     for i, r in enumerate(found):
         effects = (*present, r.effect)
-        likely = max(policy.peaks_share * found[0].evidence, 0.0)
+        likely = max(policy.search.min_peaks_fraction * found[0].evidence, 0.0)
         if many_peaks(effects) and r.evidence > likely and r.effect not in behind:
             solution = candidates.search_peaks(effects)
             found[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
@@ -262,13 +268,15 @@ def _cannot_reach_leader(
     policy = candidates.policy
     candidates.look_all([(*present, name) for name in shown], base)
     looked = {name: candidates.look((*present, name), base) for name in shown}
-    most = {name: policy.foreseen * fitted.promised for name, fitted in looked.items()}
+    most = {
+        name: policy.search.linear_gain_factor * fitted.promised for name, fitted in looked.items()
+    }
     gained = {name: likelihood_gain(looked[name].current_solution(), base) for name in shown}
-    ahead = sorted(shown, key=lambda name: -gained[name])[:AHEAD]
+    ahead = sorted(shown, key=lambda name: -gained[name])[: policy.search.leaders]
     leads = max(
         (evidence(candidates, looked[n].current_solution(), base) for n in ahead), default=0.0
     )
-    line = policy.close * max(leads, 0.0) - policy.contender
+    line = policy.search.rank_fraction * max(leads, 0.0) - policy.search.rank_margin
     return {name: gain for name, gain in most.items() if gain < line}
 
 
@@ -302,7 +310,9 @@ def start_model(candidates: Candidates) -> Names:
     for name in present:
         rest = tuple(e for e in present if e != name)
         simpler = candidates.refit_from(rest, present)
-        worse = candidates.held_out_rms(rest) > policy.no_worse * candidates.held_out_rms(present)
+        worse = candidates.held_out_rms(
+            rest
+        ) > policy.held_out.no_worse_ratio * candidates.held_out_rms(present)
         if not (worse or needed(candidates, present, name, simpler)):
             present = rest
     return present
@@ -342,7 +352,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
             continue
         if name in machine_of(candidates, current) and name != OFFSET:
             continue  # inertia and weight do not imitate an effect; an offset may
-        best, gain = name, candidates.policy.tie
+        best, gain = name, candidates.policy.selection.tie
         for other in candidates.names:
             if other in current or other in unconfirmed or not can_be_added(other, rest):
                 continue
@@ -357,7 +367,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
 def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float]]:
     """Posterior weights of each effect and of its alternatives, at equal prior odds.
 
-    Alternatives are the candidates with at least `least_weight` in a comparison with the effect
+    Alternatives are the candidates with at least the minimum weight in a comparison with the effect
     alone (Kass & Raftery 1995). The effect is first, the others follow by weight. An effect without
     alternatives has weight one.
     """
@@ -371,7 +381,9 @@ def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float
             for other in candidates.names
             if other not in present and can_be_added(other, rest)
         }
-        close = {other: cost for other, cost in costs.items() if cost < candidates.policy.tie}
+        close = {
+            other: cost for other, cost in costs.items() if cost < candidates.policy.selection.tie
+        }
         order = [name, *sorted(close, key=lambda other: close[other])]
         share = special.softmax([-0.5 * close.get(other, 0.0) for other in order])
         found[name] = dict(zip(order, share.tolist(), strict=True))

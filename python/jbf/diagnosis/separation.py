@@ -30,9 +30,12 @@ Array = npt.NDArray[np.float64]
 SIMULATED = {*ALWAYS, "angle_rad", "position_m"}
 """Columns that a proposed motion has."""
 MOST_SAMPLES, LEAST_SAMPLES = 6000, 200
-"""Largest and smallest number of samples of a proposed run."""
+"""Largest and smallest number of samples of a proposed run. It enters no verdict."""
 NO_NOISE_N = 1e-100
-"""Positive lower limit of the noise, N, that avoids a division by zero."""
+"""Positive lower limit of the noise, N, that avoids a division by zero.
+
+It is a numerical tolerance.
+"""
 
 
 class Rival:

@@ -21,7 +21,10 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 FEW = 4
-"""Largest number of parallel fits; with more, the interpreter lock is the bottleneck."""
+"""Largest number of parallel fits; with more, the interpreter lock is the bottleneck.
+
+It limits the effort only.
+"""
 
 
 def parallel_fits(campaign: Campaign, law: str, effects: Sequence[str]) -> int:

@@ -44,10 +44,10 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
             continue
         rest = candidates.converge(tuple(e for e in present if e != name))
         gain = likelihood_gain(whole, rest) * share
-        own = disagreement(problem, whole, name)
+        own = disagreement(problem, whole, name, policy)
         beyond = own.gain - own.degrees if own.beyond_chance(policy) else None
         explained = 1.0 - (whole.rms / rest.rms) ** 2
-        weak = gain - price_of(candidates, whole.free - rest.free) <= policy.weak
+        weak = gain - price_of(candidates, whole.free - rest.free) <= policy.selection.weak_evidence
         if (weak and explained < largest) or not name_is_supported(gain, beyond, policy):
             found.append(name)
     return tuple(found)

@@ -24,7 +24,10 @@ Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
 DRAWS = 12
-"""Number of white-noise draws for the discount factor of a gain in a given direction."""
+"""Number of white-noise draws for the discount factor of a gain in a given direction.
+
+It enters no verdict.
+"""
 
 
 @dataclass(frozen=True)
@@ -153,8 +156,9 @@ class RunsAtHand:
         noise = [r - chance * w for r, w in zip(self.solution.residuals, way, strict=True)]
         there = [r + w for r, w in zip(noise, way, strict=True)]
         masked = [r * c for r, c in zip(there, self.samples.counted, strict=True)]
-        most = self.problem.campaign.most_noise_n
-        again = estimate_noise(masked, self.samples.steps_s, self.samples.counted, most)
+        samples, most = self.samples, self.problem.campaign.most_noise_n
+        settings = samples.settings.noise
+        again = estimate_noise(masked, samples.steps_s, samples.counted, most, settings)
         before = self.samples.cost(noise, self.noise)
         gains = [
             self.samples.cost(there, description) - before for description in (self.noise, again)
@@ -169,9 +173,9 @@ class RunsAtHand:
         counts = [int(np.count_nonzero(w > 0.0)) for w in self.samples.weight]
         ends = np.cumsum(counts)[:-1]
         ways = np.split(change, ends)
-        random = np.random.default_rng(DRAWS)
+        random, settings = np.random.default_rng(DRAWS), self.samples.settings.variance
         return tuple(
-            1.0 / sure_inflation(ways, np.split(noise, ends), self.samples.steps_s)
+            1.0 / sure_inflation(ways, np.split(noise, ends), self.samples.steps_s, settings)
             for noise in random.standard_normal((DRAWS, len(change)))
         )
 

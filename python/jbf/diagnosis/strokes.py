@@ -25,11 +25,6 @@ from jbf.estimation.units import Strokes, stroke_of
 
 Array = npt.NDArray[np.float64]
 
-LEAST_STROKES = 3
-"""Smallest number of strokes of a run that is tested."""
-LEAST_SAMPLES = 8
-"""Smallest number of samples of half a stroke that is tested."""
-
 
 def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
     """Report that the level of the friction differs between strokes, where it does."""
@@ -37,11 +32,12 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
     left = solution.samples.without_deviations(solution.residuals, solution.noise)
     between = within = moved = 0.0
     of_between = of_within = 0
+    least = policy.strokes.min_samples
     for p, f, r, counted in zip(
         problem.campaign.prepared, friction, left, solution.samples.counted, strict=True
     ):
-        halves = np.array(list(_halves(stroke_of(p), f, r, counted))).reshape(-1, 2, 2)
-        if len(halves) < LEAST_STROKES:
+        halves = np.array(list(_halves(stroke_of(p), f, r, counted, least))).reshape(-1, 2, 2)
+        if len(halves) < policy.strokes.min_strokes:
             continue
         weight, pull = halves[..., 0], halves[..., 1]
         level = pull / weight
@@ -59,9 +55,9 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
         return []
     ratio = (between / of_between) / (within / of_within)
     share = (between - within * of_between / of_within) / square
-    if share < policy.pattern_share:
+    if share < policy.patterns.min_share:
         return []
-    if special.fdtrc(of_between, of_within, ratio) > policy.constancy_chance:
+    if special.fdtrc(of_between, of_within, ratio) > policy.constancy.chance:
         return []
     size = 100.0 * float(np.sqrt(share * square / moved))
     where = (
@@ -72,16 +68,16 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
 
 
 def _halves(
-    stroke: Strokes, friction: Array, residual: Array, counted: npt.NDArray[np.bool_]
+    stroke: Strokes, friction: Array, residual: Array, counted: npt.NDArray[np.bool_], least: int
 ) -> Iterator[list[list[float]]]:
     """Sums for the two halves of each stroke.
 
-    Each half has the sum of squares of the friction, N^2, and the sum of its products with the
-    residual.
+    Strokes with fewer than `least` samples a half are skipped. Each half has the sum of squares of
+    the friction, N^2, and the sum of its products with the residual.
     """
     for k in range(int(np.max(stroke, initial=-1)) + 1):
         rows = np.flatnonzero((stroke == k) & counted)
-        if len(rows) < 2 * LEAST_SAMPLES:
+        if len(rows) < 2 * least:
             continue
         halves = np.array_split(rows, 2)
         own = [[float(friction[h] @ friction[h]), float(friction[h] @ residual[h])] for h in halves]

@@ -15,11 +15,6 @@ from jbf.estimation.samples import Samples
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-SHORTEST = 64
-"""Smallest number of samples of a run whose spectrum is tested."""
-LEAST_TURNS = 8.0
-"""Smallest number of periods of a line within a run; slower structure is tested as patterns."""
-
 
 def find_tones(
     prepared: Sequence[Prepared],
@@ -33,16 +28,16 @@ def find_tones(
     power = 0.0
     for p, counted, e, r in zip(prepared, samples.counted, innovations, residuals, strict=True):
         n = len(e)
-        if n < SHORTEST:
+        if n < policy.tones.min_samples:
             continue
         f = np.fft.rfftfreq(n, p.step_s)
         spectrum = np.abs(np.fft.rfft(e - np.mean(e))) ** 2
-        band = f > LEAST_TURNS / p.run.duration_s
+        band = f > policy.tones.min_periods / p.run.duration_s
         if not band.any():
             continue
         level = float(np.median(spectrum[band]) / np.log(2.0))
         k = int(np.argmax(np.where(band, spectrum, 0.0)))
-        if level <= 0.0 or spectrum[k] / level < -np.log(policy.tone_chance / band.sum()):
+        if level <= 0.0 or spectrum[k] / level < -np.log(policy.tones.chance / band.sum()):
             continue
         frequency, amplitude = _refine(p.run.time_s, r, counted, float(f[k]), float(f[1]))
         lines.append((frequency, amplitude, p.run.name))
@@ -54,7 +49,7 @@ def find_tones(
         for r, counted in zip(residuals, samples.counted, strict=True)
     )
     share = power / max(total, 1e-300)
-    if share < policy.tone_share:
+    if share < policy.tones.min_share:
         return []
     return [
         Remainder(

@@ -26,9 +26,6 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
-STRENGTHS = (0.6, 1.0, 1.5)
-"""Multiples of the usual strength that are taken as equally likely."""
-
 
 def undetectable_effects(candidates: Candidates, present: Names, powers: Iterable[Power]) -> Names:
     """Candidates that are not detectable in these runs at their usual strength.
@@ -69,6 +66,7 @@ def propose_detection_run(
         name: price_of(candidates, len(problem.open) - base.solution.free)
         for name, (problem, _) in richer.items()
     }
+    strengths = candidates.policy.experiments.strengths
     best: tuple[float, float] = (0.0, 0.0)
     chosen: tuple[Excitation, Run, dict[str, float]] | None = None
     for excitation, run, motion in motions(candidates, limits, step_s):
@@ -77,14 +75,16 @@ def propose_detection_run(
             name: base.separation(own, (problem.chain.predict(values, [motion])[0], own[1]), step_s)
             for name, (problem, values) in richer.items()
         }
-        chances = sum(mean_detection_probability(shown[name], prices[name]) for name in hidden)
+        chances = sum(
+            mean_detection_probability(shown[name], prices[name], strengths) for name in hidden
+        )
         rank = (round(chances, 2), sum(np.log1p(evidence) for evidence in shown.values()))
         if rank > best:
             best, chosen = rank, (excitation, run, shown)
     listed = ", ".join(hidden)
     clear = {}
     if chosen is not None:
-        least = 2.0 * candidates.policy.least_separation
+        least = 2.0 * candidates.policy.experiments.min_evidence
         clear = {name: evidence for name, evidence in chosen[2].items() if evidence > least}
     if chosen is None or not clear:
         return (
@@ -102,7 +102,7 @@ def propose_detection_run(
     return Experiment(words, run, sigma * base.noise_rms, sigma, usual)
 
 
-def mean_detection_probability(evidence: float, price: float) -> float:
+def mean_detection_probability(evidence: float, price: float, strengths: Sequence[float]) -> float:
     """Probability of detecting an effect of uncertain strength.
 
     Parameters
@@ -111,8 +111,10 @@ def mean_detection_probability(evidence: float, price: float) -> float:
         Non-centrality at the usual strength.
     price
         Threshold for the gain.
+    strengths
+        Multiples of the usual strength, equally likely.
     """
-    missed = special.chndtr(price, 1.0, np.array(STRENGTHS) ** 2 * evidence)
+    missed = special.chndtr(price, 1.0, np.array(strengths) ** 2 * evidence)
     return float(np.mean(1.0 - missed))
 
 

@@ -43,4 +43,4 @@ def name_is_supported(gain: float, disagreement: float | None, policy: Policy) -
         Gain of run-specific parameters of the effect beyond chance, in the same unit; None where
         the runs agree.
     """
-    return disagreement is None or gain > policy.clear * disagreement
+    return disagreement is None or gain > policy.selection.confounder_ratio * disagreement

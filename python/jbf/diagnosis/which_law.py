@@ -33,16 +33,12 @@ from jbf.records.rig import Rig
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-LAW_SHARE = 0.25
-"""Share of the computing budget of a diagnosis for the comparison of one law."""
 ON_REQUEST = frozenset({"rate_and_state"})
 """Laws that are used only if they are named.
 
 On records without velocity steps of several slip distances the parameters of `rate_and_state` are
 not identifiable, and it predicts no better than `stribeck`.
 """
-STRETCHES = 40
-"""Number of sections of a campaign whose mean squares are compared."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +136,7 @@ def which_law(
     for i, name in enumerate(names):
         if progress is not None:
             progress(f"trying the law {name}", i, len(names))
-        errors = _within(campaign, name, clock)
+        errors = _within(campaign, name, clock, policy)
         if errors is None:
             refused[f"law {name}"] = "takes too long to follow along these records"
         else:
@@ -166,14 +162,14 @@ def _compared(
     return compared(names, parameters, errors, policy, white=white, least_share=share)
 
 
-def _within(campaign: Campaign, law: str, clock: Clock) -> HeldOut | None:
+def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldOut | None:
     """Held-out errors of a law with the terms that are not friction.
 
     None where its share of the computing budget is not sufficient.
     """
-    own = replace(campaign, work=campaign.work.part(LAW_SHARE))
+    own = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
     try:
-        candidates = Candidates(settled_campaign(own, law, clock), law, clock)
+        candidates = Candidates(settled_campaign(own, law, clock), law, clock, policy)
         beside = tuple(effect for effect in TERMS if effect in candidates.names)
         return held_out_errors(candidates, beside)
     except Unfinished:
@@ -243,13 +239,13 @@ def compared(
         return [LawTried(n, k, e, True) for n, k, e in zip(names, parameters, own, strict=True)]
     rms, decisive = np.sqrt(plain[:, shared].mean(axis=1)), decisive[:, shared]
     # Errors of neighbouring samples are correlated; sections are nearly independent.
-    parts = np.array_split(decisive, min(STRETCHES, decisive.shape[1]), axis=1)
+    parts = np.array_split(decisive, min(policy.laws.sections, decisive.shape[1]), axis=1)
     means = np.array([part.mean(axis=1) for part in parts]).T
     level = decisive.mean(axis=1)
     best = int(np.argmin(level))
     worse = means - means[best]
-    chance = policy.law_tie * worse.std(axis=1) / np.sqrt(worse.shape[1])
-    same = max(policy.law_same**2 - 1.0, least_share) * level[best]
+    chance = policy.laws.tie_sigma * worse.std(axis=1) / np.sqrt(worse.shape[1])
+    same = max(policy.laws.same_ratio**2 - 1.0, least_share) * level[best]
     tied = worse.mean(axis=1) <= np.maximum(chance, same)
     order = np.argsort(level, kind="stable")
     return [LawTried(names[i], parameters[i], float(rms[i]), bool(tied[i])) for i in order]
@@ -266,13 +262,13 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     most = len(candidates.fitted(effects).problem.open)
     left, names, counts = [held_out_errors(candidates, effects)], [""], [most]
     for name in followed(whole, clock)[0]:
-        own = replace(whole, work=whole.work.part(LAW_SHARE))
+        own = replace(whole, work=whole.work.part(policy.laws.budget_share))
         other = Candidates(own, name, clock, policy)
         count = len(other.fitted(kept).problem.open)
         if name == candidates.law or count > most:
             continue
         # A law with a much larger fit error is not a better predictor.
-        far = policy.leader_rms * candidates.converge(effects).rms
+        far = policy.selection.max_rms_ratio * candidates.converge(effects).rms
         try:
             errors = held_out_errors(other, kept) if other.converge(kept).rms < far else None
         except Unfinished:

@@ -27,19 +27,30 @@ Array = npt.NDArray[np.float64]
 TRIAL_EVALUATIONS = 6
 """Evaluations spent on each starting point before only the best one is followed.
 
-With half of them, an effect whose null is a flat region of the objective stays at its null.
+With half of them, an effect whose null is a flat region of the objective stays at its null. It
+bounds the computing time only.
 """
 FOLLOWED = 2
-"""Number of starting points that receive these evaluations when candidates are ranked."""
+"""Number of starting points that receive these evaluations when candidates are ranked.
+
+It limits the effort only.
+"""
 MANY = 24
-"""Largest number of starting points that are all evaluated on all runs."""
+"""Largest number of starting points that are all evaluated on all runs.
+
+It limits the effort only.
+"""
 LIKELY = 6
 """Fraction (one in this number) of a larger set that is kept; at least `MANY` are kept.
 
-They are ranked on a single run: the one with the highest speed, which covers all speeds.
+They are ranked on a single run: the one with the highest speed, which covers all speeds. It bounds
+the computing time only.
 """
 LOOKED = 3
-"""Evaluations of a first look, which begins at the best starting point of the first seed."""
+"""Evaluations of a first look, which begins at the best starting point of the first seed.
+
+It limits the effort only.
+"""
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,6 @@ from jbf.estimation.samples import Samples
 
 Places = npt.NDArray[np.intp]
 
-SHORTEST_BLOCK_S = 1.0
-"""Minimum length of a block, s: longer than any correlation time that is treated as noise."""
-MEMORIES = 4.0
-"""Minimum length of a block in correlation times of the residual."""
-
 
 def blocks_of(samples: Samples, share: float) -> Places:
     """Start indices of blocks among the samples with weight, with all runs concatenated.
@@ -28,10 +23,11 @@ def blocks_of(samples: Samples, share: float) -> Places:
     share
         Number of independent samples per sample; smaller for a longer correlation time.
     """
-    found, before = [], 0
+    settings, found, before = samples.settings.blocks, [], 0
     for weight, step in zip(samples.weight, samples.steps_s, strict=True):
         count = int(np.count_nonzero(weight > 0.0))
-        length = max(round(SHORTEST_BLOCK_S / step), round(0.5 * MEMORIES / share), 1)
+        shortest = round(settings.min_length_s / step)
+        length = max(shortest, round(0.5 * settings.min_memories / share), 1)
         found.append(before + np.arange(0, count, length))
         before += count
     return np.concatenate(found).astype(np.intp)

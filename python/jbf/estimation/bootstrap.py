@@ -36,9 +36,15 @@ from jbf.threads import one_blas_thread
 Array = npt.NDArray[np.float64]
 
 LEAST_REPEATS = 19
-"""Minimum number of repeats: with fewer, the central 68 % does not give a width."""
+"""Minimum number of repeats: with fewer, the central 68 % does not give a width.
+
+It only limits the input.
+"""
 MOST_REPEATS = 100_000
-"""Maximum number of repeats; more take too long and add no information."""
+"""Maximum number of repeats; more take too long and add no information.
+
+It only limits the input.
+"""
 
 
 @dataclass(frozen=True, repr=False)

@@ -15,6 +15,7 @@ from jbf.estimation.converter import curve_rms, noise_before
 from jbf.estimation.noise_floor import noise_upper_bound
 from jbf.estimation.prepared import NoMotion, Prepared, coasting
 from jbf.estimation.samples import Samples
+from jbf.estimation.settings import DEFAULT, MotionSettings, Settings
 from jbf.estimation.work import Work
 from jbf.models.catalogue import Effect
 from jbf.models.driven import Driven
@@ -35,19 +36,6 @@ from jbf.records.weight_angle import check_weight_angles
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-LEFT_OF_BIAS = 0.3
-"""Fraction of the quantisation bias that remains after its correction.
-
-The noise and the force from which the bias is computed are estimates.
-"""
-LOADS_DIFFER = 0.05
-"""Loads that differ by less than this fraction count as one load."""
-TEMPERATURES_DIFFER_K = 2.0
-"""Temperatures that differ by less than this, K, count as one.
-
-Such a difference changes an oil's viscosity by a tenth and dry friction by one or two hundredths.
-A thermometer is also not located at the friction contact.
-"""
 SMOOTHS_FORCE = frozenset((
     "sensor_hysteresis", "sensor_lag", "time_delay", "backlash", "drive_compliance",
 ))  # fmt: skip
@@ -62,8 +50,6 @@ NEEDS_RECORDED_FORCE = SMOOTHS_FORCE | {"inertia", "sensor_nonlinearity", "senso
 Backlash and compliance act between the driven part and the sensor. In a coast-down they would
 explain how its acceleration was smoothed.
 """
-MOTION_SHARE = 0.1
-"""Mean fraction of the variance above which the errors of the motion count as a large part."""
 NEEDS_TIME = frozenset((
     "inertia", "sensor_hysteresis", "sensor_lag", "time_delay", "sensor_drift", "backlash",
     "drive_compliance", "thermal_thinning", "film_memory", "running_in", "warm_up",
@@ -71,7 +57,10 @@ NEEDS_TIME = frozenset((
 ))  # fmt: skip
 """Effects that are not tried on steady states."""
 NOISE_SPAN = 3.29
-"""Interval between the 5 % and 95 % quantiles of white noise, in standard deviations."""
+"""Interval between the 5 % and 95 % quantiles of white noise, in standard deviations.
+
+It follows from the estimator.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +88,7 @@ class Campaign:
     work: Work = field(default_factory=Work)
 
     @classmethod
-    def prepare(cls, rig: Rig, runs: Sequence[Run]) -> Campaign:
+    def prepare(cls, rig: Rig, runs: Sequence[Run], settings: Settings = DEFAULT) -> Campaign:
         """Prepare each run, including the estimate of its motion.
 
         A duplicate of a run is dropped. A run without motion is left out if another run has motion.
@@ -115,7 +104,9 @@ class Campaign:
             raise InputError(problem="no run was given", mend="name at least one CSV file")
         check_weight_angles(rig, runs)
         again = copies(runs)
-        ready, without_motion = _each(rig, {i: r for i, r in enumerate(runs) if i not in again})
+        ready, without_motion = _each(
+            rig, {i: r for i, r in enumerate(runs) if i not in again}, settings.motion
+        )
         prepared = tuple(
             p.finding([repeated(p.run, runs[k]) for k in again if again[k] == i])
             for i, p in ready.items()
@@ -127,10 +118,15 @@ class Campaign:
                 problem="zero in every sample of every run",
                 mend="check that the force was connected, and its scale",
             )
-        samples = Samples.of(prepared)
+        samples = Samples.of(prepared, settings)
         work = Work.of(sum(len(p.friction) for p in prepared))
         noise = noise_upper_bound(prepared, samples)
         return cls(rig, prepared, samples, noise, tuple(without_motion), work)
+
+    @property
+    def settings(self) -> Settings:
+        """Settings of the estimation."""
+        return self.samples.settings
 
     @property
     def named(self) -> str:
@@ -167,7 +163,7 @@ class Campaign:
     @property
     def motion_uncertain(self) -> bool:
         """Whether the errors of the motion are a large part of the variance."""
-        return self.motion_share > MOTION_SHARE
+        return self.motion_share > self.settings.conditions.max_motion_share
 
     @property
     def has_loads(self) -> bool:
@@ -178,7 +174,7 @@ class Campaign:
         known = [m for m in means if m is not None]
         spans = [_span(load) for load in loads if load is not None]
         span = max([*spans, max(known) - min(known)]) if known else 0.0
-        return bool(known) and span > LOADS_DIFFER * max(known)
+        return bool(known) and span > self.settings.conditions.min_load_difference * max(known)
 
     @cached_property
     def temperature_range_c(self) -> tuple[float, float] | None:
@@ -218,13 +214,16 @@ class Campaign:
         if "loads" in needs and not self.has_loads:
             return "all runs have one load, under which it changes nothing"
         if "temperatures" in needs:
-            span_k = self.temperatures_k
+            span_k, least_k = (
+                self.temperatures_k,
+                self.settings.conditions.min_temperature_difference_k,
+            )
             if span_k is None:
                 return "not every run has the column temperature_c"
-            if span_k < TEMPERATURES_DIFFER_K:
+            if span_k < least_k:
                 return (
                     f"the temperature stays within {span_k:.2g} K: what it changes takes "
-                    f"{TEMPERATURES_DIFFER_K:g} K to show"
+                    f"{least_k:g} K to show"
                 )
         return None
 
@@ -253,7 +252,7 @@ class Campaign:
             return 0.0
         taken = self.samples.rms([p.readings_n - p.friction for p in self.prepared])
         if taken > 0.0:
-            return LEFT_OF_BIAS * taken
+            return self.settings.quantisation.remaining_bias * taken
         pairs = zip(self.prepared, self.samples.counted, strict=True)
         moves = [np.diff(p.readings_n)[at[1:] & at[:-1]] for p, at in pairs]
         noise_rms = noise_before(self.step_n, np.concatenate(moves))
@@ -279,7 +278,9 @@ def _span(load: Array) -> float:
     return float(np.sqrt(max(float(high - low) ** 2 - noise**2, 0.0)))
 
 
-def _each(rig: Rig, runs: Mapping[int, Run]) -> tuple[dict[int, Prepared], list[Finding]]:
+def _each(
+    rig: Rig, runs: Mapping[int, Run], settings: MotionSettings
+) -> tuple[dict[int, Prepared], list[Finding]]:
     """Prepare all runs; return those with motion, and a finding for each of the others.
 
     A run is prepared again where the other runs give information on the logger. This is its
@@ -290,7 +291,7 @@ def _each(rig: Rig, runs: Mapping[int, Run]) -> tuple[dict[int, Prepared], list[
     without_motion = []
     for i, run in runs.items():
         try:
-            found[i] = Prepared.of(rig, run)
+            found[i] = Prepared.of(rig, run, settings=settings)
         except NoMotion as error:
             refused.append(error)
             without_motion.append(_without_motion(run, error))
@@ -304,7 +305,7 @@ def _each(rig: Rig, runs: Mapping[int, Run]) -> tuple[dict[int, Prepared], list[
     )
     for i in found if starts or period_s is not None else ():
         with suppress(NoMotion):
-            found[i] = Prepared.of(rig, runs[i], None if i in rates else period_s, starts)
+            found[i] = Prepared.of(rig, runs[i], None if i in rates else period_s, starts, settings)
     return found, without_motion
 
 

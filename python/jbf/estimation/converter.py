@@ -16,11 +16,17 @@ from scipy import optimize
 
 Array = npt.NDArray[np.float64]
 MOST_NOISE = 3.0
-"""Largest noise that is considered, in steps; above it the quantisation is not visible."""
+"""Largest noise that is considered, in steps; above it the quantisation is not visible.
+
+It bounds a search only.
+"""
 
 
 HARMONICS = 3
-"""Number of harmonics of the bias; higher ones matter only for noise below a tenth of a step."""
+"""Number of harmonics of the bias; higher ones matter only for noise below a tenth of a step.
+
+It is a numerical resolution.
+"""
 
 
 def origin_n(step_n: float, readings_n: Array) -> float:

@@ -22,7 +22,10 @@ from jbf.models.parameter_value import ParameterValue
 Array = npt.NDArray[np.float64]
 
 BENT = 0.3
-"""Permitted deviation from one of the rise of the deviance at one standard error."""
+"""Permitted deviation from one of the rise of the deviance at one standard error.
+
+It enters no verdict.
+"""
 
 
 def doubtful_errors(

@@ -24,10 +24,11 @@ NO_EFFECT = "at its null: no effect"
 AT_BOUND = 1e-6
 """Tolerance within which a value counts as at its bound.
 
-It is a fraction of the logarithmic distance between the bounds, or of the value or its error.
+It is a fraction of the logarithmic distance between the bounds, or of the value or its error. It is
+a numerical tolerance.
 """
 ONE_SIDED = 2.0
-"""Standard errors added to the value of a scale for its upper limit."""
+"""Standard errors added to the value of a scale for its upper limit. It concerns the text only."""
 
 
 def undetermined(

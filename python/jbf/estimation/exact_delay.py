@@ -24,17 +24,26 @@ from jbf.models.late_reading import TAU, LateChain
 Array = npt.NDArray[np.float64]
 
 LEAST_STEPS = 0.05
-"""Smallest delay, in sampling intervals, that moves a jump from one sample to another."""
+"""Smallest delay, in sampling intervals, that moves a jump from one sample to another.
+
+It enters no verdict.
+"""
 REACH = 5.0
-"""Range of the scan to either side, in standard errors of the search."""
+"""Range of the scan to either side, in standard errors of the search. It bounds a search only."""
 LEAST_REACH_STEPS = 0.2
-"""Minimum range of the scan to either side, in sampling intervals."""
+"""Minimum range of the scan to either side, in sampling intervals. It bounds a search only."""
 COARSE, FINE = 31, 17
-"""Number of delays in the first scan, and in a second one around the most likely delay."""
+"""Number of delays in the first scan, and in a second one around the most likely delay.
+
+It is a numerical resolution.
+"""
 CLIPPED = 5.0
-"""Limit of the contribution of a residual, in standard deviations."""
+"""Limit of the contribution of a residual, in standard deviations. It enters no verdict."""
 BLURRED = 3.5
-"""Distance from a jump within which its side is uncertain, in standard errors of its time."""
+"""Distance from a jump within which its side is uncertain, in standard errors of its time.
+
+It enters no verdict.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +127,7 @@ class _Scan:
         ]
         # A sample of coloured residuals carries less information.
         counted = [r * c for r, c in zip(left, samples.counted, strict=True)]
-        share = independent_share(counted, samples.steps_s)
+        share = independent_share(counted, samples.steps_s, samples.settings.noise)
         noise_rms = max(samples.rms(left), 1e-300)
         way = np.where(np.isfinite(way) & spread.moved, way, 0.0)
         return cls(problem, chain, friction, values, way, noise_rms, share)

@@ -22,13 +22,8 @@ from jbf.models.driven import Driven
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-GAP = 4.5
-"""Ratio to the usual sampling interval above which a step is a gap.
-
-A longer step hides more of a motion than a straight line can follow.
-"""
 EDGE = 1e-3
-"""Fraction of a gap in which a simulated motion changes its speed."""
+"""Fraction of a gap in which a simulated motion changes its speed. It is a numerical resolution."""
 
 
 def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
@@ -45,24 +40,26 @@ def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) ->
     found = [np.zeros(len(p.run), dtype=bool) for p in prepared]
     if not find_law(problem.law).has_film:
         return found
-    broken = [i for i, p in enumerate(prepared) if len(_gaps(p))]
+    gap_steps = problem.campaign.settings.film.gap_steps
+    gaps = [_gaps(p, gap_steps) for p in prepared]
+    broken = [i for i, at in enumerate(gaps) if len(at)]
     usual = problem.chain.predict(values, [prepared[i].core for i in broken])
     for late in (False, True):
-        motions = [_through(prepared[i], late=late) for i in broken]
+        motions = [_through(prepared[i], gaps[i], late=late) for i in broken]
         others = problem.chain.predict(values, motions)
         for i, one, other in zip(broken, usual, others, strict=True):
             found[i] |= np.abs(other - one) > least_n
     return found
 
 
-def _gaps(p: Prepared) -> npt.NDArray[np.intp]:
+def _gaps(p: Prepared, gap_steps: float) -> npt.NDArray[np.intp]:
     """Indices of the last samples before gaps."""
-    return np.flatnonzero(np.diff(p.run.time_s) > GAP * p.step_s)
+    return np.flatnonzero(np.diff(p.run.time_s) > gap_steps * p.step_s)
 
 
-def _through(p: Prepared, *, late: bool) -> Driven:
+def _through(p: Prepared, gaps: npt.NDArray[np.intp], *, late: bool) -> Driven:
     """Motion of a run whose speed changes at the end of each gap (`late`) or at its beginning."""
-    time, gaps = p.run.time_s, _gaps(p)
+    time = p.run.time_s
     length = time[gaps + 1] - time[gaps]
     new = time[gaps + 1] - EDGE * length if late else time[gaps] + EDGE * length
     speed = p.motion.velocity[gaps if late else gaps + 1]

@@ -19,14 +19,6 @@ from jbf.estimation.problem import Problem
 from jbf.models.catalogue import find_law
 from jbf.models.vocabulary import Clock
 
-MOST_STEPS = 200.0
-"""Maximum mean number of steps per sampling interval over the campaign.
-
-At this number, the film has forgotten its state at the previous sample two hundred times over.
-"""
-ANY_STEPS = 1e5
-"""Total number of steps that is accepted for any record; a prediction takes some milliseconds."""
-
 
 def check_film(
     campaign: Campaign, law: str, clock: Clock, seed: Mapping[str, float] | None = None
@@ -49,7 +41,8 @@ def check_film(
     seconds = math.fsum(p.run.duration_s for p in campaign.prepared)
     steps = followed * seconds
     samples = sum(len(p.friction) for p in campaign.prepared)
-    if steps <= max(MOST_STEPS * samples, ANY_STEPS):
+    settings = campaign.settings.film
+    if steps <= max(settings.max_steps * samples, settings.any_steps):
         return
     every = float(np.median([p.step_s for p in campaign.prepared]))
     first = campaign.prepared[0].run

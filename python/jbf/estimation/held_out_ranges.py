@@ -13,17 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.settings import HeldOutSettings
 from jbf.records.recorded_load import recorded_load
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
-PARTS = 10
-"""Number of equal parts of a run; every other one is held out."""
-MARGIN = 0.1
-"""Fraction of the largest value of all runs within which a value is not an extrapolation."""
-SHARE = 0.05
-"""Fraction of a run's samples above which the run is beyond the others."""
 
 
 @dataclass(frozen=True)
@@ -46,17 +40,17 @@ class Beyond:
     others: float
 
 
-def alternate_parts(count: int) -> Mask:
-    """Mask of the first, third, ... of `PARTS` equal parts of a run, shape (count,)."""
-    parts: Mask = (np.arange(count) * PARTS // max(count, 1)) % 2 == 0
-    return parts
+def alternate_parts(count: int, parts: int) -> Mask:
+    """Mask of the first, third, ... of a number of equal parts of a run, shape (count,)."""
+    found: Mask = (np.arange(count) * parts // max(count, 1)) % 2 == 0
+    return found
 
 
 def runs_beyond(campaign: Campaign) -> list[Beyond]:
     """Runs that are beyond the range of all others, each with the first such quantity."""
     found: dict[int, Beyond] = {}
     for quantity, values in _quantities(campaign).items():
-        for beyond in _beyond(quantity, values):
+        for beyond in _beyond(quantity, values, campaign.settings.held_out):
             found.setdefault(beyond.run, beyond)
     return [found[run] for run in sorted(found)]
 
@@ -70,18 +64,18 @@ def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
     return {"speed": speeds} | ({"load": known} if len(known) == len(runs) else {})
 
 
-def _beyond(quantity: str, values: list[Array]) -> list[Beyond]:
+def _beyond(quantity: str, values: list[Array], settings: HeldOutSettings) -> list[Beyond]:
     top = max((float(np.max(np.abs(v), initial=0.0)) for v in values), default=0.0)
-    found = []
+    margin, found = settings.extrapolation_margin * top, []
     for run, own in enumerate(values):
         rest = [v for other, v in enumerate(values) if other != run and len(v)]
         if not len(own) or not rest:
             continue
         low, high = min(float(v.min()) for v in rest), max(float(v.max()) for v in rest)
         for outside, value, others in (
-            (own > high + MARGIN * top, float(own.max()), high),
-            (own < low - MARGIN * top, float(own.min()), low),
+            (own > high + margin, float(own.max()), high),
+            (own < low - margin, float(own.min()), low),
         ):
-            if np.mean(outside) > SHARE:
+            if np.mean(outside) > settings.extrapolation_share:
                 found.append(Beyond(run, quantity, value, others))
     return found

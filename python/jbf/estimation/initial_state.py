@@ -15,41 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.prepared import Prepared
+from jbf.estimation.settings import DEFAULT, TransientSettings
 from jbf.models.catalogue import find_effect, find_law
 from jbf.models.chain import core_motion
 from jbf.models.driven import DrivenChain
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
-REMEMBERED = 0.2
-"""Fraction of the noise below which a difference counts as forgotten."""
-MOST_OF_A_RUN = 0.5
-"""Largest fraction of a run that is excluded for a film; otherwise nothing is excluded."""
-MOST_OF_A_STROKE = 0.75
-"""Largest fraction of a run that is excluded for a contact.
-
-Such a run may be a single stroke, half of which deflects the contact.
-"""
-MOST_OF_ALL = 0.5
-"""Largest fraction of a campaign that is excluded for load cells with backlash.
-
-A run whose force never reverses does not determine the initial side of the backlash. It is
-excluded completely if other runs remain.
-"""
-BEFORE_S = 6.0
-"""Duration of the simulated motions before a run, s."""
-SPEEDS = (1e-3, 0.1, 1.0)
-"""Speeds of these motions for a film or an age, as fractions of the top speed of the run."""
-WAYS = (-1.0, 1.0)
-"""Speeds of these motions for contacts and backlash, which may be on either side at the start."""
-LONGER = 1.5
-"""Factor on the excluded duration for a film, which may be slower than that of the model."""
-FURTHER = 1.1
-"""Factor on the excluded duration for a contact, which may be softer.
-
-It is smaller because the records determine the deflection of a contact better.
-"""
 
 
 @dataclass(frozen=True)
@@ -72,16 +44,19 @@ class Memory:
     most_of_all: float = 1.0
 
 
-def memories(law: str, effects: Iterable[str]) -> list[Memory]:
+def memories(
+    law: str, effects: Iterable[str], settings: TransientSettings = DEFAULT.transient
+) -> list[Memory]:
     """Return the parts of a law and its effects that remember the initial state of a run."""
-    page = find_law(law)
+    page, s = find_law(law), settings
     by_speed = page.has_memory and not page.has_bristle
     if has_unknown_start(effects):
         # A film that builds up or breaks down pushes the load cell in one direction or the other.
-        return [Memory((*(SPEEDS if by_speed else ()), *WAYS), FURTHER, np.inf, MOST_OF_ALL)]
+        speeds = (*(s.film_speeds if by_speed else ()), *s.contact_speeds)
+        return [Memory(speeds, s.contact_margin, np.inf, s.max_share_backlash)]
     if page.has_bristle:
-        return [Memory(WAYS, FURTHER, MOST_OF_A_STROKE)]
-    return [Memory(SPEEDS, LONGER, MOST_OF_A_RUN)] if by_speed else []
+        return [Memory(s.contact_speeds, s.contact_margin, s.max_share_contact)]
+    return [Memory(s.film_speeds, s.film_margin, s.max_share_film)] if by_speed else []
 
 
 def has_unknown_start(effects: Iterable[str]) -> bool:
@@ -90,7 +65,12 @@ def has_unknown_start(effects: Iterable[str]) -> bool:
 
 
 def remembering(
-    chain: DrivenChain, values: Array, prepared: Sequence[Prepared], which: Memory, noise_rms: float
+    chain: DrivenChain,
+    values: Array,
+    prepared: Sequence[Prepared],
+    which: Memory,
+    noise_rms: float,
+    settings: TransientSettings = DEFAULT.transient,
 ) -> list[Mask]:
     """Mask of the samples at which a run still remembers its initial state, one a run.
 
@@ -104,11 +84,13 @@ def remembering(
     # The motion used by the fit has starts between samples and would differ at each stop.
     begun = []
     for share in which.speeds:
-        motions = [core_motion(p.rig, p.run, p.motion, (share, BEFORE_S)) for p in prepared]
+        motions = [
+            core_motion(p.rig, p.run, p.motion, (share, settings.before_s)) for p in prepared
+        ]
         begun.append(chain.predict(values, motions))
     spreads = [np.ptp(np.array(ways), axis=0) for ways in zip(*begun, strict=True)]
     found = [
-        _remembered(p, spread > REMEMBERED * noise_rms, which)
+        _remembered(p, spread > settings.max_difference * noise_rms, which)
         for p, spread in zip(prepared, spreads, strict=True)
     ]
     gone, whole = sum(int(f.sum()) for f in found), sum(f.size for f in found)

@@ -32,10 +32,11 @@ Clocks = Literal["by run", "shared", "one", "one, delay"]
 "by run": each run has its own delay. "shared": all runs have one delay. "one": one clock rate, with
 the clock started at each run. "one, delay": the same clock rate and a delay of the instrument.
 """
-LINEAR_S = 8e-3
-"""Time shift over which the force is linear, s; samples closer to a reversal are not used."""
 RANK = 1e-10
-"""Fraction of the largest singular value below which a direction is not identifiable."""
+"""Fraction of the largest singular value below which a direction is not identifiable.
+
+It is a numerical tolerance.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +50,7 @@ class LatenessStep:
     covariance_s2
         Covariance of the identifiable delays, s^2, from the variance of the residual.
     determined
-        Whether each delay is identifiable within `LINEAR_S`, shape (m,).
+        Whether each delay is identifiable (`DelaySettings.linear_s`), shape (m,).
     """
 
     late_s: Array
@@ -119,8 +120,9 @@ def lateness_step(problem: Problem, solution: Solution) -> LatenessStep:
     """
     own = [k for k, i in enumerate(problem.open) if problem.names[i] != DELAY]
     late, of_late = _step(problem, solution, own, "by run")
+    linear_s = problem.campaign.settings.delays.linear_s
     # An exact fit gives no variance.
-    determined = (np.diag(of_late) > 0.0) & (np.diag(of_late) < LINEAR_S**2)
+    determined = (np.diag(of_late) > 0.0) & (np.diag(of_late) < linear_s**2)
     return LatenessStep(
         np.where(determined, late, 0.0), of_late[np.ix_(determined, determined)], determined
     )
@@ -151,7 +153,8 @@ def drift_step(problem: Problem, solution: Solution, beside_delay: bool = False)
     clocks: Clocks = "one, delay" if beside_delay and DELAY not in problem.names else "one"
     late, of_late = _step(problem, solution, list(range(len(problem.open))), clocks)
     longest_s = max(p.run.duration_s for p in problem.campaign.prepared)
-    determined = 0.0 < of_late[0, 0] * longest_s**2 < LINEAR_S**2
+    linear_s = problem.campaign.settings.delays.linear_s
+    determined = 0.0 < of_late[0, 0] * longest_s**2 < linear_s**2
     return DriftStep(float(late[0]), float(of_late[0, 0])) if determined else DriftStep(0.0, np.inf)
 
 
@@ -218,7 +221,7 @@ def _rows(
             "one": [slope * since_start],
             "one, delay": [slope * since_start, slope],
         }[clocks]
-        apart = int(np.ceil(LINEAR_S / p.step_s))
+        apart = int(np.ceil(problem.campaign.settings.delays.linear_s / p.step_s))
         far = ~ndimage.binary_dilation(~p.slides, iterations=apart)
         own = samples.only([i]).within([far])
         derivatives = np.column_stack([solution.jacobian[i][:, by], *later])

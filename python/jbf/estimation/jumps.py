@@ -20,22 +20,11 @@ import numpy.typing as npt
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.reversals import instant_errors_n
 from jbf.estimation.samples import Samples
+from jbf.estimation.settings import DEFAULT, JumpSettings
 from jbf.models.catalogue import Parameter, find_effect
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
-JUMP = 0.1
-"""Fraction of the run's largest friction above which a change within a sample may be a jump."""
-ALONE = 3.0
-"""Ratio of a jump to the changes within two samples before it and after it.
-
-A steep rise that the record resolves, such as the acceleration of a mass, is not a jump.
-"""
-
-
-UNSURE = 0.5
-"""Fraction of the noise above which the error of a jump's time excludes a sample from tests."""
 
 
 def moves_jumps(effects: Iterable[str]) -> bool:
@@ -63,7 +52,7 @@ def active_effects(
     return [effect for effect in effects if off.get(effect, True)]
 
 
-def jumps(prediction: Array) -> Array:
+def jumps(prediction: Array, settings: JumpSettings = DEFAULT.jumps) -> Array:
     """Change of a prediction (N) at samples in or next to a jump, N; zero elsewhere."""
     change = np.abs(np.diff(prediction))
     # A ramp across a sample contributes to two changes, so one neighbour may belong to it. The two
@@ -73,8 +62,9 @@ def jumps(prediction: Array) -> Array:
         np.minimum(around[:-4], around[1:-3]),
         np.minimum(around[3:-1], around[4:]),
     )
-    alone = change > ALONE * np.maximum(before, after)
-    steep = alone & (change > JUMP * np.max(np.abs(prediction), initial=0.0))
+    alone = change > settings.min_ratio * np.maximum(before, after)
+    largest = np.max(np.abs(prediction), initial=0.0)
+    steep = alone & (change > settings.min_share * largest)
     steep = np.where(steep, change, 0.0)
     found: Array = np.maximum(np.append(steep, 0.0), np.append(0.0, steep))
     return found
@@ -94,32 +84,32 @@ def samples_near_jumps(
     moves, spreads = moves_jumps(effects), spreads_jumps(effects)
     if not (moves or spreads):
         return samples
-    counted, weight = [], []
+    counted, weight, settings = [], [], samples.settings.jumps
     for p, c, w, prediction in zip(
         prepared, samples.counted, samples.weight, predictions, strict=True
     ):
         if moves:
-            c, w = _without_jumps(p, c, w, prediction)
+            c, w = _without_jumps(p, c, w, prediction, settings)
         if spreads:
-            c, w = _without_reversals(p, c, w, prediction)
+            c, w = _without_reversals(p, c, w, prediction, settings)
         counted.append(c)
         weight.append(w)
     return replace(samples, counted=tuple(counted), weight=tuple(weight))
 
 
 def _without_jumps(
-    p: Prepared, counted: Mask, weight: Array, prediction: Array
+    p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
-    change = jumps(prediction)
+    change = jumps(prediction, settings)
     kept = counted & (change == 0.0)
     return kept, weight * _share(0.5 * change, _noise_n(p, kept, prediction))
 
 
 def _without_reversals(
-    p: Prepared, counted: Mask, weight: Array, prediction: Array
+    p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
     noise_rms = _noise_n(p, counted, prediction)
-    error_n = instant_errors_n(p, prediction, UNSURE * noise_rms)
+    error_n = instant_errors_n(p, prediction, settings.max_timing_error * noise_rms)
     return counted & (error_n == 0.0), weight * _share(error_n, noise_rms)
 
 

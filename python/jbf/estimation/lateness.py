@@ -20,7 +20,7 @@ from jbf.estimation.likelihood import independent_share
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.random_effect import spread_between
-from jbf.estimation.robust import CLIPPED
+from jbf.estimation.settings import DelaySettings
 from jbf.estimation.solution import Solution
 from jbf.models.chain import core_motion
 from jbf.models.driven import Driven
@@ -29,15 +29,10 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 FINE_S = 2.5e-3
-"""Largest interval between the times at which the model's force is computed, s."""
-PARTS = 3
-"""Number of parts of a run from which a growth of the delay is estimated."""
-LEAST_SAMPLES = 60
-"""Minimum number of samples of a part for an estimate of its delay."""
-OUTSIDE = 0.01
-"""Likelihood at the ends of the scanned range above which the delay may lie outside it."""
-RANGES = ((40e-3, 2e-3), (8e-3, 0.5e-3))
-"""Range and step of the scanned delays, s: for the first scan, and after runs were shifted."""
+"""Largest interval between the times at which the model's force is computed, s.
+
+It is a numerical resolution.
+"""
 
 
 @dataclass(frozen=True)
@@ -82,14 +77,16 @@ def lateness(problem: Problem, solution: Solution, look: int, chance: float) -> 
     chance
         Significance level for differences between runs and for a common drift.
     """
-    reach, step = RANGES[min(look, len(RANGES) - 1)]
+    settings = problem.campaign.settings.delays
+    ranges = settings.search_ranges_s
+    reach, step = ranges[min(look, len(ranges) - 1)]
     grid = np.arange(-reach, reach + 0.5 * step, step)
     whole, drifts = [], []
     for squares, time in _scans(problem, solution, grid):
-        whole.append(_place(grid, squares.sum(axis=1), squares.shape[1]))
-        drifts.append(_drift(grid, squares, time))
-    runs = problem.campaign.prepared
-    by_run, drift = _spread(whole), _common(drifts)
+        whole.append(_place(grid, squares.sum(axis=1), squares.shape[1], settings))
+        drifts.append(_drift(grid, squares, time, settings))
+    runs, least = problem.campaign.prepared, problem.campaign.settings.variance.min_runs
+    by_run, drift = _spread(whole, least), _common(drifts)
     differ = by_run is not None and by_run[1] < chance
     grows = drift is not None and drift[1] < chance
     if not differ and not grows:
@@ -120,7 +117,8 @@ def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[
     for p, force in zip(runs, forces, strict=True):
         instants = instants_of(p)
         slopes.append(np.interp(p.run.time_s, instants, np.gradient(force, instants)))
-    share = independent_share(_on_time(problem, solution, slopes), samples.steps_s)
+    noise = samples.settings.noise
+    share = independent_share(_on_time(problem, solution, slopes), samples.steps_s, noise)
     left_over = samples.without_deviations(solution.residuals, solution.noise)
     for i, (p, force) in enumerate(zip(runs, forces, strict=True)):
         instants = instants_of(p)
@@ -133,7 +131,9 @@ def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[
             rows.append(((read - shifted) * samples.weight[i])[kept])
         e = np.array(rows)
         size = float(np.median(np.abs(e), axis=1).min()) / 0.6745 if e.size else 0.0
-        squares = np.minimum((e / size) ** 2, CLIPPED**2) if size > 0.0 else np.zeros_like(e)
+        squares = (
+            np.minimum((e / size) ** 2, noise.clip_sigma**2) if size > 0.0 else np.zeros_like(e)
+        )
         # A sample of coloured residuals carries less information.
         squares *= share
         yield squares, p.run.time_s[kept] - p.run.time_s[0]
@@ -172,29 +172,30 @@ def fine_motion(p: Prepared) -> Driven:
     return core_motion(p.rig, run, p.motion.at(p.run.time_s, instants))
 
 
-def _place(grid: Array, costs: Array, count: int) -> _Place:
+def _place(grid: Array, costs: Array, count: int, settings: DelaySettings) -> _Place:
     """Mean and variance of the likelihood on the grid.
 
     They replace the curvature, since squares change in steps next to jumps.
     """
     k = int(np.argmin(costs))
-    if count < LEAST_SAMPLES or not 0 < k < len(grid) - 1:
+    if count < settings.min_part_samples or not 0 < k < len(grid) - 1:
         return _Place(0.0, np.inf)
     likely = np.exp(-0.5 * (costs - costs[k]) / max(float(costs[k]) / count, 1.0))
     likely /= np.sum(likely)
-    if likely[0] + likely[-1] > OUTSIDE:
+    if likely[0] + likely[-1] > settings.max_edge_likelihood:
         return _Place(0.0, np.inf)
     mean, step = float(np.sum(likely * grid)), float(grid[1] - grid[0])
     return _Place(mean, float(np.sum(likely * (grid - mean) ** 2)) + step**2 / 12.0)
 
 
-def _drift(grid: Array, squares: Array, time: Array) -> _Place:
+def _drift(grid: Array, squares: Array, time: Array, settings: DelaySettings) -> _Place:
     """Slope of the delay over the parts of a run."""
-    edges = np.linspace(0.0, float(time[-1]) if len(time) else 0.0, PARTS + 1)
+    last_s = float(time[-1]) if len(time) else 0.0
+    edges = np.linspace(0.0, last_s, settings.drift_parts + 1)
     middles, values, weights = [], [], []
     for low, high in itertools.pairwise(edges):
         here = (time >= low) & (time < high)
-        place = _place(grid, squares[:, here].sum(axis=1), int(here.sum()))
+        place = _place(grid, squares[:, here].sum(axis=1), int(here.sum()), settings)
         if np.isfinite(place.variance):
             middles.append(0.5 * (low + high))
             values.append(place.value)
@@ -207,10 +208,10 @@ def _drift(grid: Array, squares: Array, time: Array) -> _Place:
     return _Place(float(np.sum(w * t * np.array(values))) / size, 1.0 / size)
 
 
-def _spread(places: list[_Place]) -> tuple[float, float] | None:
+def _spread(places: list[_Place], min_runs: int) -> tuple[float, float] | None:
     """Standard deviation between runs, and its p-value."""
     known = [p for p in places if np.isfinite(p.variance)]
-    if len(known) < 3:
+    if len(known) < min_runs:
         return None
     values = np.array([p.value for p in known])
     precisions = 1.0 / np.array([p.variance for p in known])

@@ -24,24 +24,26 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 EVALUATIONS = 12
-"""Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs."""
+"""Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs.
+
+It limits the effort only.
+"""
 SHORT = 3.0
 """Length per parameter, in standard deviations, up to which a step is accepted without a search.
 
 Noise alone causes steps of this length in a fit to the remaining runs. A search continues from the
-end of a longer step.
+end of a longer step. It is a numerical tolerance.
 """
 STRAIGHT = 0.05
 """Permitted deviation of a predicted change from the linear one, as a fraction of the change.
 
-Within it a step is accepted without further iterations.
+Within it a step is accepted without further iterations. It is a numerical tolerance.
 """
 NOTHING = 0.01
-"""Fraction of the residual below which the accuracy of a prediction does not matter."""
-MOST_FITS = 12
-"""Maximum number of folds of the cross-validation; with more runs, groups are held out."""
-INSENSITIVE = 1e-4
-"""Fraction of the total information on a parameter below which runs do not determine it."""
+"""Fraction of the residual below which the accuracy of a prediction does not matter.
+
+It is a numerical tolerance.
+"""
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ def errors_by_run(
 
 
 def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
-    """Hold out each run in turn, or groups of runs if there are more than `MOST_FITS`.
+    """Hold out each run in turn, or groups of runs if there are many (`max_folds`).
 
     A parameter that the remaining runs do not determine is held at its null (or its starting
     value). Information that only the held-out run contains must not leak into its prediction. With
@@ -138,7 +140,7 @@ def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
         rest = [k for k in range(count) if k not in group]
         residuals = _predicted(problem, solution, information, group, rest)
         whole = tuple(np.ones(len(r), dtype=bool) for r in residuals)
-        unknown = _unknown(information.known, information.known[rest].sum(axis=0))
+        unknown = _unknown(solution, information.known, information.known[rest].sum(axis=0))
         parts.append(HeldOutPart(tuple(group), whole, ~unknown, tuple(residuals)))
     return parts
 
@@ -155,7 +157,7 @@ def indispensable_runs(problem: Problem, solution: Solution) -> frozenset[int]:
     return frozenset(
         i
         for i in range(count)
-        if _unknown(known, known[[k for k in range(count) if k != i]].sum(axis=0)).any()
+        if _unknown(solution, known, known[[k for k in range(count) if k != i]].sum(axis=0)).any()
     )
 
 
@@ -175,12 +177,13 @@ def held_out_halves(
     every = [np.ones(len(c), dtype=bool) for c in samples.counted]
     others = known.sum(axis=0) - known[run]
     count = len(every[run])
-    first = alternate_parts(count) if alternate else np.arange(count) < count // 2
+    parts_of_run = samples.settings.held_out.parts
+    first = alternate_parts(count, parts_of_run) if alternate else np.arange(count) < count // 2
     parts = []
     for half in (first, ~first):
         kept = samples.within([*every[:run], ~half, *every[run + 1 :]])
         own = np.sum(solution.jacobian[run][kept.counted[run]] ** 2, axis=0)
-        unknown = _unknown(known, others + own)
+        unknown = _unknown(solution, known, others + own)
         held = _held(problem, unknown)
         part = _of(problem, problem.campaign, held)
         values = _fitted(part, kept, _at(problem, solution, held), solution)
@@ -195,9 +198,10 @@ def _known(solution: Solution) -> Array:
     return np.array([np.sum(jacobian[counted] ** 2, axis=0) for jacobian, counted in pairs])
 
 
-def _unknown(known: Array, rest: Array) -> Mask:
+def _unknown(solution: Solution, known: Array, rest: Array) -> Mask:
     """Mask of the parameters that the remaining information does not determine, shape (k,)."""
-    unknown: Mask = rest < INSENSITIVE * known.sum(axis=0)
+    least = solution.samples.settings.held_out.min_information
+    unknown: Mask = rest < least * known.sum(axis=0)
     return unknown
 
 
@@ -249,7 +253,9 @@ def _predicted(
     rest: list[int],
 ) -> list[Array]:
     """Residuals, N, of runs that were held out of the fit."""
-    held = _held(problem, _unknown(information.known, information.known[rest].sum(axis=0)))
+    held = _held(
+        problem, _unknown(solution, information.known, information.known[rest].sum(axis=0))
+    )
     start = _at(problem, solution, held)
     step: Array | None = None
     if not held:
@@ -304,7 +310,8 @@ def _groups(campaign: Campaign) -> list[list[int]]:
             campaign.prepared[i].run.name,
         ),
     )
-    return [sorted(order[k::MOST_FITS]) for k in range(min(MOST_FITS, len(order)))]
+    folds = min(campaign.settings.held_out.max_folds, len(order))
+    return [sorted(order[k::folds]) for k in range(folds)]
 
 
 def _of(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
@@ -331,7 +338,9 @@ def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
 
 def _halves(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     """Hold out two halves of a single run, consisting of alternate parts, in turn."""
-    first = alternate_parts(len(solution.samples.counted[0]))
+    first = alternate_parts(
+        len(solution.samples.counted[0]), solution.samples.settings.held_out.parts
+    )
     parts = []
     for half in (~first, first):
         kept = solution.samples.within([~half])

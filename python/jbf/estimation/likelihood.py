@@ -13,17 +13,21 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.long_run import sure_inflation
-from jbf.estimation.noise import LONGEST_MEMORY_S, Noise
+from jbf.estimation.noise import Noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.robust import clipped_square, robust_size
 from jbf.estimation.rows import triangular
 from jbf.estimation.samples import Samples, common_samples
+from jbf.estimation.settings import DEFAULT, NoiseSettings
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
 
 INDEPENDENT = 1e-10
-"""Relative singular value above which a direction of a design is independent."""
+"""Relative singular value above which a direction of a design is independent.
+
+It is a numerical tolerance.
+"""
 
 
 def likelihood_gain(richer: Solution, simpler: Solution) -> float:
@@ -75,7 +79,7 @@ def effective_share(solution: Solution) -> float:
     if solution not in _shares:
         samples = solution.samples
         left = samples.weighted_innovations(solution.residuals, solution.noise)
-        _shares[solution] = independent_share(left, samples.steps_s)
+        _shares[solution] = independent_share(left, samples.steps_s, samples.settings.noise)
     return _shares[solution]
 
 
@@ -94,7 +98,8 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
         )
         left.append(own)
         ways.append(before - own)
-    return min(share, 1.0 / sure_inflation(ways, left, samples.steps_s))
+    inflation = sure_inflation(ways, left, samples.steps_s, samples.settings.variance)
+    return min(share, 1.0 / inflation)
 
 
 def robust_gain(richer: Solution, simpler: Solution) -> float:
@@ -109,10 +114,10 @@ def robust_gain(richer: Solution, simpler: Solution) -> float:
         )
         for solution in (richer, simpler)
     )
-    size = robust_size(own)
-    left = clipped_square(own, size)
+    size, clip = robust_size(own), samples.settings.noise.clip_sigma
+    left = clipped_square(own, size, clip)
     # After an exact fit to most samples, no sample counts as an outlier.
-    return len(own) * (clipped_square(before, size) / left - 1.0) if left > 0.0 else np.inf
+    return len(own) * (clipped_square(before, size, clip) / left - 1.0) if left > 0.0 else np.inf
 
 
 def _whitened(samples: Samples, residual: Array, noise: Noise, run: int) -> Array:
@@ -120,7 +125,11 @@ def _whitened(samples: Samples, residual: Array, noise: Noise, run: int) -> Arra
     return samples.only([run]).stacked([residual], [np.zeros((len(residual), 0))], noise)[0]
 
 
-def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> float:
+def independent_share(
+    innovations: Sequence[Array],
+    steps: Sequence[float],
+    settings: NoiseSettings = DEFAULT.noise,
+) -> float:
     """Number of independent samples per sample of the given innovations, 0 to 1.
 
     Innovations of noise alone are white. Those of a wrong model are not, and n of them carry the
@@ -128,7 +137,7 @@ def independent_share(innovations: Sequence[Array], steps: Sequence[float]) -> f
     insignificant, or longer than the longest correlation time of noise.
     """
     count = max(sum(len(e) for e in innovations), 1)
-    longest = int(LONGEST_MEMORY_S / min(steps)) + 1
+    longest = int(settings.longest_memory_s / min(steps)) + 1
     total = np.zeros(longest + 1)
     middle = sum(float(np.sum(e)) for e in innovations) / count
     for e in innovations:

@@ -14,19 +14,17 @@ import numpy as np
 import numpy.typing as npt
 from scipy import special
 
+from jbf.estimation.settings import DEFAULT, VarianceSettings
+
 Array = npt.NDArray[np.float64]
 
-WINDOW_S = 3.0
-"""Length of the windows, s: five times the longest correlation time of a noise model."""
-LEAST_WINDOWS = 8
-"""Minimum number of windows in a record; the windows are shortened accordingly."""
-LEAST_RUNS = 3
-"""Minimum number of runs for an estimate of their scatter."""
-BY_CHANCE = 0.01
-"""Significance level for the scatter of runs or of windows."""
 
-
-def score_square(directions: Array, innovations: Array, step_s: float) -> float:
+def score_square(
+    directions: Array,
+    innovations: Array,
+    step_s: float,
+    settings: VarianceSettings = DEFAULT.variance,
+) -> float:
     """Square of a score over its long-run variance: chi-square, one degree of freedom a direction.
 
     The variance of each direction is at least that of white noise.
@@ -43,12 +41,15 @@ def score_square(directions: Array, innovations: Array, step_s: float) -> float:
     score = directions.T @ innovations
     # The part explained by the score itself is signal, not noise.
     rest = directions * (innovations - directions @ score)[:, None]
-    size, axes = np.linalg.eigh(long_run_variance(rest, step_s))
+    size, axes = np.linalg.eigh(long_run_variance(rest, step_s, settings))
     return float(np.sum((axes.T @ score) ** 2 / np.maximum(size, 1.0)))
 
 
 def score_inflation(
-    directions: Sequence[Array], innovations: Sequence[Array], steps_s: Sequence[float]
+    directions: Sequence[Array],
+    innovations: Sequence[Array],
+    steps_s: Sequence[float],
+    settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
     """Ratio of the variance of a score to that in white noise, at least one.
 
@@ -69,21 +70,24 @@ def score_inflation(
     # The part explained by the score itself is not noise.
     along = sum(float(d @ e) for d, e in zip(directions, innovations, strict=True)) / square
     found = sum(
-        float(long_run_variance((d * (e - along * d))[:, None], step)[0, 0])
+        float(long_run_variance((d * (e - along * d))[:, None], step, settings)[0, 0])
         for d, e, step in zip(directions, innovations, steps_s, strict=True)
     )
     return max(found / (square * white), 1.0)
 
 
 def sure_inflation(
-    directions: Sequence[Array], innovations: Sequence[Array], steps_s: Sequence[float]
+    directions: Sequence[Array],
+    innovations: Sequence[Array],
+    steps_s: Sequence[float],
+    settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
     """Ratio of the variance of a score to that in white noise, or one if it is not significant.
 
     A direction of a few breakaways has few windows, and the mean square of a few numbers is not a
     reliable variance.
     """
-    ratio = score_inflation(directions, innovations, steps_s)
+    ratio = score_inflation(directions, innovations, steps_s, settings)
     if ratio <= 1.0:
         return 1.0
     largest = max(float(np.max(np.abs(d), initial=0.0)) for d in directions)
@@ -91,15 +95,18 @@ def sure_inflation(
     square = sum(float(np.sum(d**2)) for d in directions)
     # Effective number of equal terms in a sum of squares with unequal weights (Satterthwaite 1946).
     spread = sum(
-        float(long_run_variance(d[:, None] ** 2, step)[0, 0])
+        float(long_run_variance(d[:, None] ** 2, step, settings)[0, 0])
         for d, step in zip(directions, steps_s, strict=True)
     )
     windows = square**2 / spread
-    return ratio if special.chdtrc(windows, windows * ratio) <= BY_CHANCE else 1.0
+    return ratio if special.chdtrc(windows, windows * ratio) <= settings.chance else 1.0
 
 
 def between_runs(
-    directions: Sequence[Array], innovations: Sequence[Array], inflation: float
+    directions: Sequence[Array],
+    innovations: Sequence[Array],
+    inflation: float,
+    settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
     """Ratio of the variance of a score to that in white noise, from the scatter of whole runs.
 
@@ -116,10 +123,10 @@ def between_runs(
     white = _white(innovations)
     own = sizes > 0.0
     runs = int(np.count_nonzero(own))
-    if runs < LEAST_RUNS or white <= 0.0:
+    if runs < settings.min_runs or white <= 0.0:
         return 0.0
     square = float(np.sum(pulls[own] ** 2 / sizes[own])) / (white * inflation)
-    if special.chdtrc(runs - 1, square) > BY_CHANCE:
+    if special.chdtrc(runs - 1, square) > settings.chance:
         return 0.0
     return float(np.sum(pulls**2)) / (white * float(np.sum(sizes))) * runs / (runs - 1)
 
@@ -130,12 +137,14 @@ def _white(innovations: Sequence[Array]) -> float:
     return sum(float(np.sum(e**2)) for e in innovations) / max(counted, 1)
 
 
-def long_run_variance(scores: Array, step_s: float) -> Array:
+def long_run_variance(
+    scores: Array, step_s: float, settings: VarianceSettings = DEFAULT.variance
+) -> Array:
     """Long-run variance, shape (q, q), of the sum of scores, shape (n, q)."""
     n = len(scores)
     if n == 0:
         return np.zeros((scores.shape[1], scores.shape[1]))
-    length = int(np.clip(WINDOW_S / step_s, 1, max(n // LEAST_WINDOWS, 1)))
+    length = int(np.clip(settings.window_s / step_s, 1, max(n // settings.min_windows, 1)))
     sums = np.cumsum(np.vstack([np.zeros((1, scores.shape[1])), scores]), axis=0)
     windows = sums[length:] - sums[:-length]
     variance: Array = windows.T @ windows * (n / (len(windows) * length))

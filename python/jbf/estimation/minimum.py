@@ -24,18 +24,12 @@ from jbf.models.catalogue import find_effect, find_law
 Array = npt.NDArray[np.float64]
 
 MAX_EVALUATIONS = 60
-"""Maximum number of evaluations of a search that converges."""
+"""Maximum number of evaluations of a search that converges. It limits the effort only."""
 FOLLOWED_IN_A_FIT = 6
 """Number of starting points that receive a few evaluations when a single model is fitted.
 
 Without a film they are searched to convergence, which is then inexpensive. The squares of a wrong
-law have many local minima.
-"""
-MOST_FORGIVEN = 1.02
-"""Maximum ratio of the RMS of a fit with coloured noise to that of the plain fit.
-
-With coloured noise the ratio is close to one. The error of a wrong model is equally smooth, and
-would be absorbed by the noise model.
+law have many local minima. It limits the effort only.
 """
 
 
@@ -60,7 +54,7 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         return settle(problem, there, left)
     if noise.colour > 0.0:
         again = search(problem, every, end.values, noise, MAX_EVALUATIONS)
-        most = MOST_FORGIVEN**2 * problem.square(end.values, every)
+        most = every.settings.noise.max_rms_ratio**2 * problem.square(end.values, every)
         if problem.square(again.values, every) <= most:
             end = again
             noise = noise_at(problem, every, end.values)
@@ -90,7 +84,7 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
 
 
 NESTED_EVALUATIONS = 30
-"""Evaluations of a fit of the law without its effects."""
+"""Evaluations of a fit of the law without its effects. It limits the effort only."""
 
 
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:

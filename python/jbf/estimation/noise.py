@@ -3,7 +3,7 @@
 The residual of a correct model is noise. It is described as white noise plus a first-order
 coloured part (correlation time tau), which is an ARMA(1,1) process at uniform steps. Its one-step
 innovations are white; likelihoods and standard errors are computed from them. The correlation time
-is limited to `LONGEST_MEMORY_S`, so that slow residual structure is not described as noise.
+is limited (`NoiseSettings`), so that slow residual structure is not described as noise.
 """
 
 from __future__ import annotations
@@ -17,11 +17,10 @@ import numpy.typing as npt
 from scipy import optimize, special
 
 from jbf import _core
+from jbf.estimation.settings import DEFAULT, NoiseSettings
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-LONGEST_MEMORY_S = 0.6
-"""Longest correlation time that still counts as noise, s."""
 
 
 @dataclass(frozen=True)
@@ -86,11 +85,6 @@ class Noise:
 
 WHITE = Noise()
 
-EARNED = 20.0
-"""Threshold in twice the log likelihood for the two parameters of coloured noise."""
-FURTHER = 4.0
-"""Factor on the gain predicted by the quadratic model at the best start, as an upper limit."""
-
 
 def innovation_cost(
     noise: Noise, residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
@@ -135,6 +129,7 @@ def estimate_noise(
     steps: Sequence[float],
     masks: Sequence[Mask],
     most_n: float | None = None,
+    settings: NoiseSettings = DEFAULT.noise,
 ) -> Noise:
     """Estimate the noise model with the smallest innovations of the given residuals.
 
@@ -143,7 +138,7 @@ def estimate_noise(
     coloured noise, and would be absorbed by it.
     """
     shortest = 2.0 * min(steps)
-    longest = max(LONGEST_MEMORY_S, 2.0 * shortest)
+    longest = max(settings.longest_memory_s, 2.0 * shortest)
     low, high = np.log(shortest), np.log(longest)
 
     def unpack(x: Array) -> Noise:
@@ -172,7 +167,8 @@ def estimate_noise(
     best = min(starts, key=cost)
     white = innovation_cost(WHITE, residuals, steps, masks)
     promised = 0.5 * float(slope(best) @ np.linalg.solve(curvature(best), slope(best)))
-    if cost(best) - FURTHER * promised >= white - EARNED:
+    coloured = white - settings.min_gain
+    if cost(best) - settings.max_gain_factor * promised >= coloured:
         return WHITE
     # For a unit curvature, a slope of 0.3 corresponds to less than 0.1 in twice the log likelihood.
     found = optimize.minimize(
@@ -183,7 +179,7 @@ def estimate_noise(
         hess=curvature,
         options={"maxiter": 40, "gtol": 0.3},
     )
-    if found.fun >= white - EARNED:
+    if found.fun >= coloured:
         return WHITE
     noise = unpack(found.x)
     if most_n is None:

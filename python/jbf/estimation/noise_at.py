@@ -25,4 +25,5 @@ def noise_at(
     residuals = problem.residuals(values, which) if lines is None else lines[0]
     residuals = samples.without_deviations(residuals, WHITE)
     masked = [r * c for r, c in zip(residuals, samples.counted, strict=True)]
-    return estimate_noise(masked, samples.steps_s, samples.counted, problem.campaign.most_noise_n)
+    most_n, settings = problem.campaign.most_noise_n, samples.settings.noise
+    return estimate_noise(masked, samples.steps_s, samples.counted, most_n, settings)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.replicates import period_samples
 from jbf.estimation.samples import Samples
+from jbf.estimation.settings import NoiseSettings, Settings
 from jbf.records.motion.roughness import noise_of
 
 Array = npt.NDArray[np.float64]
@@ -35,8 +36,9 @@ def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     floor, seen = _white(prepared, samples), _total_noise(prepared, samples)
     if seen is None:
         return floor
-    # Coloured noise gives few independent samples, so a clear excess is required.
-    return seen if seen > 1.04 * floor and seen < 3.0 * floor else floor
+    settings = samples.settings.noise
+    low, high = settings.min_floor_ratio * floor, settings.max_floor_ratio * floor
+    return seen if low < seen < high else floor
 
 
 def noise_upper_bound(prepared: Sequence[Prepared], samples: Samples) -> float | None:
@@ -71,23 +73,23 @@ def _dithered(p: Prepared) -> tuple[Array, float]:
 
 def _total_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
     """Total noise, N, from repeated periods and rests; None if there are too few samples."""
-    whole, weight = 0.0, 0
+    whole, weight, settings = 0.0, 0, samples.settings.noise
     for p, counted in zip(prepared, samples.counted, strict=True):
-        rests = _rest_squares(p.motion.resting, p.friction)
-        for square, count in (*rests, _repeat_square(p, counted)):
+        rests = _rest_squares(p.motion.resting, p.friction, settings)
+        for square, count in (*rests, _repeat_square(p, counted, samples.settings)):
             whole += square * count
             weight += count
-    return None if weight < 300 else float(np.sqrt(whole / weight))
+    return None if weight < settings.min_floor_samples else float(np.sqrt(whole / weight))
 
 
-def _rest_squares(resting: Mask, values: Array) -> list[tuple[float, int]]:
+def _rest_squares(resting: Mask, values: Array, settings: NoiseSettings) -> list[tuple[float, int]]:
     """Variance about a straight line in every long rest, with the number of samples."""
     edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
     found = []
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         # The beginning of a rest may still be a transient.
         begin = first + (end - first) // 4
-        if end - begin >= 60:
+        if end - begin >= settings.min_rest_samples:
             part = _detrended(values[begin:end])
             found.append((float(part @ part) / (len(part) - 2), len(part)))
     return found
@@ -101,9 +103,9 @@ def _detrended(values: Array) -> Array:
     return left
 
 
-def _repeat_square(prepared: Prepared, counted: Mask) -> tuple[float, int]:
+def _repeat_square(prepared: Prepared, counted: Mask, settings: Settings) -> tuple[float, int]:
     """Variance of the noise from the same motion a period later, and the number of samples used."""
-    shift = period_samples(prepared.motion.velocity)
+    shift = period_samples(prepared.motion.velocity, settings.periods)
     if shift is None:
         return 0.0, 0
     # The first period still contains the initial-state transient of the film.
@@ -111,7 +113,7 @@ def _repeat_square(prepared: Prepared, counted: Mask) -> tuple[float, int]:
     gap = (values[begin + shift :] - values[begin:-shift]) / np.sqrt(2.0)
     ok = counted[begin + shift :] & counted[begin:-shift]
     gap = gap[ok]
-    if len(gap) < 100:
+    if len(gap) < settings.noise.min_repeated_samples:
         return 0.0, 0
     # Slow drifts between periods are not noise and are removed. The median tolerates outliers in
     # half of the samples, such as reversals that are not aligned.

@@ -14,11 +14,11 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 REACH = 5.0
-"""Range of the scan, as a factor on the value upwards and downwards."""
+"""Range of the scan, as a factor on the value upwards and downwards. It bounds a search only."""
 POINTS = 41
-"""Number of points of the scan."""
+"""Number of points of the scan. It is a numerical resolution."""
 CLIMBED = 2
-"""Number of maxima that are followed by a search."""
+"""Number of maxima that are followed by a search. It limits the effort only."""
 
 
 def other_peaks(

@@ -27,20 +27,21 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LINES = 3
-"""Number of highest spectral lines that are tried, each after removal of the higher ones."""
-LEAST_PERIODS = 4.0
-"""Minimum number of periods within the travel.
+"""Number of highest spectral lines that are tried, each after removal of the higher ones.
 
-Longer periods are once a turn or a variation along the stroke, whose shortest wave has two and a
-half periods within it.
+It only starts a search.
 """
 BINS_A_PITCH = 4.0
-"""Number of position bins in the shortest pitch that is searched."""
+"""Number of position bins in the shortest pitch that is searched. It only starts a search."""
 MOST_BINS = 2**15
+"""Largest number of position bins. It is a numerical resolution."""
 PADDING = 8
-"""Spectral lines per resolution width."""
+"""Spectral lines per resolution width. It is a numerical resolution."""
 KNOTS = 8
-"""Number of knots in each direction of a piecewise linear friction-speed curve."""
+"""Number of knots in each direction of a piecewise linear friction-speed curve.
+
+It only starts a search.
+"""
 
 Knots = list[tuple[float, Array]]
 
@@ -72,7 +73,7 @@ def longest_pitch(campaign: Campaign) -> float:
     places = np.concatenate([p.motion.angle_rad[moving] for p, moving in pairs])
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     span = float(np.ptp(places)) * arm if len(places) else 0.0
-    return span / LEAST_PERIODS if span > 0.0 else np.inf
+    return span / campaign.settings.conditions.min_pitch_periods if span > 0.0 else np.inf
 
 
 def known_pitches(rig: Rig) -> tuple[float, ...]:
@@ -96,8 +97,8 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
         return ()
     span = float(np.ptp(place))
     fine = max(_sample_spacing(campaign), span / MOST_BINS)
-    count = int(span / fine)
-    if count < LEAST_PERIODS * BINS_A_PITCH:
+    count, least = int(span / fine), campaign.settings.conditions.min_pitch_periods
+    if count < least * BINS_A_PITCH:
         return ()
     which = np.minimum((place - place.min()) / fine, count - 1).astype(np.intp)
     signal = rest * np.sign(speed) if along else rest
@@ -105,7 +106,7 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
     length = PADDING * count
     # Number of periods within the travel for each line of the padded spectrum.
     periods = np.arange(length // 2 + 1) / PADDING * (span / (count * fine))
-    told = (periods >= LEAST_PERIODS) & (periods * BINS_A_PITCH <= count)
+    told = (periods >= least) & (periods * BINS_A_PITCH <= count)
     found: list[float] = []
     for _ in range(LINES):
         power = np.abs(np.fft.rfft(np.bincount(which, signal, count), length)) ** 2

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.left_out import INSENSITIVE, HeldOutPart
+from jbf.estimation.left_out import HeldOutPart
 from jbf.estimation.noise import Noise
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
@@ -79,14 +79,15 @@ def surprise(
     whole = np.sum([own.products for own in rows], axis=0)
     size = np.sqrt(np.diag(whole))
     size[size <= 0.0] = 1.0
-    return sum(_of(own, whole, size, variance) for own in rows)
+    least = samples.settings.held_out.min_information
+    return sum(_of(own, whole, size, variance, least) for own in rows)
 
 
-def _of(rows: _Rows, whole: Array, size: Array, variance: float) -> float:
+def _of(rows: _Rows, whole: Array, size: Array, variance: float, least: float) -> float:
     determined = rows.determined
     scale = np.outer(size[determined], size[determined])
     # A parameter that no other run determines has a prior of a hundred times its final error.
-    known = whole[np.ix_(determined, determined)] / scale + INSENSITIVE * np.eye(len(scale))
+    known = whole[np.ix_(determined, determined)] / scale + least * np.eye(len(scale))
     before = known - rows.products[np.ix_(determined, determined)] / scale
     pull = rows.pull[determined] / size[determined]
     square = rows.square - float(pull @ np.linalg.solve(known, pull))

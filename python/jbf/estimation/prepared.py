@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
+from jbf.estimation.settings import DEFAULT, MotionSettings
 from jbf.models.chain import imposed_as_read
 from jbf.models.driven import Driven
 from jbf.models.driven_motion import driven_motion
@@ -34,13 +35,11 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 
-APART = 2
-"""Spacing of the samples of a coast-down, in correlation lengths of the acceleration's errors.
-
-The correlation length is the lag at which the correlation vanishes.
-"""
 FINER = 1.5
-"""Ratio of the sampling rates of motion and force above which all motion samples are used."""
+"""Ratio of the sampling rates of motion and force above which all motion samples are used.
+
+It is a numerical resolution.
+"""
 
 
 def slides(motion: ImposedMotion) -> Mask:
@@ -112,6 +111,7 @@ class Prepared:
         run: Run,
         period_s: float | None = None,
         starts: Sequence[ReadingErrors] = (),
+        settings: MotionSettings = DEFAULT.motion,
     ) -> Prepared:
         """Estimate the motion of a run.
 
@@ -121,6 +121,8 @@ class Prepared:
             Sampling interval of the force in other runs of the same logger, if known, s.
         starts
             Errors of the readings of other runs of the same logger.
+        settings
+            Settings of the motion.
 
         Raises
         ------
@@ -153,7 +155,7 @@ class Prepared:
             examined = Examined((), np.ones(len(run), dtype=bool))
         else:
             recorded = recorded or (instants, motion)
-            run = run.select(_independent(motion))
+            run = run.select(_independent(motion, settings.coast_down_spacing))
             motion = motion.at(recorded[0], run.time_s)
             run = replace(run, friction=frozen(-moved * motion.acceleration))
             examined = Examined((_derived(run, moved),), np.ones(len(run), dtype=bool))
@@ -267,7 +269,7 @@ class Prepared:
         return {name: value for name, value in vars(self).items() if name != "core"}
 
 
-def _independent(motion: ImposedMotion) -> Mask:
+def _independent(motion: ImposedMotion, spacing: float) -> Mask:
     """Mask of samples whose acceleration errors are independent, shape (n,).
 
     The covariance of the errors at two times is the product of the smoother gains between them and
@@ -281,7 +283,7 @@ def _independent(motion: ImposedMotion) -> Mask:
     while lag < middle and shared[2, 2] > 0.0:
         lag += 1
         shared = errors.gain[middle - lag] @ shared
-    every = int(np.clip(APART * lag, 1, max(count // MIN_SAMPLES, 1)))
+    every = int(np.clip(spacing * lag, 1, max(count // MIN_SAMPLES, 1)))
     kept: Mask = np.arange(count) % every == 0
     return kept
 

@@ -42,9 +42,15 @@ Lines = tuple[list[Array], list[Array]]
 """Residuals and derivatives of the prediction by the search variables, one array a run each."""
 
 SLOPES_COST = 2.0
-"""Cost of a prediction with derivatives relative to one without."""
+"""Cost of a prediction with derivatives relative to one without.
+
+It limits the effort only.
+"""
 BOUNDLESS = 1e50
-"""Derivatives above this are treated as diverged, since a search squares them."""
+"""Derivatives above this are treated as diverged, since a search squares them.
+
+It is a numerical tolerance.
+"""
 
 
 class Best:
@@ -229,9 +235,9 @@ class Problem:
 
     def _settled(self, samples: Samples, values: Array, noise_rms: float) -> Samples:
         """Samples without the initial-state transient of their run."""
-        prepared = self.campaign.prepared
-        for memory in memories(self.law, self.effects):
-            masks = remembering(self.chain, values, prepared, memory, noise_rms)
+        prepared, settings = self.campaign.prepared, self.campaign.settings.transient
+        for memory in memories(self.law, self.effects, settings):
+            masks = remembering(self.chain, values, prepared, memory, noise_rms, settings)
             samples = samples.within([~mask for mask in masks])
         return samples
 

@@ -22,16 +22,22 @@ from jbf.models.catalogue import Parameter
 Array = npt.NDArray[np.float64]
 
 SAME_IN_NOISE = 1e-4
-"""Largest difference of equal predictions, as a fraction of the residual."""
+"""Largest difference of equal predictions, as a fraction of the residual.
+
+It is a numerical tolerance.
+"""
 SAME_IN_FRICTION = 1e-9
-"""Largest difference of equal predictions, as a fraction of the friction."""
+"""Largest difference of equal predictions, as a fraction of the friction.
+
+It is a numerical tolerance.
+"""
 SLIDING = {"F_s": "F_c"}
 """Breakaway force of a law, and the sliding force that it equals without a peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
 """Fractions of the distance to the start that are tried.
 
 If the starting value itself changes the prediction, a partial reset may still give a less extreme
-value.
+value. It is a numerical resolution.
 """
 
 

@@ -9,7 +9,10 @@ from scipy import special
 Array = npt.NDArray[np.float64]
 
 ROUNDING = 1e-9
-"""Fraction of the total precision below which the precision of other runs is a rounding error."""
+"""Fraction of the total precision below which the precision of other runs is a rounding error.
+
+It is a numerical tolerance.
+"""
 
 
 def spread_between(estimates: Array, precisions: Array) -> tuple[float, float, float]:

@@ -10,10 +10,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.campaign import MOTION_SHARE, Campaign
+from jbf.estimation.campaign import Campaign
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.joint_lateness import delay_slope, delay_step
-from jbf.estimation.minimum import MOST_FORGIVEN
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared, coasting
 from jbf.estimation.problem import Problem
@@ -26,42 +25,33 @@ from jbf.records.motion.imposed import ImposedMotion
 
 Array = npt.NDArray[np.float64]
 
-NEGLIGIBLE = 0.01
-"""Mean share of the motion's errors in the variance below which they are neglected."""
-EXACT = 1e-3
-"""Mean share below which a delayed force is a defect of the model and not of the clocks."""
 ROUNDS = 8
-"""Largest number of iterations of sensitivities and fits."""
+"""Largest number of iterations of sensitivities and fits. It limits the effort only."""
 SETTLED = 0.01
-"""Change of the prediction, relative to the noise, at which the iteration stops."""
+"""Change of the prediction, relative to the noise, at which the iteration stops.
+
+It is a numerical tolerance.
+"""
 EVALUATIONS = 20
-"""Evaluations of each fit."""
+"""Evaluations of each fit. It limits the effort only."""
 STEP = 0.5
-"""Step of the numerical derivatives by the motion, in standard errors of the motion."""
-ROUGHER = 30.0
-"""Factor on the noise intensity used to examine the effect of the smoothing."""
-SCALE_KNOWN = 1.0
-"""Prior standard deviation of the logarithm of the scale of the motion's errors."""
+"""Step of the numerical derivatives by the motion, in standard errors of the motion.
+
+It is a numerical resolution.
+"""
 SIMPLEX = 0.3
-"""Size of the first simplex in the logarithms of noise and scale."""
+"""Size of the first simplex in the logarithms of noise and scale. It only starts a search."""
 EXACT_RECORD = 1e-12
-"""Smallest residual relative to the largest force."""
+"""Smallest residual relative to the largest force. It is a numerical tolerance."""
 LEAST_NOISE = -7.0
-"""Logarithm of the smallest noise, relative to the residual."""
+"""Logarithm of the smallest noise, relative to the residual. It bounds a search only."""
 INTENSITY_STEP = 3.0
-"""Factor on the noise intensity between two motions whose likelihoods are compared."""
+"""Factor on the noise intensity between two motions whose likelihoods are compared.
+
+It is a numerical resolution.
+"""
 LEAST_INTENSITY = 1e-4
-"""Smallest factor on the intensity, and the reciprocal of the largest."""
-SMOOTHNESS_GAIN = 10.0
-"""Decrease of the deviance required to change the intensity."""
-HUBER = 2.5
-"""Limit of the influence of a residual, in its standard errors due to noise and motion."""
-DELAYED = 5.0
-"""Significance, in standard errors, from which a delay of the force in all runs is corrected."""
-UNCERTAIN = 9.0
-"""Difference of the deviance up to which the clock of the force is not identifiable."""
-LONGEST_DELAY = 2.0
-"""Longest delay of the force, in samples."""
+"""Smallest factor on the intensity, and the reciprocal of the largest. It bounds a search only."""
 
 
 def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
@@ -89,13 +79,15 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     motion = best.solution.samples.motion
     if motion is None:
         return best.problem, best.solution
-    large = motion.mean_share(best.solution.samples.weight) > MOTION_SHARE
-    if not large and best.solution.rms > MOST_FORGIVEN * plain_fit.rms:
+    settings = problem.campaign.settings
+    share = motion.mean_share(best.solution.samples.weight)
+    large = share > settings.conditions.max_motion_share
+    if not large and best.solution.rms > settings.noise.max_rms_ratio * plain_fit.rms:
         return plain, plain_fit
-    changes = [_with_smoothing(best)]
+    changes, unclear = [_with_smoothing(best)], settings.motion.max_clock_deviance
     for other in ends:
         # The difference between fits of similar likelihood is part of the standard errors.
-        if other is not best and other.deviance - best.deviance < UNCERTAIN:
+        if other is not best and other.deviance - best.deviance < unclear:
             values = best.problem.encode(best.solution.values)
             changes.append(best.problem.encode(other.solution.values) - values)
     change = np.sqrt(np.sum(np.square(changes), axis=0))
@@ -148,7 +140,7 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
 
     With `delays`, a significant delay common to all runs is estimated as well.
     """
-    problem, late_s = first, clock_s
+    problem, late_s, settings = first, clock_s, first.campaign.settings.motion
     delays = delays and first.campaign.force_has_clock
     if clock_s != 0.0:
         problem = _delayed(first, late_s)
@@ -156,10 +148,10 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
     for _ in range(ROUNDS):
         motion = errors_in_motion(problem, solution)
         share = motion.mean_share(solution.samples.weight)
-        if late_s == 0.0 and share < EXACT:
+        if late_s == 0.0 and share < settings.min_delay_share:
             break
         step_s = _delay(first, problem, solution, motion, late_s, clock_s) if delays else 0.0
-        if late_s == step_s == 0.0 and share < NEGLIGIBLE:
+        if late_s == step_s == 0.0 and share < settings.min_share:
             break
         if step_s != 0.0:
             late_s += step_s
@@ -177,7 +169,8 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
 def _with_smoothing(end: _End) -> Array:
     """Change of each search variable if the motion is smoothed less, shape (k,)."""
     problem, solution = end.problem, end.solution
-    other = _rougher(problem, ROUGHER, same_corners=True)
+    factor = problem.campaign.settings.motion.roughness_factor
+    other = _rougher(problem, factor, same_corners=True)
     near = other.solution(solution.values, solution.samples, WHITE)
     near = _fitted(other, near, errors_in_motion(other, near), delayed=end.delayed)
     return problem.encode(near.values) - problem.encode(solution.values)
@@ -190,8 +183,9 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
     """
     if not problem.campaign.force_has_clock:
         return problem, solution
+    settings = problem.campaign.settings
     motion = errors_in_motion(problem, solution)
-    if motion.mean_share(solution.samples.weight) < MOTION_SHARE:
+    if motion.mean_share(solution.samples.weight) < settings.conditions.max_motion_share:
         return problem, solution
     samples = solution.samples
 
@@ -199,7 +193,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         near = tried.solution(solution.values, samples, WHITE)
         found = _fitted(tried, near, errors_in_motion(tried, near))
         own = errors_in_motion(tried, found)
-        deviance = _penalised(own, found.residuals, samples.weight)
+        deviance = _penalised(tried, own, found.residuals, samples.weight)
         return deviance, replace(found, samples=samples)
 
     first, factor = problem, 1.0
@@ -208,7 +202,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         while LEAST_INTENSITY < factor * change < 1.0 / LEAST_INTENSITY:
             tried = _rougher(first, factor * change)
             own, found = fitted_with(tried)
-            if own >= least - SMOOTHNESS_GAIN:
+            if own >= least - settings.motion.min_smoothness_gain:
                 break
             least, problem, solution, factor = own, tried, found, factor * change
         if factor != 1.0:
@@ -275,7 +269,7 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
         return replace(motion, noise=most * float(np.exp(x[0])), scale=float(np.exp(x[1])))
 
     def deviance(x: Array) -> float:
-        return _penalised(at(x), solution.residuals, weights)
+        return _penalised(problem, at(x), solution.residuals, weights)
 
     from scipy.optimize import minimize  # half a second to import
 
@@ -301,10 +295,13 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
 
 
 def _penalised(
-    motion: ErrorsInMotion, residuals: Sequence[Array], weights: Sequence[Array]
+    problem: Problem,
+    motion: ErrorsInMotion,
+    residuals: Sequence[Array],
+    weights: Sequence[Array],
 ) -> float:
     """Deviance including the prior of the scale."""
-    prior = (float(np.log(motion.scale)) / SCALE_KNOWN) ** 2
+    prior = (float(np.log(motion.scale)) / problem.campaign.settings.motion.scale_prior) ** 2
     return motion.deviance(residuals, weights) + prior
 
 
@@ -317,10 +314,11 @@ def _fitted(
         slopes = tuple(delay_slope(problem, values, p) for p in prepared)
         motion = replace(motion, by_delay=slopes)
     plain, weights = problem.samples_at(values), []
+    huber = problem.campaign.settings.motion.huber_sigma
     for i, (residual, weight) in enumerate(zip(near.residuals, plain.weight, strict=True)):
         sd = motion.noise * np.sqrt(1.0 + motion.variance_ratio(i))
         off = np.maximum(np.abs(residual) / sd, 1e-300)
-        weights.append(weight * np.sqrt(np.minimum(1.0, HUBER / off)))
+        weights.append(weight * np.sqrt(np.minimum(1.0, huber / off)))
     samples = replace(plain, weight=tuple(weights), motion=motion)
     found = search(problem, samples, values, WHITE, EVALUATIONS)
     end = problem.wrapped(found.values)
@@ -340,9 +338,10 @@ def _delay(
         return 0.0
     white = replace(solution, samples=replace(solution.samples, motion=motion), noise=WHITE)
     step_s, sd_s = delay_step(problem, white)
-    if late_s == clock_s and abs(step_s) < DELAYED * sd_s:
+    settings = problem.campaign.settings.motion
+    if late_s == clock_s and abs(step_s) < settings.min_delay_sigma * sd_s:
         return 0.0
-    most_s = LONGEST_DELAY * min(p.step_s for p in first.campaign.prepared)
+    most_s = settings.max_delay_samples * min(p.step_s for p in first.campaign.prepared)
     if not np.isfinite(sd_s) or abs(late_s + step_s) > most_s:
         return 0.0
     return step_s if abs(step_s) > SETTLED * sd_s else 0.0
@@ -355,7 +354,9 @@ def _delayed(first: Problem, late_s: float) -> Problem:
     way = "late" if late_s > 0.0 else "early"
     words = f"the force is {1e3 * abs(late_s):.2g} ms {way} relative to the motion in all runs"
     finding = Finding("late_channel", "friction_n", names, late_s, "s", "shifted", words)
-    campaign = replace(first.campaign, prepared=prepared, samples=Samples.of(prepared))
+    campaign = replace(
+        first.campaign, prepared=prepared, samples=Samples.of(prepared, first.campaign.settings)
+    )
     return _with(first, campaign.with_findings([finding]))
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jbf.estimation.settings import DEFAULT, PeriodSettings
+
 Array = npt.NDArray[np.float64]
 
 
-def period_samples(velocity: Array) -> int | None:
+def period_samples(velocity: Array, settings: PeriodSettings = DEFAULT.periods) -> int | None:
     """Period of a repeated motion in samples, or None."""
     n = len(velocity)
-    if n < 100 or np.ptp(velocity) == 0.0:
+    if n < settings.min_samples or np.ptp(velocity) == 0.0:
         return None
     centred = velocity - velocity.mean()
     power = np.fft.irfft(np.abs(np.fft.rfft(centred, 2 * n)) ** 2)[: n // 2 + n // 4]
@@ -23,7 +25,9 @@ def period_samples(velocity: Array) -> int | None:
     start = int(falls[0])
     inner = rho[start:-1]
     tops = start + np.flatnonzero(
-        (inner > rho[start - 1 : -2]) & (inner >= rho[start + 1 :]) & (inner > 0.9)
+        (inner > rho[start - 1 : -2])
+        & (inner >= rho[start + 1 :])
+        & (inner > settings.min_correlation)
     )
     if not len(tops):
         return None
@@ -36,4 +40,4 @@ def period_samples(velocity: Array) -> int | None:
         for shift in range(max(peak - reach, 1), min(peak + reach + 1, n - 1))
     }
     best = min(gaps, key=gaps.__getitem__)
-    return best if gaps[best] < 0.02 * float(np.std(velocity)) else None
+    return best if gaps[best] < settings.max_difference * float(np.std(velocity)) else None

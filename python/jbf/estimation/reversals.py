@@ -16,7 +16,10 @@ from jbf.estimation.prepared import Prepared
 Array = npt.NDArray[np.float64]
 
 MOST = 0.29
-"""Standard deviation of a uniform position between two samples, relative to their distance."""
+"""Standard deviation of a uniform position between two samples, relative to their distance.
+
+It follows from the estimator.
+"""
 
 
 def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:

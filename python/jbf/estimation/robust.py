@@ -7,9 +7,6 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-CLIPPED = 3.5
-"""Limit of the contribution of an error, in standard deviations."""
-
 
 def robust_size(values: Array) -> float:
     """Standard deviation estimated from the median; zero without values, as for an excluded run."""
@@ -18,6 +15,6 @@ def robust_size(values: Array) -> float:
     return float(np.median(np.abs(values))) / 0.6745
 
 
-def clipped_square(errors: Array, size: float) -> float:
-    """Sum of squares with each error clipped at `CLIPPED` times the standard deviation `size`."""
-    return float(np.sum(np.minimum(errors**2, (CLIPPED * size) ** 2)))
+def clipped_square(errors: Array, size: float, clip_sigma: float) -> float:
+    """Sum of squares with errors clipped at `clip_sigma` standard deviations of `size`."""
+    return float(np.sum(np.minimum(errors**2, (clip_sigma * size) ** 2)))

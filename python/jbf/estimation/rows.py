@@ -16,12 +16,18 @@ Array = npt.NDArray[np.float64]
 MOST_HELD = 2_000_000
 """Largest number of values (samples times parameters) that a solution holds.
 
-Larger results are computed again for each access.
+Larger results are computed again for each access. It limits the effort only.
 """
 MOST_SEARCHED = 400_000
-"""Largest number of samples in a search; with more, a selection of runs is sufficient."""
+"""Largest number of samples in a search; with more, a selection of runs is sufficient.
+
+It limits the effort only.
+"""
 GROUP = 16_000_000
-"""Largest number of derivatives held at a time during the computation of a solution."""
+"""Largest number of derivatives held at a time during the computation of a solution.
+
+It limits the effort only.
+"""
 
 
 class OnDemand(Sequence[Array]):

@@ -15,7 +15,7 @@ from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_gaps import samples_affected_by_gaps
 from jbf.estimation.film_rate import check_film
-from jbf.estimation.initial_state import REMEMBERED, has_unknown_start, memories, remembering
+from jbf.estimation.initial_state import has_unknown_start, memories, remembering
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
@@ -27,12 +27,11 @@ from jbf.records.findings.finding import Finding
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-OFF = 2.0
-"""Ratio to the usual residual above which the start of a run is reported."""
 RANKING_EVALUATIONS = 8
-"""Evaluations of a fit that is accurate enough to estimate the rate of the film."""
-NO_MORE = 1e-3
-"""Fraction of the samples below which no new fit is needed."""
+"""Evaluations of a fit that is accurate enough to estimate the rate of the film.
+
+It limits the effort only.
+"""
 
 
 def unsettled(problem: Problem, values: Array, noise_rms: float) -> list[Mask]:
@@ -45,10 +44,10 @@ def unsettled(problem: Problem, values: Array, noise_rms: float) -> list[Mask]:
     noise_rms
         Noise on the friction, N.
     """
-    prepared = problem.campaign.prepared
+    prepared, settings = problem.campaign.prepared, problem.campaign.settings.transient
     found = [np.zeros(len(p.run), dtype=bool) for p in prepared]
-    for memory in memories(problem.law, problem.effects):
-        more = remembering(problem.chain, values, prepared, memory, noise_rms)
+    for memory in memories(problem.law, problem.effects, settings):
+        more = remembering(problem.chain, values, prepared, memory, noise_rms, settings)
         found = [before | mask for before, mask in zip(found, more, strict=True)]
     return found
 
@@ -86,7 +85,8 @@ def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
     values = np.array([known[name] for name in less.names])
     found = _settled(less, values, solution.residuals)
     gone = campaign.samples.count - found.samples.count
-    return found if gone > NO_MORE * campaign.samples.count else None
+    least = campaign.settings.transient.min_new_share
+    return found if gone > least * campaign.samples.count else None
 
 
 def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Campaign:
@@ -94,7 +94,8 @@ def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Cam
     campaign = problem.campaign
     noise_rms = noise_floor(campaign.prepared, campaign.samples)
     masks = unsettled(problem, values, noise_rms)
-    behind = samples_affected_by_gaps(problem, values, REMEMBERED * noise_rms)
+    least_n = campaign.settings.transient.max_difference * noise_rms
+    behind = samples_affected_by_gaps(problem, values, least_n)
     if not any(m.any() for m in (*masks, *behind)):
         return campaign
     kept = campaign.without(masks).without(behind)
@@ -125,7 +126,7 @@ def _findings(
         if not begun.any():
             continue
         size = float(np.sqrt(np.mean(r[begun] ** 2)))
-        if size < OFF * usual:
+        if size < campaign.settings.transient.min_reported_ratio * usual:
             continue
         span = float(p.run.time_s[mask][-1] - p.run.time_s[mask][0])
         words = f"the {what} when the run began: {span:.2g} s, off by {size:.2g} N"

@@ -21,6 +21,7 @@ from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
+from jbf.estimation.settings import DEFAULT, Settings
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -50,6 +51,8 @@ class Samples:
         noise.
     motion
         Errors of the motion in the residuals; None where they are neglected.
+    settings
+        Settings of the statistics of these samples.
     """
 
     runs: tuple[str, ...]
@@ -59,9 +62,10 @@ class Samples:
     between: BetweenRuns | None = None
     level: tuple[Array, ...] | None = None
     motion: ErrorsInMotion | None = None
+    settings: Settings = DEFAULT
 
     @classmethod
-    def of(cls, prepared: Iterable[Prepared]) -> Samples:
+    def of(cls, prepared: Iterable[Prepared], settings: Settings = DEFAULT) -> Samples:
         """Select the samples that slide in a known direction and have a usable reading."""
         prepared = tuple(prepared)
         counted = tuple(p.slides & p.examined.usable for p in prepared)
@@ -70,6 +74,7 @@ class Samples:
             tuple(p.step_s for p in prepared),
             counted,
             tuple(c.astype(float) for c in counted),
+            settings=settings,
         )
 
     @property
@@ -89,6 +94,7 @@ class Samples:
             None if self.between is None else self.between.only(which),
             None if self.level is None else tuple(self.level[i] for i in which),
             None if self.motion is None else self.motion.only(which),
+            self.settings,
         )
 
     def within(self, masks: Sequence[Mask]) -> Samples:

@@ -18,7 +18,10 @@ Array = npt.NDArray[np.float64]
 
 Mask = npt.NDArray[np.bool_]
 HUM = 0.02
-"""Fraction of the top speed below which a speed is not used for a scale."""
+"""Fraction of the top speed below which a speed is not used for a scale.
+
+It only starts a search.
+"""
 
 
 @dataclass(frozen=True)

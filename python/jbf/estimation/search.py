@@ -22,17 +22,20 @@ Array = npt.NDArray[np.float64]
 Method = Literal["dogbox", "trf"]
 
 NEAR = 0.3
-"""Largest relative difference of each parameter between two points that are close."""
+"""Largest relative difference of each parameter between two points that are close.
+
+It is a numerical tolerance.
+"""
 SAME = 0.1
 """Largest difference of the predictions at equivalent points, as a fraction of the residual.
 
 Both linear models must give at most this difference; the sums of squares then differ by about one
-hundredth.
+hundredth. It is a numerical tolerance.
 """
 
 
 ENDED = 1e-6
-"""Relative difference of sums of squares at which a search ends."""
+"""Relative difference of sums of squares at which a search ends. It is a numerical tolerance."""
 
 
 @dataclass(frozen=True)

@@ -19,11 +19,20 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 INSENSITIVE = 1e-9
-"""Fraction of the largest derivative below which the runs do not depend on a parameter."""
+"""Fraction of the largest derivative below which the runs do not depend on a parameter.
+
+It is a numerical tolerance.
+"""
 SINGULAR = 1e12
-"""Condition number of the normal equations above which parameters cannot be separated."""
+"""Condition number of the normal equations above which parameters cannot be separated.
+
+It is a numerical tolerance.
+"""
 TAKES_PART = 1e-3
-"""Weight in an unidentifiable combination above which a parameter takes part in it."""
+"""Weight in an unidentifiable combination above which a parameter takes part in it.
+
+It is a numerical tolerance.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +105,7 @@ def _inflation(solution: Solution, covariance: Array, moved: Mask) -> Array:
     A parameter follows a weighted sum of the innovations, whose variance is estimated from them
     (Newey & West 1987).
     """
-    samples = solution.samples
+    samples, settings = solution.samples, solution.samples.settings.variance
     parts = [
         samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
         for i in range(len(samples.runs))
@@ -110,8 +119,8 @@ def _inflation(solution: Solution, covariance: Array, moved: Mask) -> Array:
     found = []
     for k in range(len(covariance)):
         own = [a[:, k] for a in influence]
-        ratio = score_inflation(own, innovations, samples.steps_s)
-        found.append(np.sqrt(max(ratio, between_runs(own, innovations, ratio))))
+        ratio = score_inflation(own, innovations, samples.steps_s, settings)
+        found.append(np.sqrt(max(ratio, between_runs(own, innovations, ratio, settings))))
     ratios: Array = np.array(found)
     return ratios
 

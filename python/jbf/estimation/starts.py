@@ -21,11 +21,10 @@ from jbf.records.findings.slow_temperature import recorded_temperature
 
 Starts = tuple[float, ...]
 CELL_ERROR = 0.03
-"""Initial error of a load cell in a search, as a fraction of the largest force."""
-LATEST = 0.1
-"""Longest delay or lag that is searched, as a fraction of the shortest run."""
-FASTEST_FILM = 5.0
-"""Ratio of the highest transition speed in a search to the highest recorded speed."""
+"""Initial error of a load cell in a search, as a fraction of the largest force.
+
+It only starts a search.
+"""
 
 
 def _stiffness(s: Scales) -> Starts:
@@ -129,7 +128,9 @@ def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
     and its equations become stiff.
     """
     top = max(float(np.max(np.abs(p.motion.velocity))) for p in campaign.prepared)
-    upper = min(page.upper, max(FASTEST_FILM * top, 2.0 * max(page.starts)))
+    upper = min(
+        page.upper, max(campaign.settings.film.max_speed_ratio * top, 2.0 * max(page.starts))
+    )
     return replace(page, upper=upper)
 
 
@@ -146,7 +147,8 @@ def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
     longest run, since slower processes are not visible in it.
     """
     durations = [p.run.duration_s for p in campaign.prepared]
-    most = LATEST * min(durations) if page.start == "lateness" else max(durations)
+    share = campaign.settings.delays.max_run_share
+    most = share * min(durations) if page.start == "lateness" else max(durations)
     upper = min(page.upper, most)
     return replace(page, upper=upper) if upper > page.lower else page
 

@@ -8,11 +8,12 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.scales import moving_samples
 
 SHORTEST_M = 1e-9
-"""Shortest stroke, m; used for a drive that does not move."""
+"""Shortest stroke, m; used for a drive that does not move. It is a numerical tolerance."""
 BEYOND = 0.1
 """Margin of the stroke at either end, as a fraction of the travel of the runs.
 
 Waves whose slope vanishes at the ends of the stroke can then describe a slope at those of the runs.
+It defines an effect, not a criterion.
 """
 
 

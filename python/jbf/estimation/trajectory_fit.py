@@ -31,7 +31,10 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 REST_SHARE = 1e-9
-"""Fraction of the top speed below which a sample is at rest: friction is set-valued there."""
+"""Fraction of the top speed below which a sample is at rest: friction is set-valued there.
+
+It enters no verdict.
+"""
 
 
 @dataclass(frozen=True, repr=False)

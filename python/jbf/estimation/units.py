@@ -8,17 +8,13 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.prepared import Prepared
+from jbf.estimation.settings import DEFAULT, HeldOutSettings
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Strokes = npt.NDArray[np.intp]
 Units = list[tuple[int, Mask]]
 """Index of a run, and a mask of those of its counting samples that belong to the unit."""
-
-LEAST_UNITS = 6
-"""Smallest number of independent units for a paired test over them."""
-LEAST_SAMPLES = 16
-"""Smallest number of samples of a stroke that counts as a unit."""
 
 
 def stroke_of(p: Prepared) -> Strokes:
@@ -35,8 +31,12 @@ def stroke_of(p: Prepared) -> Strokes:
     return found
 
 
-def independent_units(counted: Mapping[int, Mask], prepared: Sequence[Prepared]) -> Units:
-    """Divide samples into units: runs, or strokes where there are fewer than `LEAST_UNITS` runs.
+def independent_units(
+    counted: Mapping[int, Mask],
+    prepared: Sequence[Prepared],
+    settings: HeldOutSettings = DEFAULT.held_out,
+) -> Units:
+    """Divide samples into units: runs, or strokes where there are fewer runs than `min_units`.
 
     Parameters
     ----------
@@ -46,11 +46,11 @@ def independent_units(counted: Mapping[int, Mask], prepared: Sequence[Prepared])
         All runs; without them, the runs are the units.
     """
     runs = {i: mask for i, mask in counted.items() if mask.any()}
-    if len(runs) >= LEAST_UNITS or not prepared:
+    if len(runs) >= settings.min_units or not prepared:
         return [(i, np.ones(np.count_nonzero(mask), dtype=bool)) for i, mask in runs.items()]
     units = []
     for i, mask in runs.items():
         stroke = stroke_of(prepared[i])[mask]
         members = [stroke == k for k in range(int(np.max(stroke, initial=-1)) + 1)]
-        units += [(i, own) for own in members if np.count_nonzero(own) >= LEAST_SAMPLES]
+        units += [(i, own) for own in members if np.count_nonzero(own) >= settings.min_unit_samples]
     return units

@@ -25,18 +25,24 @@ Array = npt.NDArray[np.float64]
 TUNING = 1.345
 """Huber's constant: limit of the influence of a residual, in robust standard deviations.
 
-The efficiency is 95 % of least squares for Gaussian noise (Huber 1964).
+The efficiency is 95 % of least squares for Gaussian noise (Huber 1964). It enters no verdict.
 """
 FREEDOM = 3.0
-"""Degrees of freedom of Student's t."""
+"""Degrees of freedom of Student's t. It enters no verdict."""
 ROUNDS = 4
-"""Number of iterations of weights and fits."""
+"""Number of iterations of weights and fits. It limits the effort only."""
 ELSEWHERE = 0.05
-"""Difference of predictions, as a fraction of the residual's RMS, above which estimates differ."""
+"""Difference of predictions, as a fraction of the residual's RMS, above which estimates differ.
+
+It enters no verdict.
+"""
 BETTER = 0.97
-"""Ratio of held-out RMS values below which one counts as smaller."""
+"""Ratio of held-out RMS values below which one counts as smaller. It enters no verdict."""
 NO_WORSE, SHARPER = 1.02, 0.8
-"""Ratio of held-out RMS values that is accepted, and ratio of medians required with it."""
+"""Ratio of held-out RMS values that is accepted, and ratio of medians required with it.
+
+It enters no verdict.
+"""
 
 
 def best_weighting(problem: Problem, plain: Solution) -> Solution:

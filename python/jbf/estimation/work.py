@@ -14,10 +14,14 @@ from jbf.errors import Unfinished
 STEPS_A_SAMPLE = 1e5
 """Inner steps per sample that a diagnosis may take.
 
-This is ten times the number of the most expensive diagnoses that end in a verdict.
+This is ten times the number of the most expensive diagnoses that end in a verdict. It bounds the
+computing time only.
 """
 ANY_STEPS = 4e8
-"""Inner steps that are permitted for any number of samples: one or two minutes."""
+"""Inner steps that are permitted for any number of samples: one or two minutes.
+
+It limits the effort only.
+"""
 
 
 @dataclass

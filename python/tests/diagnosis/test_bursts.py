@@ -1,7 +1,6 @@
 """Bursts of large innovations of one sign: thresholds, times, sizes and shares in closed form."""
 
 import re
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -42,7 +41,7 @@ def bursts_in(
 ) -> list[Remainder]:
     campaign = campaign_of(*(len(e) for e in innovations))
     samples = campaign.samples if counted is None else campaign.samples.within([counted])
-    given = replace(DEFAULT, **policy)
+    given = DEFAULT.with_values(policy)
     return find_bursts(campaign.prepared, samples, innovations, residuals or innovations, given)
 
 
@@ -64,8 +63,8 @@ def test_burst_is_reported_with_its_size_time_and_share_in_any_unit(unit: float)
     assert largest_n(found) == pytest.approx(8.0 * unit)
     assert found.share == pytest.approx(SHARE_8)
     assert bursts_in(unit * quiet()) == []
-    assert bool(bursts_in(signal, burst_share=0.99 * SHARE_8))
-    assert bursts_in(signal, burst_share=1.01 * SHARE_8) == []
+    assert bool(bursts_in(signal, **{"bursts.min_share": 0.99 * SHARE_8}))
+    assert bursts_in(signal, **{"bursts.min_share": 1.01 * SHARE_8}) == []
 
 
 @pytest.mark.parametrize(("size", "large"), [(4.95, False), (5.0, False), (5.05, True)])
@@ -91,7 +90,9 @@ def test_burst_requires_a_significant_correlation_of_neighbours(part: float, fou
     mean_square = (4 * 9.0 + (N - 4) * UNIT**2) / N
     product = 3 * 9.0 + 3.0 * (quiet()[999] + quiet()[1004])
     probability = float(special.ndtr(-product / np.sqrt(5 * 9.0 * mean_square)))
-    assert bool(bursts_in(with_bursts({1000: 8.0}), burst_chance=part * probability)) == found
+    assert (
+        bool(bursts_in(with_bursts({1000: 8.0}), **{"bursts.chance": part * probability})) == found
+    )
 
 
 @pytest.mark.parametrize(("gap_s", "count"), [(0.44, 1), (0.56, 2)])

@@ -147,7 +147,7 @@ def test_effect_with_many_likelihood_peaks_may_differ_by_run(rig: Rig, runs: lis
 
 
 def test_disagreement_must_exceed_a_ratio_and_the_chi_square_quantile() -> None:
-    ratio, chance = DEFAULT.constancy_ratio, DEFAULT.constancy_chance
+    ratio, chance = DEFAULT.constancy.min_ratio, DEFAULT.constancy.chance
     assert not Disagreement(ratio * 400, 400, {}).beyond_chance()
     assert Disagreement(ratio * 400 + 1.0, 400, {}).beyond_chance()
     quantile = float(stats.chi2.isf(chance, 3))
@@ -155,7 +155,7 @@ def test_disagreement_must_exceed_a_ratio_and_the_chi_square_quantile() -> None:
     for part, significant in ((0.99, False), (1.01, True)):
         assert Disagreement(part * quantile, 3, {}).beyond_chance() == significant
     assert not Disagreement(1e9, 0, {}).beyond_chance()
-    easy = replace(DEFAULT, constancy_chance=0.5, constancy_ratio=1.0)
+    easy = DEFAULT.with_values({"constancy.chance": 0.5, "constancy.min_ratio": 1.0})
     assert Disagreement(3.5, 3, {}).beyond_chance(easy)
 
 
@@ -176,7 +176,7 @@ def test_correlated_noise_that_is_not_modelled_is_not_disagreement() -> None:
         slow = [signal.lfilter([1.0], [1.0, -keep], e) for e in white_noise(campaign, seed)]
         assert not disagreement(*solution_with(campaign, slow)).beyond_chance()
         gain = by_regression(slow, np.column_stack([LEVEL] * 8).T.reshape(-1, 1))[0]
-        assert gain > DEFAULT.constancy_ratio * 3
+        assert gain > DEFAULT.constancy.min_ratio * 3
 
 
 def solved(other: Friction, noise_rms: float) -> tuple[Problem, Solution]:

@@ -1,6 +1,5 @@
 """Proposed next runs: motions, separation of models, and the optimum over all candidates."""
 
-from dataclasses import replace
 from functools import cache
 
 import jbf
@@ -20,7 +19,6 @@ from jbf.diagnosis.power import power
 from jbf.diagnosis.separation import MOST_SAMPLES, Rival, filled_limits, motions, run_from_motion
 from jbf.diagnosis.strength import strength_of
 from jbf.diagnosis.unseen import (
-    STRENGTHS,
     mean_detection_probability,
     propose_detection_run,
     undetectable_effects,
@@ -33,7 +31,7 @@ from scipy import stats
 LIMITS = Limits(duration_s=10.0)
 PAIR = (("sensor_offset",), ("inertia",))
 OTHER = (("sensor_drift",), ("quadratic_drag",))
-ANY_EVIDENCE = replace(DEFAULT, least_separation=1e-6)
+ANY_EVIDENCE = DEFAULT.with_values({"experiments.min_evidence": 1e-6})
 
 
 def friction(t: Array, v: Array, a: Array) -> Array:
@@ -107,7 +105,11 @@ def test_separation_of_a_proposed_run_is_the_root_mean_square_difference() -> No
 def test_run_with_a_separation_below_the_policy_limit_is_not_proposed() -> None:
     evidence = proposed(1).evidence
     enough, too_little = (
-        propose(four_effects(replace(DEFAULT, least_separation=part * evidence)), [PAIR], LIMITS)
+        propose(
+            four_effects(DEFAULT.with_values({"experiments.min_evidence": part * evidence})),
+            [PAIR],
+            LIMITS,
+        )
         for part in (0.999, 1.001)
     )
     assert isinstance(enough, Experiment)
@@ -214,9 +216,13 @@ def test_effect_that_changes_no_prediction_is_not_reported_as_hidden() -> None:
 @pytest.mark.parametrize("evidence", [0.0, 10.0, 40.0, 200.0])
 def test_probability_to_name_an_effect_is_the_mean_over_three_strengths(evidence: float) -> None:
     """The gain of one parameter is noncentral chi-square with one degree of freedom."""
-    assert STRENGTHS == (0.6, 1.0, 1.5)
-    expected = np.mean([stats.ncx2.sf(32.0, 1, s**2 * evidence + 1e-12) for s in STRENGTHS])
-    assert mean_detection_probability(evidence, 32.0) == pytest.approx(float(expected), abs=1e-6)
+    assert DEFAULT.experiments.strengths == (0.6, 1.0, 1.5)
+    expected = np.mean(
+        [stats.ncx2.sf(32.0, 1, s**2 * evidence + 1e-12) for s in DEFAULT.experiments.strengths]
+    )
+    assert mean_detection_probability(
+        evidence, 32.0, DEFAULT.experiments.strengths
+    ) == pytest.approx(float(expected), abs=1e-6)
 
 
 def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> None:
@@ -230,14 +236,17 @@ def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> N
     for excitation, run, motion in motions(tried, limits, step_s):
         changed = [m.problem.chain.predict(m.values(1.0), [motion])[0] for m in models]
         shown = [residual_square_after_fit(base, base.at(motion), f, step_s) for f in changed]
-        found = sum(mean_detection_probability(e, p) for e, p in zip(shown, prices, strict=True))
+        found = sum(
+            mean_detection_probability(e, p, DEFAULT.experiments.strengths)
+            for e, p in zip(shown, prices, strict=True)
+        )
         total = float(np.sum(np.log1p(shown)))
         ranks.append((round(found, 2), total, excitation.words, shown, run))
     _, _, words, shown, run = max(ranks, key=lambda x: x[:2])
     proposed = propose_detection_run(tried, (), names, LIMITS)
     assert isinstance(proposed, Experiment)
     assert words in proposed.words
-    clear = [e for e in shown if e > 2.0 * DEFAULT.least_separation]
+    clear = [e for e in shown if e > 2.0 * DEFAULT.experiments.min_evidence]
     assert proposed.evidence == pytest.approx(stats.gmean(clear), rel=1e-3)
     assert proposed.separation_sigma == pytest.approx(np.sqrt(proposed.evidence / len(run)))
     assert proposed.separation_n == pytest.approx(base.noise_rms * proposed.separation_sigma)

@@ -39,7 +39,7 @@ def test_laws_are_sorted_by_held_out_error_in_any_unit(unit: float) -> None:
 
 @pytest.mark.parametrize(("share", "tied"), [(0.98, True), (1.02, False)])
 def test_laws_within_half_a_percent_of_error_are_tied(share: float, tied: bool) -> None:
-    worse = np.sqrt(1.0 + share * (DEFAULT.law_same**2 - 1.0))
+    worse = np.sqrt(1.0 + share * (DEFAULT.laws.same_ratio**2 - 1.0))
     for unit in (1e-3, 1e3):
         found = compare_errors(a=alternating(unit), b=alternating(unit * worse))
         assert found["b"].tied == tied
@@ -49,7 +49,7 @@ def test_laws_within_half_a_percent_of_error_are_tied(share: float, tied: bool) 
 def test_laws_within_two_standard_errors_are_tied(share: float, tied: bool) -> None:
     """The standard error of a mean over 40 segments with standard deviation s is s / sqrt(40)."""
     variation = 0.5
-    mean = 1.0 + share * DEFAULT.law_tie * variation / np.sqrt(STRETCHES)
+    mean = 1.0 + share * DEFAULT.laws.tie_sigma * variation / np.sqrt(STRETCHES)
     other = alternating(np.sqrt(mean), variation / mean)
     assert compare_errors(a=alternating(1.0), b=other)["b"].tied == tied
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from by_hand import Array
 from jbf import Diagnosis, InputError, Rig, diagnose
-from jbf.diagnosis import Policy
 from jbf.diagnosis.decoys import DRAWS, decoy_gains, rate_below
 from jbf.diagnosis.level import Directions, Level, calibrated, with_decoys
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.policy_sections import Selection
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.samples import Samples
 from linear_campaigns import CANDIDATES, Textbook, linear_diagnosis, linear_runs
@@ -254,22 +254,27 @@ def test_diagnosis_reports_level_and_decoys_of_its_significance_tests() -> None:
 
 def diagnosis_with(hidden: str, **changes: Any) -> Diagnosis:
     """The diagnosis of a linear campaign under a changed policy."""
-    return diagnose(Rig(), linear_runs(hidden), law="coulomb", policy=replace(DEFAULT, **changes))
+    return diagnose(Rig(), linear_runs(hidden), law="coulomb", policy=DEFAULT.with_values(changes))
 
 
 @pytest.mark.parametrize(
     ("name", "values"),
-    [("weak", [np.nan]), ("false_alarm_rate", [np.nan, 0.0, 1.0]), ("least_weight", [0.0, 0.5])],
+    [
+        ("selection.weak_evidence", [np.nan]),
+        ("false_alarm_rate", [np.nan, 0.0, 1.0]),
+        ("selection.min_weight", [0.0, 0.5]),
+        ("unknown", [1.0]),
+    ],
 )
 def test_policy_value_outside_its_range_is_rejected(name: str, values: list[float]) -> None:
     for value in values:
         with pytest.raises(InputError, match=name):
-            Policy(**{name: value})  # type: ignore[arg-type]
+            DEFAULT.with_values({name: value})
 
 
 @pytest.mark.parametrize("weight", [0.018, 0.1, 0.4])
 def test_evidence_margin_of_a_tie_is_twice_the_log_odds_of_the_weight(weight: float) -> None:
-    assert Policy(least_weight=weight).tie == pytest.approx(2.0 * np.log((1.0 - weight) / weight))
+    assert Selection(min_weight=weight).tie == pytest.approx(2.0 * np.log((1.0 - weight) / weight))
 
 
 def _margins() -> list[Any]:
@@ -299,7 +304,7 @@ def test_effect_is_named_only_if_its_gain_exceeds_the_threshold(name: str, at_ga
 
 
 def test_search_reports_a_further_effect_beyond_the_largest_number() -> None:
-    found = diagnosis_with("offset and drag", most_effects=1)
+    found = diagnosis_with("offset and drag", **{"selection.max_effects": 1})
     assert (found.verdict, len(found.model.effects)) == ("unexplained", 1)
     assert "effects" in [remainder.axis for remainder in found.residual_structure]
 
@@ -310,8 +315,8 @@ def test_alternative_below_the_minimum_weight_of_the_policy_is_not_reported() ->
     (effect,) = tied.effects
     (other,) = tied.alternatives[effect]
     weight = min(tied.weights[effect][other], tied.weights[effect][effect])
-    assert DEFAULT.least_weight < weight < 0.49
-    dropped = diagnosis_with("lag", least_weight=1.02 * weight)
+    assert DEFAULT.selection.min_weight < weight < 0.49
+    dropped = diagnosis_with("lag", **{"selection.min_weight": 1.02 * weight})
     assert (dropped.verdict, len(dropped.effects)) == ("missing", 1)
     assert dropped.alternatives == {dropped.effects[0]: ()}
 

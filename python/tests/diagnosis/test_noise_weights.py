@@ -9,7 +9,6 @@ from by_hand import LAW, Array, assert_recovered, coulomb
 from jbf import Rig, Run, diagnose
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.terms.noise_variance import (
-    HUBER,
     force_weights,
     heavy_tails,
     robust_weights,
@@ -201,7 +200,7 @@ def _weights_of(residuals: list[Array], heavy: float = 6.0) -> tuple[list[Array]
     ]
     _, solution = fit_from_truth(Campaign.prepare(Rig(), runs))
     solution = replace(solution, residuals=residuals, noise=WHITE)
-    found = robust_weights(solution, replace(DEFAULT, heavy_tails=heavy))
+    found = robust_weights(solution, DEFAULT.with_values({"noise.min_tail_ratio": heavy}))
     return ([], []) if found is None else (list(found[0]), [found[1].size])
 
 
@@ -209,10 +208,10 @@ def _weights_of(residuals: list[Array], heavy: float = 6.0) -> tuple[list[Array]
 def test_weight_of_an_outlier_is_that_of_huber(unit: float) -> None:
     """The squared weight is 2.5 standard deviations over the residual."""
     (weight,), sizes = _weights_of([_outliers(20, 1000, unit)])
-    np.testing.assert_allclose(weight[:20], np.sqrt(HUBER / 10.0), rtol=1e-6)
+    np.testing.assert_allclose(weight[:20], np.sqrt(DEFAULT.noise.huber_sigma / 10.0), rtol=1e-6)
     assert np.all(weight[20:] == 1.0)
     assert sizes == [0.02]
-    assert HUBER == 2.5
+    assert DEFAULT.noise.huber_sigma == 2.5
 
 
 @pytest.mark.parametrize(
@@ -247,7 +246,9 @@ def test_heavy_tails_of_student_noise_are_weighted_once() -> None:
     for weight, counted, level, residual in zip(
         samples.weight, samples.counted, samples.level, solution.residuals, strict=True
     ):
-        huber = np.minimum(1.0, HUBER * sigma / np.abs(residual[counted] * level[counted]))
+        huber = np.minimum(
+            1.0, DEFAULT.noise.huber_sigma * sigma / np.abs(residual[counted] * level[counted])
+        )
         np.testing.assert_allclose((weight[counted] / level[counted]) ** 2, huber, rtol=0.05)
     assert weighted(*fit_from_truth(campaign)) is campaign
 

@@ -153,7 +153,7 @@ def test_distinguishable_strength_is_that_of_a_regression_on_law_and_rival() -> 
     def surplus(strength: float) -> float:
         gains = stats.ncx2.sf(price(), 1, (strength * alone) ** 2)
         unexplained = strength * apart
-        margin = (unexplained**2 - DEFAULT.tie) / (2.0 * unexplained)
+        margin = (unexplained**2 - DEFAULT.selection.tie) / (2.0 * unexplained)
         return float(gains * stats.norm.cdf(margin)) - 0.8
 
     assert found.distinguishable_80 == pytest.approx(optimize.brentq(surplus, 0.05, 5.0), rel=0.05)

@@ -95,7 +95,7 @@ def test_residual_by_direction_is_reported_with_its_share_and_sign(size_n: float
     # The bins are backward and forward: the mean has the direction of motion where it is positive.
     assert direction.means_n == pytest.approx([-size_n, size_n], abs=0.1)
     for part, there in ((0.99, True), (1.01, False)):
-        policy = replace(DEFAULT, pattern_share=part * direction.share)
+        policy = DEFAULT.with_values({"patterns.min_share": part * direction.share})
         patterns = find_patterns(problem, solution, residuals, residuals, policy)
         assert ("direction" in {f.axis for f in patterns}) == there
 

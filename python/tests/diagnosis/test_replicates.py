@@ -1,7 +1,6 @@
 """Errors that recur in each period of the motion: lack of fit with replicates."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -49,7 +48,7 @@ def recurring_in(
     given = periodic(*(len(r) for r in residuals)) if campaign is None else campaign
     samples = given.samples if counted is None else given.samples.within(counted)
     _, solution = solution_with(given, residuals, samples=samples)
-    return find_replicates(given.prepared, solution, replace(DEFAULT, **policy))
+    return find_replicates(given.prepared, solution, DEFAULT.with_values(policy))
 
 
 def runs_named(found: Remainder) -> list[str]:
@@ -66,7 +65,7 @@ def test_error_that_recurs_with_the_motion_is_reported_with_its_share(unit: floa
     assert "77 % of the residual's RMS" in found.where
     assert recurring_in(unit * not_recurring(N)) == []
     for part, there in ((0.99, True), (1.01, False)):
-        assert bool(recurring_in(residual, replicate_share=part * 1.44 / 2.44)) == there
+        assert bool(recurring_in(residual, **{"replicates.min_share": part * 1.44 / 2.44})) == there
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
@@ -74,15 +73,15 @@ def test_significance_of_a_recurring_error_is_the_root_of_the_pairs(unit: float)
     """Products of white noise have a standard deviation equal to the mean square."""
     for part, found in ((0.99, True), (1.01, False)):
         sigma = part * float(np.sqrt(N - PERIOD))
-        assert bool(recurring_in(unit * wave(N), replicate_sigma=sigma)) == found
+        assert bool(recurring_in(unit * wave(N), **{"replicates.min_sigma": sigma})) == found
 
 
 def test_significance_of_a_recurring_error_is_lower_if_it_covers_part_of_the_record() -> None:
     """The products have a long-run variance above that of white noise."""
     residual = wave(9 * PERIOD) * np.repeat([1.0] * 6 + [0.0] * 3, PERIOD)
-    (found,) = recurring_in(residual, replicate_sigma=1.0)
+    (found,) = recurring_in(residual, **{"replicates.min_sigma": 1.0})
     white = found.share * float(np.sqrt(8 * PERIOD))
-    assert recurring_in(residual, replicate_sigma=0.9 * white) == []
+    assert recurring_in(residual, **{"replicates.min_sigma": 0.9 * white}) == []
 
 
 def test_constant_residual_is_not_reported_as_a_recurring_error() -> None:
@@ -96,7 +95,9 @@ def test_constant_residual_is_not_reported_as_a_recurring_error() -> None:
 def test_share_of_a_recurring_error_excludes_the_correlation_of_the_noise(lag: float) -> None:
     """The mean product of 1 + cos is at least 1 - 1/2, and 1 + cos(pi / lag) / 2 a period later."""
     residual = 1.0 + np.cos(np.pi * np.arange(20_000) / (lag * PERIOD))
-    (found,) = recurring_in(residual, replicate_share=1e-3, replicate_sigma=1e-6)
+    (found,) = recurring_in(
+        residual, **{"replicates.min_share": 1e-3, "replicates.min_sigma": 1e-6}
+    )
     expected = 0.5 * (1.0 + np.cos(np.pi / lag)) / 1.5
     assert found.share == pytest.approx(expected, abs=5e-3)
 

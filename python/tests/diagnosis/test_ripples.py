@@ -1,7 +1,6 @@
 """Ripples along the path with a random phase in each run: pitch, size, share, significance."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +8,7 @@ import pytest
 from jbf import Rig
 from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.ripples import IN_MOST_CHANCE, find_ripples
+from jbf.diagnosis.ripples import find_ripples
 from jbf.estimation.campaign import Campaign
 from jbf.records.drive import Drive
 from scipy import stats
@@ -59,7 +58,7 @@ def waves(
 
 def ripples_in(campaign: Campaign, signals: list[Array], share: float = 1e-6) -> list[Remainder]:
     """Ripples of the given innovations and residuals."""
-    policy = replace(DEFAULT, tone_share=share)
+    policy = DEFAULT.with_values({"tones.min_share": share})
     return find_ripples(campaign, campaign.samples, signals, signals, policy)
 
 
@@ -141,7 +140,7 @@ def test_significance_of_a_ripple_is_chi_square_over_its_runs(part: float, found
     campaign = one_way()
     longest, step = 0.229 * STEP_S * N, 0.137 * STEP_S
     lines = 4.0 * longest / step / 4.0
-    least = stats.chi2.isf(DEFAULT.tone_chance / lines, 2 * len(SPEEDS_M_S))
+    least = stats.chi2.isf(DEFAULT.tones.chance / lines, 2 * len(SPEEDS_M_S))
     amplitude = float(np.sqrt(2.0 * part * least / (len(SPEEDS_M_S) * N)))
     signals = exact_waves(campaign, [amplitude] * 5, seed=11)
     for unit in (0.01, 10.0):
@@ -152,7 +151,7 @@ def test_significance_of_a_ripple_is_chi_square_over_its_runs(part: float, found
 def test_ripple_requires_significance_in_two_thirds_of_the_runs(part: float, found: int) -> None:
     """Twice the ordinates of the two weakest of three runs is chi-square with four degrees."""
     campaign = one_way(SPEEDS_M_S[:3])
-    least = stats.chi2.isf(IN_MOST_CHANCE, 4)
+    least = stats.chi2.isf(DEFAULT.ripples.weaker_chance, 4)
     # The ordinate of a wave of amplitude A in a run of mean square m is A^2 n / (2 m).
     ordinate = 0.5 * part * least
     square = 2.0 * ordinate / N / (1.0 - ordinate / N)
@@ -182,7 +181,9 @@ def test_ripple_is_estimated_without_samples_excluded_from_the_fit() -> None:
         np.where(c, x, 50.0) for c, x in zip(counted, waves(campaign, [1.0] * 5), strict=True)
     ]
     samples = campaign.samples.within(counted)
-    (found,) = find_ripples(campaign, samples, signals, signals, replace(DEFAULT, tone_share=1e-6))
+    (found,) = find_ripples(
+        campaign, samples, signals, signals, DEFAULT.with_values({"tones.min_share": 1e-6})
+    )
     assert pitch_and_size(found) == pytest.approx((PITCH_M, 1.0), rel=0.1)
     assert found.share == pytest.approx(1.0 / 3.0, rel=0.1)
 

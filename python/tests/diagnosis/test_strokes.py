@@ -1,6 +1,5 @@
 """Friction levels of strokes, against an analysis of variance."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -37,7 +36,7 @@ def sines() -> Campaign:
 
 def levels_in(campaign: Campaign, residuals: list[Array], **policy: float) -> list[Remainder]:
     problem, solution = solution_with(campaign, residuals)
-    return find_stroke_levels(problem, solution, replace(DEFAULT, **policy))
+    return find_stroke_levels(problem, solution, DEFAULT.with_values(policy))
 
 
 def level_residuals(shares: list[float], wobble: float, each: int = 40) -> list[Array]:
@@ -110,9 +109,11 @@ def test_stroke_levels_agree_with_a_weighted_analysis_of_variance() -> None:
     assert f"({round(ratio)} times" in found.where
     chance = float(stats.f.sf(ratio, degrees, degrees))
     for part in (0.99, 1.01):
-        significant = levels_in(campaign, residuals, constancy_chance=part * chance)
+        significant = levels_in(campaign, residuals, **{"constancy.chance": part * chance})
         assert bool(significant) == (part > 1.0)
-        assert bool(levels_in(campaign, residuals, pattern_share=part * share)) == (part < 1.0)
+        assert bool(levels_in(campaign, residuals, **{"patterns.min_share": part * share})) == (
+            part < 1.0
+        )
 
 
 def test_standard_deviation_of_stroke_levels_is_recovered() -> None:
@@ -159,7 +160,7 @@ def test_stroke_levels_require_three_strokes_of_sixteen_samples(
 ) -> None:
     campaign = strokes(*[each] * len(shares))
     residuals = level_residuals(shares, 1e-6 if any(shares) else 0.0, each)
-    assert len(levels_in(campaign, residuals, constancy_chance=0.5)) == found
+    assert len(levels_in(campaign, residuals, **{"constancy.chance": 0.5})) == found
 
 
 def test_stroke_levels_are_detected_in_a_campaign_with_short_strokes_and_short_runs() -> None:
@@ -167,4 +168,4 @@ def test_stroke_levels_are_detected_in_a_campaign_with_short_strokes_and_short_r
     level = np.repeat([0.0, 0.1, -0.1, 0.1], [10, 40, 40, 40]) + 1e-6 * (np.arange(130) % 7)
     first, second = friction_of(campaign)
     residuals = [first * level, second * np.repeat([0.1, -0.1], 40)]
-    assert len(levels_in(campaign, residuals, constancy_chance=0.5)) == 1
+    assert len(levels_in(campaign, residuals, **{"constancy.chance": 0.5})) == 1

@@ -51,7 +51,7 @@ def proposed(found: Proposal | None) -> Proposal:
 
 def test_threshold_of_a_term_shares_the_error_probability_among_ten_kinds() -> None:
     for parameters in (1, 5):
-        expected = stats.chi2.isf(DEFAULT.deviation_chance / 10.0, parameters)
+        expected = stats.chi2.isf(DEFAULT.terms.chance / 10.0, parameters)
         assert price_of_term(DEFAULT, parameters) == pytest.approx(expected)
 
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -26,7 +25,7 @@ def tones_in(
     """Tones detected in the given innovations and, by default, equal residuals."""
     campaign = campaign_of(*(len(s) for s in signals))
     samples = campaign.samples if counted is None else campaign.samples.within(counted)
-    policy = replace(DEFAULT, tone_share=share)
+    policy = DEFAULT.with_values({"tones.min_share": share})
     return find_tones(campaign.prepared, samples, signals, residuals or signals, policy)
 
 
@@ -59,7 +58,7 @@ def test_no_tone_is_reported_in_white_noise() -> None:
 def test_tone_is_significant_above_a_quantile_of_exponential_power(unit: float) -> None:
     """Power of a spectral line of white noise: exponential with median log 2 (Fisher 1929)."""
     lines = 1024 // 2 - 8
-    height = np.log(lines / DEFAULT.tone_chance) / np.log(2.0)
+    height = np.log(lines / DEFAULT.tones.chance) / np.log(2.0)
     for part, significant in ((0.98, False), (1.02, True)):
         assert bool(tones_in(unit * flat_spectrum(1024, {100: part * height}))) == significant
 

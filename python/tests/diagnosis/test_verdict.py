@@ -14,7 +14,7 @@ from jbf.diagnosis.verdict import name_is_supported, verdict
 from linear_campaigns import coulomb_candidates, linear_diagnosis, reversing_runs
 
 OFFSET, DRIFT = "sensor_offset", "sensor_drift"
-STRONG = DEFAULT.weak + 1.0
+STRONG = DEFAULT.selection.weak_evidence + 1.0
 
 
 @pytest.mark.parametrize(
@@ -45,17 +45,22 @@ def test_effect_is_named_if_its_gain_exceeds_20_times_the_disagreement() -> None
     ("evidence", "gains", "rms_ratio", "confirmed"),
     [
         # Weak evidence: the predictive density must contain more than half of the gain.
-        (DEFAULT.weak, (0.5, 1.0, 1.0), 1.0, False),
-        (DEFAULT.weak, (0.51, -1.0, 0.0), 1.0, True),
-        (DEFAULT.weak + 0.1, (0.51, -1.0, 0.0), 1.0, False),
+        (DEFAULT.selection.weak_evidence, (0.5, 1.0, 1.0), 1.0, False),
+        (DEFAULT.selection.weak_evidence, (0.51, -1.0, 0.0), 1.0, True),
+        (DEFAULT.selection.weak_evidence + 0.1, (0.51, -1.0, 0.0), 1.0, False),
         # Strong evidence: any gain in mean square, or a gain in two of three runs.
         (STRONG, (0.0, 1e-9, 0.0), 1.0, True),
         (STRONG, (0.0, 0.0, 0.65), 1.0, False),
-        (STRONG, (0.0, 0.0, DEFAULT.least_better_runs), 1.0, True),
+        (STRONG, (0.0, 0.0, DEFAULT.held_out.min_better_share), 1.0, True),
         # The held-out RMS may increase by up to a quarter.
-        (STRONG, (0.0, 1.0, 1.0), DEFAULT.left_out_worse, True),
-        (STRONG, (0.0, 1.0, 1.0), DEFAULT.left_out_worse + 0.01, False),
-        (DEFAULT.weak, (0.9, 1.0, 1.0), DEFAULT.left_out_worse + 0.01, False),
+        (STRONG, (0.0, 1.0, 1.0), DEFAULT.held_out.max_rms_ratio, True),
+        (STRONG, (0.0, 1.0, 1.0), DEFAULT.held_out.max_rms_ratio + 0.01, False),
+        (
+            DEFAULT.selection.weak_evidence,
+            (0.9, 1.0, 1.0),
+            DEFAULT.held_out.max_rms_ratio + 0.01,
+            False,
+        ),
     ],
 )
 def test_weak_evidence_requires_a_larger_held_out_gain_than_strong_evidence(

@@ -24,8 +24,9 @@ from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.proposal import is_accepted
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.joint_lateness import LINEAR_S, drift_step
+from jbf.estimation.joint_lateness import drift_step
 from jbf.estimation.problem import Problem
+from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
 from term_models import model_of
@@ -108,7 +109,7 @@ def test_delays_beyond_the_linear_range_are_recovered_from_any_start(
     found = shifts.fit_delays_by_run(
         problem, shifts.Shifted(*fitted(shifts.moved(problem, start, 0.0)), start, 0.0)
     )
-    assert max(LARGE_DELAYS_S) > 3.0 * LINEAR_S
+    assert max(LARGE_DELAYS_S) > 3.0 * SETTINGS.delays.linear_s
     np.testing.assert_allclose(found.late_s, LARGE_DELAYS_S, atol=4e-4)
     assert found.solution.rms == pytest.approx(ONE_WAY_NOISE_N, rel=0.05)
 

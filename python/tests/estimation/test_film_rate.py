@@ -9,8 +9,9 @@ import pytest
 from jbf import InputError, Lubricant, Rig, Run
 from jbf.diagnosis.which_law import followed
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_rate import ANY_STEPS, MOST_STEPS, check_film
+from jbf.estimation.film_rate import check_film
 from jbf.estimation.problem import Problem
+from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.models.chain import chain
 
 
@@ -54,7 +55,7 @@ def test_law_selection_excludes_film_laws_if_times_are_in_milliseconds() -> None
 
 @pytest.mark.parametrize(("share", "accepted"), [(0.9, True), (1.1, False)])
 def test_sampling_too_coarse_for_the_film_is_rejected(share: float, accepted: bool) -> None:
-    step_s = share * MOST_STEPS / film_rate_1_s(IN_SECONDS)
+    step_s = share * SETTINGS.film.max_steps / film_rate_1_s(IN_SECONDS)
     campaign = Campaign.prepare(Rig.thesis(), [sine_run(step_s, 0.01)])
     with nullcontext() if accepted else pytest.raises(InputError, match="time_s"):
         check_film(campaign, "journal", "journal")
@@ -63,9 +64,9 @@ def test_sampling_too_coarse_for_the_film_is_rejected(share: float, accepted: bo
 @pytest.mark.parametrize(("share", "accepted"), [(0.9, True), (1.1, False)])
 def test_coarse_sampling_is_accepted_for_few_film_steps(share: float, accepted: bool) -> None:
     samples = 30
-    duration_s = share * ANY_STEPS / film_rate_1_s(IN_SECONDS)
+    duration_s = share * SETTINGS.film.any_steps / film_rate_1_s(IN_SECONDS)
     step_s = duration_s / (samples - 1)
-    assert step_s * film_rate_1_s(IN_SECONDS) > MOST_STEPS
+    assert step_s * film_rate_1_s(IN_SECONDS) > SETTINGS.film.max_steps
     campaign = Campaign.prepare(Rig.thesis(), [sine_run(step_s, 3.0 / duration_s, samples)])
     with nullcontext() if accepted else pytest.raises(InputError, match="time_s"):
         check_film(campaign, "journal", "journal")

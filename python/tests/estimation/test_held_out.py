@@ -16,8 +16,6 @@ from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import (
-    INSENSITIVE,
-    MOST_FITS,
     HeldOutPart,
     errors_by_run,
     held_out_by_run,
@@ -31,6 +29,7 @@ from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
+from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 
 NOISE_N = 0.1
@@ -111,7 +110,7 @@ def test_fourteen_runs_are_held_out_in_twelve_groups_whatever_their_order() -> N
     groups = []
     for some in (runs, runs[::-1]):
         parts = held_out_parts(*solved(some))
-        assert len(parts) == MOST_FITS
+        assert len(parts) == SETTINGS.held_out.max_folds
         groups.append([sorted(some[i].name for i in part.runs) for part in parts])
     assert groups[0] == groups[1]
     assert sorted(name for group in groups[0] for name in group) == [r.name for r in runs]
@@ -172,7 +171,7 @@ def test_run_with_nearly_all_information_on_a_parameter_is_its_only_source(
     share: float, witnesses: set[int]
 ) -> None:
     """Share of the minimum information, a sum of squared derivatives, in the other three runs."""
-    others = float(np.sqrt(share * INSENSITIVE / 3.0))
+    others = float(np.sqrt(share * SETTINGS.held_out.min_information / 3.0))
     assert indispensable_runs(*solved(pushed_runs(others), "pushed")) == witnesses
 
 
@@ -248,7 +247,7 @@ def test_random_effects_of_runs_are_removed_from_held_out_errors_on_request() ->
 COUNT, RUNS = 400, 5
 EVERY = np.ones(COUNT, dtype=bool)
 SAMPLES = Samples(tuple("abcde"), (0.02,) * RUNS, (EVERY,) * RUNS, (np.ones(COUNT),) * RUNS)
-WEAK = DEFAULT.weak
+WEAK = DEFAULT.selection.weak_evidence
 Linear = tuple[list[Array], list[Array], list[Array]]
 """Derivatives by the parameters of law and effect, and noise; one array for each run."""
 

@@ -13,13 +13,14 @@ from by_hand import Array, coulomb, four_runs
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_gaps import samples_affected_by_gaps
-from jbf.estimation.initial_state import REMEMBERED, Memory, memories, remembering
+from jbf.estimation.initial_state import Memory, memories, remembering
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.run_start import settled_again, settled_campaign, unsettled
 from jbf.estimation.samples import Samples
+from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from jbf.models.chain import core_motion
 
@@ -96,7 +97,9 @@ def test_interval_in_which_initial_states_matter_is_excluded_and_extended(longer
     memory = Memory((1e-3, 0.1, 1.0), longer, 0.5)
     starts = [core_motion(p.rig, p.run, p.motion, (s, 6.0)) for s in memory.speeds]
     forces = [problem.chain.predict(values, [motion])[0] for motion in starts]
-    apart = np.flatnonzero(np.ptp(np.array(forces), axis=0) > REMEMBERED * NOISE_N)
+    apart = np.flatnonzero(
+        np.ptp(np.array(forces), axis=0) > SETTINGS.transient.max_difference * NOISE_N
+    )
     t = p.run.time_s
     until = t[apart[0]] + longer * (t[apart[-1]] - t[apart[0]])
     (found,) = remembering(problem.chain, values, [p], memory, NOISE_N)
@@ -113,7 +116,7 @@ def test_run_start_in_motion_is_excluded_until_the_film_does_not_depend_on_it() 
     slow, half = (after(run, before).friction for before in (SLOW, (0.5, 6.0)))
     apart = np.abs(np.asarray(slow) - np.asarray(half))
     assert apart[mask].max() > 10.0 * NOISE_N
-    assert apart[~mask].max() <= REMEMBERED * NOISE_N
+    assert apart[~mask].max() <= SETTINGS.transient.max_difference * NOISE_N
     # A run that is too short for the transient to end is not excluded.
     assert not masks(run.select(run.time_s < 0.5))[0].any()
     counts = [int(masks(run, noise_rms=noise_rms)[0].sum()) for noise_rms in (0.01, 0.1, 1.0)]
@@ -238,7 +241,7 @@ def test_start_within_the_play_is_excluded_until_the_force_has_reversed(branch: 
     for kept, whole, residual in zip(settled.samples.counted, every, residuals, strict=True):
         gone = whole & ~kept
         assert abs(float(residual[gone].mean())) > 2.0 * PLAY_NOISE_N
-        assert abs(float(residual[kept].mean())) < REMEMBERED * PLAY_NOISE_N
+        assert abs(float(residual[kept].mean())) < SETTINGS.transient.max_difference * PLAY_NOISE_N
         assert 8.0 < settled.prepared[0].run.time_s[gone][-1] < 30.0
     found = [f.run for f in settled.more_findings if f.kind == "unsettled_start"]
     assert found == [f"run {k}" for k in range(4)]
@@ -327,7 +330,9 @@ def test_samples_after_a_gap_are_excluded_if_errors_exceed_a_fifth_of_the_noise(
     campaign = Campaign.prepare(Rig.thesis(), [replace(run, friction=run.friction + noise)])
     settled = settled_campaign(campaign, "journal", "journal")
     gone = run.time_s[campaign.samples.counted[0] & ~settled.samples.counted[0]]
-    (behind,) = samples_affected_by_gaps(*journal_problem(run), REMEMBERED * noise_rms)
+    (behind,) = samples_affected_by_gaps(
+        *journal_problem(run), SETTINGS.transient.max_difference * noise_rms
+    )
     found, expected = gone[gone > 8.0], run.time_s[behind]
     assert (found[0], found[-1]) == pytest.approx((expected[0], expected[-1]), abs=0.15)
 

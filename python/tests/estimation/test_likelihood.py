@@ -83,7 +83,7 @@ def test_robust_size_is_the_median_absolute_value_over_0_6745() -> None:
 
 def test_squared_errors_are_clipped_at_three_and_a_half_standard_deviations() -> None:
     errors = np.array([0.5, -1.0, 3.4, -7.0, 1e9])
-    assert clipped_square(errors, 2.0) == pytest.approx(0.25 + 1.0 + 3.4**2 + 7.0**2 + 7.0**2)
+    assert clipped_square(errors, 2.0, 3.5) == pytest.approx(0.25 + 1.0 + 3.4**2 + 7.0**2 + 7.0**2)
 
 
 def test_expected_gain_is_that_of_one_gauss_newton_step() -> None:

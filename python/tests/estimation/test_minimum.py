@@ -13,10 +13,11 @@ from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.left_out import held_out_rms
 from jbf.estimation.likelihood import likelihood_gain
-from jbf.estimation.minimum import MOST_FORGIVEN, minimum, search_peaks, settle
+from jbf.estimation.minimum import minimum, search_peaks, settle
 from jbf.estimation.noise import Noise
 from jbf.estimation.peaks import other_peaks
 from jbf.estimation.problem import Problem
+from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from jbf.estimation.weighting import best_weighting, huber, student
 
@@ -66,7 +67,7 @@ def test_fit_in_coloured_noise_is_generalised_least_squares_if_the_rms_hardly_ri
         assert 0.1 < found.noise.memory_s < 0.6
         generalised, residual = regression(problem, found.noise)
         plain, least = regression(problem)
-        allowed = rms(residual) < MOST_FORGIVEN * rms(least)
+        allowed = rms(residual) < SETTINGS.noise.max_rms_ratio * rms(least)
         weighted += allowed
         wanted, other = (generalised, plain) if allowed else (plain, generalised)
         assert abs(found.values[2] - wanted[1]) < 0.1 * abs(found.values[2] - other[1])
@@ -81,8 +82,8 @@ def test_error_of_a_wrong_law_is_not_weighted_as_coloured_noise(height: float) -
     values, least = regression(problem)
     _, coloured = regression(problem, found.noise)
     # With weights for this colour the fit would be far worse.
-    assert rms(coloured) > 1.1 * MOST_FORGIVEN * rms(least)
-    assert found.rms <= MOST_FORGIVEN * rms(least)
+    assert rms(coloured) > 1.1 * SETTINGS.noise.max_rms_ratio * rms(least)
+    assert found.rms <= SETTINGS.noise.max_rms_ratio * rms(least)
     np.testing.assert_allclose(found.values[[0, 2]], values, rtol=1e-3)
 
 

@@ -10,8 +10,9 @@ from jbf import Rig, Run, diagnose, fit
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.pitches import LEAST_PERIODS, known_pitches, longest_pitch, pitches
+from jbf.estimation.pitches import known_pitches, longest_pitch, pitches
 from jbf.estimation.problem import Problem
+from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.stroke import BEYOND, SHORTEST_M, stroke
 from jbf.records.drive import Drive
 
@@ -141,7 +142,9 @@ def test_longest_pitch_and_stroke_follow_from_the_path(shaft: bool) -> None:
     run = Run.from_arrays(t, v, 5.0 * np.sign(v) + 30.0 * v + noise, **place)
     campaign = Campaign.prepare(rig, [run])
     low, high = stroke(campaign)
-    assert longest_pitch(campaign) == pytest.approx(0.1 / LEAST_PERIODS, rel=0.02)
+    assert longest_pitch(campaign) == pytest.approx(
+        0.1 / SETTINGS.conditions.min_pitch_periods, rel=0.02
+    )
     assert high - low == pytest.approx((1.0 + 2.0 * BEYOND) * 0.1, rel=0.02)
     middle = float(np.mean(campaign.prepared[0].motion.angle_rad)) * radius_m
     assert 0.5 * (low + high) == pytest.approx(middle, abs=0.004)

@@ -10,10 +10,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf.estimation.left_out import INSENSITIVE, HeldOutPart
+from jbf.estimation.left_out import HeldOutPart
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.predictive import mean_square, surprise
 from jbf.estimation.samples import Samples
+from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from scipy import stats
 
@@ -45,7 +46,9 @@ def gaussian(solution: Solution, part: HeldOutPart) -> float:
     j = [(slope * w[:, None])[:, part.determined] for slope, w in slopes]
     every = np.concatenate(j) / np.linalg.norm(np.concatenate(j), axis=0)
     own = (j[run] / np.linalg.norm(np.concatenate(j), axis=0))[left]
-    information = every.T @ every - own.T @ own + INSENSITIVE * np.eye(own.shape[1])
+    information = (
+        every.T @ every - own.T @ own + SETTINGS.held_out.min_information * np.eye(own.shape[1])
+    )
     covariance = VARIANCE * (np.eye(len(own)) + own @ np.linalg.solve(information, own.T))
     errors = (part.residuals[0] * weight[run])[left]
     density = stats.multivariate_normal(cov=covariance).logpdf(errors)

@@ -150,7 +150,7 @@ def test_quantisation_bias_is_kept_if_its_correction_is_below_the_policy_limit()
     off = [p.readings_n - p.friction for p in corrected.prepared]
     moves = corrected.samples.rms(off) / problem.campaign.step_n
     for share, removed in ((0.95, True), (1.05, False)):
-        policy = replace(DEFAULT, bias_moves=share * moves)
+        policy = DEFAULT.with_values({"quantisation.min_bias_change": share * moves})
         assert (without_bias(problem, solution, policy) is not None) == removed
 
 
@@ -159,6 +159,6 @@ def test_quantisation_bias_is_kept_if_the_model_error_exceeds_a_step() -> None:
     right = at_truth(problem)
     wave = [3.0 * STEP_N * np.sin(0.01 * np.arange(len(r))) for r in right.residuals]
     wrong = replace(right, residuals=[r + w for r, w in zip(right.residuals, wave, strict=True)])
-    policy = replace(DEFAULT, bias_moves=0.35 * 0.1)
+    policy = DEFAULT.with_values({"quantisation.min_bias_change": 0.35 * 0.1})
     assert without_bias(problem, right, policy) is not None
     assert without_bias(problem, wrong, policy) is None

@@ -23,14 +23,15 @@ from delayed_runs import (
 )
 from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.between_runs import BetweenRuns
-from jbf.estimation.joint_lateness import LINEAR_S, LatenessStep, drift_step, lateness_step
+from jbf.estimation.joint_lateness import LatenessStep, drift_step, lateness_step
 from jbf.estimation.lateness import lateness
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from scipy import ndimage, stats
 
-CHANCE = DEFAULT.deviation_chance
+CHANCE = DEFAULT.terms.chance
 DELAYS_S = (4e-3, -2e-3, 9e-3, 1e-3)
 EXTENDED = pytest.mark.extended
 
@@ -104,13 +105,13 @@ def regression(
 ) -> tuple[Array, Array]:
     """Coefficients of the delay columns, estimated with `F_c` and `F_v`, and their covariance.
 
-    Samples within `LINEAR_S` of a reversal are excluded: a jump is not linear in a delay.
+    Samples within `linear_s` of a reversal are excluded: a jump is not linear in a delay.
     """
     rows, right = [], []
     for i, (p, residual, column) in enumerate(
         zip(problem.campaign.prepared, solution.residuals, columns, strict=True)
     ):
-        width = int(np.ceil(LINEAR_S / p.step_s))
+        width = int(np.ceil(SETTINGS.delays.linear_s / p.step_s))
         far = ~ndimage.binary_dilation(~p.motion.sign_known, iterations=width)
         keep = solution.samples.counted[i] & far
         v = p.motion.velocity
@@ -199,7 +200,7 @@ def test_delay_or_drift_is_undetermined_beyond_the_linear_range(ratio: float, kn
     plain = replace(solution, noise=WHITE)
     delay_sd = lateness_step(problem, plain).covariance_s2[0, 0] ** 0.5
     drift_sd = drift_step(problem, plain).variance ** 0.5 * 20.0
-    scales = (ratio * LINEAR_S / sd for sd in (delay_sd, drift_sd))
+    scales = (ratio * SETTINGS.delays.linear_s / sd for sd in (delay_sd, drift_sd))
     delay, drift = (replace(plain, residuals=[x * r for r in plain.residuals]) for x in scales)
     assert lateness_step(problem, delay).determined[0] == known
     assert np.isfinite(drift_step(problem, drift).variance) == known

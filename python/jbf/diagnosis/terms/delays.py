@@ -33,8 +33,6 @@ from jbf.records.findings.finding import Finding
 Array = npt.NDArray[np.float64]
 
 LATE, DRIFT = "late_channel", "drifting_clock"
-HINT = 0.05
-"""Significance level below which a drift is estimated by iteration."""
 
 
 def delays(model: Model) -> Proposal | None:
@@ -52,7 +50,8 @@ def delays(model: Model) -> Proposal | None:
         return None
     best = min((found.solution for found in estimates), key=lambda s: s.rms)
     counted = zip(best.residuals, best.samples.counted, strict=True)
-    share = min(independent_share([r * c for r, c in counted], best.samples.steps_s), 1.0)
+    steps_s, noise = best.samples.steps_s, best.samples.settings.noise
+    share = min(independent_share([r * c for r, c in counted], steps_s, noise), 1.0)
     for found in estimates:
         price = price_of_term(model.policy)
         if found.drift == 0.0 and np.mean(found.late_s) > 0.0:
@@ -88,12 +87,12 @@ def _estimates(model: Model) -> list[Shifted]:
     problem, solution, policy = model.problem, model.solution, model.policy
     start = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
     estimates = []
-    if lateness_step(problem, solution).chance < policy.deviation_chance:
+    if lateness_step(problem, solution).chance < policy.terms.chance:
         by_run = fit_delays_by_run(problem, start)
         estimates.append(by_run if _significant(by_run, policy) else with_mean_delay(by_run))
     if not known_delays(problem.campaign):
         # The parameters of the model adapt slowly to a drift.
-        if special.chdtrc(1, drift_step(problem, solution).square) < HINT:
+        if special.chdtrc(1, drift_step(problem, solution).square) < policy.delays.hint_chance:
             estimates.append(fit_clock_drift(problem, start))
         coarse = fit_delays_by_search(problem, solution, policy)
         if coarse is not None:
@@ -109,17 +108,22 @@ def _significant(found: Shifted, policy: Policy) -> bool:
     problem, solution = found.problem, found.solution
     if found.drift != 0.0:
         # The residual of a wrong model is not white: half of Wald's statistic is used.
-        square = 0.5 * found.drift**2 / drift_step(problem, solution).variance
+        square = (
+            policy.delays.drift_square_factor
+            * found.drift**2
+            / drift_step(problem, solution).variance
+        )
         # A delay common to all runs resembles a drift.
         beside = drift_step(problem, solution, beside_delay=True)
         left = (found.drift + beside.drift) ** 2 / beside.variance
         return bool(
-            special.chdtrc(1, square) < policy.deviation_chance and special.chdtrc(1, left) < HINT
+            special.chdtrc(1, square) < policy.terms.chance
+            and special.chdtrc(1, left) < policy.delays.hint_chance
         )
     if np.ptp(found.late_s) == 0.0:
         return bool(found.late_s[0] < 0.0)
     step = lateness_step(problem, solution)
-    return step.differ_chance(found.late_s) < policy.deviation_chance
+    return step.differ_chance(found.late_s) < policy.terms.chance
 
 
 def _gain(found: Shifted, other: Solution, share: float) -> float:

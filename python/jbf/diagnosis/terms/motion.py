@@ -21,7 +21,7 @@ def errors_of_motion(model: Model) -> Proposal | None:
     again, after = with_motion_errors_again(model.problem, solution)
     motion = after.samples.motion
     assert motion is not None
-    if motion.noise * model.policy.noise_changes > before.noise:
+    if motion.noise * model.policy.motion.min_noise_ratio > before.noise:
         return None
     weights = solution.samples.weight
     gain = before.deviance(solution.residuals, weights) - motion.deviance(after.residuals, weights)

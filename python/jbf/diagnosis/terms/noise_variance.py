@@ -23,24 +23,18 @@ from jbf.records.findings.finding import Finding
 Array = npt.NDArray[np.float64]
 Weights = Sequence[Array]
 
-FORCE_BINS = 6
-"""Number of bins of the force in which the variance is estimated."""
-HUBER = 2.5
-"""Standard deviations of an innovation beyond which it has less weight (Huber 1964)."""
-TAILS = 4.0
-"""Standard deviations beyond which innovations are counted as tails."""
-LEAST_TAILS = 5.0
-"""Smallest number of innovations in the tails for these to be heavy."""
-LEAST = 200
-"""Smallest number of samples for which a variance is estimated."""
 ERROR = 1.9
 """Relative standard error of a robust standard deviation, times the root of the sample count.
 
 The estimate is the median of absolute third differences. The value is 1.17 for independent
-differences (Rousseeuw & Croux 1993) and larger here, since these share readings.
+differences (Rousseeuw & Croux 1993) and larger here, since these share readings. It follows from
+the estimator.
 """
 START_FREEDOM = 5.0
-"""Degrees of freedom of Student's t distribution at the start of its fit."""
+"""Degrees of freedom of Student's t distribution at the start of its fit.
+
+It only starts a search.
+"""
 
 
 def variance_by_force(model: Model) -> Proposal | None:
@@ -100,7 +94,7 @@ def heavy_tails(model: Model) -> Proposal | None:
     )
     if any(f.kind == "heavy_tails" for f in campaign.more_findings):
         return None
-    if campaign.step_n >= policy.coarse_steps * solution.rms:
+    if campaign.step_n >= policy.noise.max_step_ratio * solution.rms:
         return None
     found = robust_weights(solution, policy)
     if found is None:
@@ -127,12 +121,13 @@ def force_weights(
     e = _white_parts(solution)
     force = [np.abs(f) for f in problem.predict(solution.values)]
     flat_e, flat_f = samples.flat(e), samples.flat(force)
-    if robust_size(flat_e) <= 0.0 or len(flat_e) < LEAST * FORCE_BINS:
+    bins = policy.noise.force_bins
+    if robust_size(flat_e) <= 0.0 or len(flat_e) < policy.noise.min_samples * bins:
         return None
-    edges = np.quantile(flat_f, np.linspace(0.0, 1.0, FORCE_BINS + 1))
+    edges = np.quantile(flat_f, np.linspace(0.0, 1.0, bins + 1))
     middle = 0.5 * (edges[1:] + edges[:-1])
-    which = np.clip(np.searchsorted(edges, flat_f) - 1, 0, FORCE_BINS - 1)
-    counts = np.bincount(which, minlength=FORCE_BINS)
+    which = np.clip(np.searchsorted(edges, flat_f) - 1, 0, bins - 1)
+    counts = np.bincount(which, minlength=bins)
     # Bins may be empty where many forces are equal, as at rest.
     full = np.flatnonzero(counts)
     counts, middle = counts[full], middle[full]
@@ -141,7 +136,7 @@ def force_weights(
         return None
     slope, level = np.polyfit(middle**2, sizes**2, 1)
     largest = level + slope * middle[-1] ** 2
-    if slope <= 0.0 or largest <= policy.uneven_noise**2 * sizes.min() ** 2:
+    if slope <= 0.0 or largest <= policy.noise.min_ratio**2 * sizes.min() ** 2:
         return None
     least = max(level, 0.25 * sizes.min() ** 2)
     sd = [np.sqrt(least + slope * f**2) for f in force]
@@ -172,7 +167,7 @@ def run_weights(
     rounding = np.array([p.converter_step_n for p in problem.campaign.prepared]) / np.sqrt(12.0)
     white, whole = np.maximum(white, rounding), np.maximum(whole, rounding)
     counts = np.array([int(c.sum()) for c in samples.counted])
-    some = (counts > LEAST) & (white > 0.0) & (whole > 0.0)
+    some = (counts > policy.noise.min_samples) & (white > 0.0) & (whole > 0.0)
     if not some.any() or not all(_uneven(x[some], counts[some], policy) for x in (white, whole)):
         return None
     by_run = np.ones(len(some))
@@ -197,12 +192,13 @@ def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding
     sigma = robust_size(flat)
     if sigma <= 0.0 or not len(flat):
         return None
-    beyond = float(np.mean(np.abs(flat) > TAILS * sigma))
-    usual = 2.0 * float(special.ndtr(-TAILS))
-    if beyond < max(policy.heavy_tails * usual, LEAST_TAILS / len(flat)):
+    beyond = float(np.mean(np.abs(flat) > policy.noise.tail_sigma * sigma))
+    usual = 2.0 * float(special.ndtr(-policy.noise.tail_sigma))
+    if beyond < max(policy.noise.min_tail_ratio * usual, policy.noise.min_tails / len(flat)):
         return None
     # The square of a weight on the residual is Huber's weight on its square.
-    weights = [np.sqrt(np.minimum(1.0, HUBER * sigma / np.maximum(np.abs(x), 1e-300))) for x in e]
+    limit = policy.noise.huber_sigma * sigma
+    weights = [np.sqrt(np.minimum(1.0, limit / np.maximum(np.abs(x), 1e-300))) for x in e]
     words = f"{100.0 * beyond:.2g} % of the noise is beyond four of its standard deviations"
     names = ", ".join(samples.runs)
     finding = Finding("heavy_tails", "friction_n", names, beyond, "1", "weighed", words)
@@ -239,10 +235,10 @@ def _white_parts(solution: Solution) -> list[Array]:
 
 def _uneven(sizes: Array, counts: npt.NDArray[np.int_], policy: Policy) -> bool:
     """Whether standard deviations differ significantly and by a relevant ratio."""
-    if float(sizes.min()) <= 0.0 or sizes.max() <= policy.uneven_noise * sizes.min():
+    if float(sizes.min()) <= 0.0 or sizes.max() <= policy.noise.min_ratio * sizes.min():
         return False
     error = ERROR / np.sqrt(counts)
     logs = np.log(sizes)
     middle = float(np.sum(logs / error**2) / np.sum(1.0 / error**2))
     square = float(np.sum(((logs - middle) / error) ** 2))
-    return bool(special.chdtrc(len(sizes) - 1, square) < policy.deviation_chance)
+    return bool(special.chdtrc(len(sizes) - 1, square) < policy.terms.chance)

@@ -19,16 +19,8 @@ from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
-KINDS = 10
-"""Number of kinds of terms that share the probability of a false one.
-
-These are offset, drift, gain and oil by run, delay by run, clock drift, quantiser, variance by
-force and by run, and heavy tails.
-"""
-
-
 EVALUATIONS = 8
-"""Number of evaluations of a fit with a term."""
+"""Number of evaluations of a fit with a term. It limits the effort only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +93,7 @@ def price_of_term(policy: Policy, parameters: int = 1) -> float:
 
     It is the upper quantile of chi-square at the false-term probability of one kind.
     """
-    return float(special.chdtri(parameters, policy.deviation_chance / KINDS))
+    return float(special.chdtri(parameters, policy.terms.chance / policy.terms.kinds))
 
 
 def independent_fraction(after: Solution, before: Solution) -> float:
@@ -111,7 +103,9 @@ def independent_fraction(after: Solution, before: Solution) -> float:
     """
     left, was = (s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before))
     ways = [b - e for b, e in zip(was, left, strict=True)]
-    return min(effective_share(after), 1.0 / sure_inflation(ways, left, after.samples.steps_s))
+    settings = after.samples.settings.variance
+    inflation = sure_inflation(ways, left, after.samples.steps_s, settings)
+    return min(effective_share(after), 1.0 / inflation)
 
 
 def is_accepted(proposal: Proposal | None, model: Model, min_evidence: float = 0.0) -> bool:
@@ -138,7 +132,7 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
     if not len(ratio):
         return False
     error = float(np.std(ratio, ddof=1)) / np.sqrt(len(ratio)) if len(ratio) > 1 else 0.0
-    return bool(np.mean(ratio) - error > np.log(model.policy.no_worse))
+    return bool(np.mean(ratio) - error > np.log(model.policy.held_out.no_worse_ratio))
 
 
 def refitted(problem: Problem, near: Solution, samples: Samples) -> Solution:

@@ -24,11 +24,9 @@ from jbf.estimation.solution import Solution
 Array = npt.NDArray[np.float64]
 
 EVALUATIONS = 8
-"""Number of evaluations of each fit to corrected readings."""
+"""Number of evaluations of each fit to corrected readings. It limits the effort only."""
 MOST_ITERATIONS = 8
-"""Largest number of corrections and fits."""
-NO_BIAS = 0.8
-"""Standard deviation of the noise, in steps, from which the mean reading is unbiased."""
+"""Largest number of corrections and fits. It limits the effort only."""
 
 
 def quantiser(model: Model) -> Proposal | None:
@@ -98,10 +96,14 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
         e = left - flat(bias(noise))
         return float(e @ e)
 
-    noise = float(optimize.minimize_scalar(square, bounds=(0.0, NO_BIAS), method="bounded").x)
+    noise = float(
+        optimize.minimize_scalar(
+            square, bounds=(0.0, policy.quantisation.unbiased_noise), method="bounded"
+        ).x
+    )
     corrected = [r - b for r, b in zip(raw, bias(noise), strict=True)]
     moved = [p.friction - c for p, c in zip(campaign.prepared, corrected, strict=True)]
-    if solution.samples.rms(moved) < policy.bias_moves * campaign.step_n:
+    if solution.samples.rms(moved) < policy.quantisation.min_bias_change * campaign.step_n:
         return None
     return replace(
         campaign,

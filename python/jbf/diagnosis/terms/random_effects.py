@@ -29,9 +29,6 @@ from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
 
-LEAST_RUNS = 3
-"""Smallest number of runs for which a between-run standard deviation is estimated."""
-
 
 def random_effect(model: Model) -> Proposal | None:
     """Propose the most significant random effect that is not yet in the model.
@@ -42,7 +39,7 @@ def random_effect(model: Model) -> Proposal | None:
     if campaign.samples.motion is not None:
         return None
     counted = campaign.samples.within(solution.samples.counted)
-    found = _most_significant(problem, solution, counted, model.policy.deviation_chance)
+    found = _most_significant(problem, solution, counted, model.policy.terms.chance)
     if found is None:
         return None
     between, finding = found
@@ -95,7 +92,7 @@ def _most_significant(
 
     Only one is added at a time, since a missing random effect resembles another.
     """
-    if len(samples.runs) < LEAST_RUNS:
+    if len(samples.runs) < samples.settings.variance.min_runs:
         return None
     known = samples.between
     r, _ = samples.stacked(solution.residuals, solution.jacobian, solution.noise)
@@ -172,7 +169,7 @@ def _spread(
             continue
         estimates.append(float(n[:, 0] @ r) / sigma**2 / size)
         precisions.append(size)
-    if len(estimates) < LEAST_RUNS:
+    if len(estimates) < samples.settings.variance.min_runs:
         return None
     return spread_between(np.array(estimates), np.array(precisions))
 

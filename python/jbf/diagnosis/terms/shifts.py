@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.joint_lateness import LINEAR_S, drift_step, lateness_step
-from jbf.estimation.lateness import RANGES, lateness
+from jbf.estimation.joint_lateness import drift_step, lateness_step
+from jbf.estimation.lateness import lateness
 from jbf.estimation.noise import WHITE
 from jbf.estimation.noise_at import noise_at
 from jbf.estimation.prepared import Prepared
@@ -19,25 +19,23 @@ from jbf.estimation.run_start import settled_campaign
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
-from jbf.estimation.starts import LATEST
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 DELAY = "time_delay"
 TAU = "time_delay.tau_s"
-AHEAD_S = 20e-3
-"""Delay left uncorrected while the common delay is estimated, s.
-
-At least one sampling period is used.
-"""
 EVALUATIONS = 12
-"""Number of steps of a fit to shifted runs."""
-LARGEST_DRIFT = 2e-3
-"""Largest relative drift between two clocks; two quartz crystals differ by 1e-4."""
+"""Number of steps of a fit to shifted runs. It limits the effort only."""
 STEPS = 10
-"""Largest number of joint Gauss-Newton steps in the delays and the model parameters."""
+"""Largest number of joint Gauss-Newton steps in the delays and the model parameters.
+
+It limits the effort only.
+"""
 SETTLED = 0.1
-"""Size of a step, in standard errors, below which the iteration has converged."""
+"""Size of a step, in standard errors, below which the iteration has converged.
+
+It is a numerical tolerance.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +69,9 @@ def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
     Larger estimates are artefacts: of noise, where the slopes of the force do not follow the
     motion, or of the error of a wrong model.
     """
-    return abs(drift) <= LARGEST_DRIFT and all(
-        abs(late) + 0.5 * abs(drift) * p.run.duration_s <= LATEST * p.run.duration_s
+    settings = problem.campaign.settings.delays
+    return abs(drift) <= settings.max_drift and all(
+        abs(late) + 0.5 * abs(drift) * p.run.duration_s <= settings.max_run_share * p.run.duration_s
         for p, late in zip(problem.campaign.prepared, late_s.tolist(), strict=True)
     )
 
@@ -90,7 +89,7 @@ def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
     whole = replace(
         old,
         prepared=tuple(prepared),
-        samples=Samples.of(prepared),
+        samples=Samples.of(prepared, old.settings),
         more_findings=tuple(f for f in old.more_findings if f.done == "left out"),
     )
     return settled_campaign(whole, problem.law, problem.clock)
@@ -128,6 +127,8 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
     start
         The runs shifted by the known delays.
     """
+    settings = first.campaign.settings.delays
+    linear_s = settings.linear_s
     # The error of a delayed force is smooth and would be taken for coloured noise.
     now = replace(start, solution=replace(start.solution, noise=WHITE))
     white = True
@@ -141,11 +142,13 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
             continue
         # Where delays differ between runs, a common delay is also attributed to the recording.
         known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
-        later_s = np.clip(step.late_s, -LINEAR_S, LINEAR_S) + known.get(TAU, 0.0)
+        later_s = np.clip(step.late_s, -linear_s, linear_s) + known.get(TAU, 0.0)
         late_s = now.late_s + later_s
         late_s[~step.determined] = step.mean_s(late_s)
         apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
-        if apart_s > RANGES[0][0] or not possible_clocks(first, late_s, start.drift):
+        if apart_s > settings.search_ranges_s[0][0] or not possible_clocks(
+            first, late_s, start.drift
+        ):
             # Another deviation of one run (a mass) may appear as a delay of any size.
             return start
         campaign = moved(first, late_s, start.drift)
@@ -163,7 +166,7 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
     Returns `start` where the fit does not improve, or where the drift is not plausible.
     """
     lasts_s = np.array([p.run.duration_s for p in first.campaign.prepared])
-    most = LINEAR_S / float(np.max(lasts_s))
+    most = first.campaign.settings.delays.linear_s / float(np.max(lasts_s))
     now = replace(start, solution=replace(start.solution, noise=WHITE))
     white = True
     for _ in range(STEPS):
@@ -215,8 +218,8 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
     campaign = problem.campaign
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
-    for look in range(policy.most_shifts):
-        found = lateness(problem, solution, look, policy.deviation_chance)
+    for look in range(policy.delays.max_searches):
+        found = lateness(problem, solution, look, policy.terms.chance)
         if found is None:
             break
         # Where delays differ between runs, a common delay is also attributed to the recording.
@@ -243,7 +246,7 @@ def fit_common_delay(problem: Problem, found: Shifted) -> Shifted:
     shifted by less than the estimate, so that no force is early.
     """
     steps = [p.step_s for p in problem.campaign.prepared]
-    ahead_s = max(AHEAD_S, float(np.median(steps)))
+    ahead_s = max(problem.campaign.settings.delays.reserve_s, float(np.median(steps)))
     late_s = found.late_s - ahead_s
     campaign = moved(problem, late_s, 0.0)
     effects = without_delay(problem.effects)

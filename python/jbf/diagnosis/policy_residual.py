@@ -1,0 +1,135 @@
+"""Sections of the policy: tests of the residual structure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jbf.comparison.patterns import LEAST_SHARE, SIGNIFICANCE
+from jbf.estimation.settings import documented
+
+FIVE_SIGMA = "one in two millions of Gaussian noise"
+ONE_IN_TEN_THOUSAND = "one campaign in ten thousand"
+SET_BEFORE = "set before any campaign was seen"
+
+
+@dataclass(frozen=True)
+class Patterns:
+    """Residual structure along an axis."""
+
+    min_share: float = documented(
+        LEAST_SHARE, "share of the mean square that a pattern must explain", "as in a comparison"
+    )
+    min_sigma: float = documented(
+        SIGNIFICANCE, "standard deviations above chance, at least", "as in a comparison"
+    )
+
+
+@dataclass(frozen=True)
+class Tones:
+    """Residual structure at one frequency."""
+
+    chance: float = documented(
+        1e-7, "probability of a spectral line by chance, over all lines of a run", SET_BEFORE
+    )
+    min_share: float = documented(0.008, "share of the mean square of a tone", SET_BEFORE)
+    min_samples: int = documented(64, "number of samples from which a run is tested", "convention")
+    min_periods: float = documented(
+        8.0, "number of periods within a run, at least", "slower structure is a pattern over time"
+    )
+
+
+@dataclass(frozen=True)
+class Ripples:
+    """Residual structure of one pitch over the travel; its chance and share are those of a tone."""
+
+    min_periods: float = documented(
+        8.0, "number of periods within the travel, at least", "longer waves are patterns"
+    )
+    min_bins: float = documented(
+        4.0, "number of travel bins within a pitch, at least", "twice the limit of sampling"
+    )
+    min_runs: int = documented(3, "number of runs that show the ripple, at least", "convention")
+    max_common_share: float = documented(
+        0.5,
+        "share of the ripple's power that one common phase explains, at most",
+        "above it an effect describes the ripple",
+    )
+    weaker_runs: float = documented(
+        2.0 / 3.0,
+        "share of the runs, the weakest, that must show it as well",
+        "a tone has this pitch in a few runs only",
+    )
+    weaker_chance: float = documented(
+        1e-3, "probability by chance of the ripple in these runs", "one in a thousand"
+    )
+    max_tone_share: float = documented(
+        0.8,
+        "share of the ripple's square from which a frequency explains it as well",
+        "at half a line width from its centre a line loses a fifth of its power",
+    )
+
+
+@dataclass(frozen=True)
+class Replicates:
+    """Residual structure that repeats with the motion."""
+
+    min_sigma: float = documented(5.0, "standard errors of the correlation, at least", FIVE_SIGMA)
+    min_share: float = documented(
+        0.03, "share of the mean square that repeats, at least", "simulated campaigns"
+    )
+    min_pairs: int = documented(
+        100, "number of pairs of replicates from which a run is tested", "convention"
+    )
+    memory_lags: tuple[float, ...] = documented(
+        (0.5, 0.6, 0.7, 0.8, 0.9),
+        "lags, in periods, at which a correlation is the memory of the noise",
+        "a repeating error has both signs between half a period and a whole one",
+    )
+
+
+@dataclass(frozen=True)
+class Bursts:
+    """Residual structure at isolated instants."""
+
+    min_sigma: float = documented(
+        5.0, "standard deviations from which an innovation is large", FIVE_SIGMA
+    )
+    min_share: float = documented(
+        0.008, "share of the mean square of large innovations, at least", "simulated campaigns"
+    )
+    chance: float = documented(
+        1e-4, "probability of neighbours of the same sign by chance", ONE_IN_TEN_THOUSAND
+    )
+    clip_sigma: float = documented(
+        3.0, "standard deviations at which innovations are clipped in this test", "convention"
+    )
+
+
+@dataclass(frozen=True)
+class Constancy:
+    """Runs that require different parameters."""
+
+    chance: float = documented(1e-8, "probability of the disagreement by chance", SET_BEFORE)
+    min_ratio: float = documented(
+        2.5,
+        "ratio of the chi-square to its degrees of freedom, at least",
+        "simulated campaigns: a noise model is never exact",
+    )
+    min_sensitivity: float = documented(
+        1e-3,
+        "relative sensitivity of a run below which it does not determine a direction of the "
+        "parameters",
+        "convention",
+    )
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Levels that differ between strokes; share and chance are those of patterns and constancy."""
+
+    min_strokes: int = documented(
+        3, "number of strokes from which a run is tested", "two degrees of freedom"
+    )
+    min_samples: int = documented(
+        8, "number of samples from which half a stroke is tested", "convention"
+    )

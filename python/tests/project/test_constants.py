@@ -1,0 +1,203 @@
+"""Numbers that influence a verdict are fields of the policy, and nowhere else."""
+
+import ast
+import runpy
+from collections.abc import Iterator
+from pathlib import Path
+
+import jbf
+import pytest
+from jbf.diagnosis.policy import DEFAULT
+from jbf.errors import InputError
+
+ROOT = Path(__file__).resolve().parents[3]
+PACKAGE = ROOT / "python" / "jbf"
+POLICY = {"diagnosis.policy_sections", "diagnosis.policy_residual", "estimation.settings"}
+
+NUMERICAL = {
+    "reported next to the verdict or used after it: power, proposals, checks, final fit": """
+        diagnosis.alone: NEVER MOST
+        diagnosis.check: SURE
+        diagnosis.decoys: DRAWS SURE
+        diagnosis.excitations: RATES_RAD_S SHARES STOP_SHARES REST_S USUAL_RATE_RAD_S
+        diagnosis.plan: ENOUGH MORE
+        diagnosis.power: LEVELS NEARLY_ALL BEYOND FURTHER
+        diagnosis.separation: MOST_SAMPLES LEAST_SAMPLES
+        diagnosis.strength: DRAWS
+        estimation.curvature: BENT
+        estimation.exact_delay: LEAST_STEPS CLIPPED BLURRED
+        estimation.trajectory_fit: REST_SHARE
+        estimation.weighting: TUNING FREEDOM ELSEWHERE BETTER NO_WORSE SHARPER
+    """,
+    "text of a result": """
+        diagnosis.bursts: APART_S NAMED
+        diagnosis.constancy: NAMED TOLD
+        diagnosis.selection: LESS
+        estimation.determined: ONE_SIDED
+    """,
+    "tolerance of a numerical comparison or of an iteration": """
+        diagnosis.bursts: NO_NOISE
+        diagnosis.power: AGREES
+        diagnosis.separation: NO_NOISE_N
+        diagnosis.terms.shifts: SETTLED
+        estimation.determined: AT_BOUND
+        estimation.joint_lateness: RANK
+        estimation.left_out: SHORT STRAIGHT NOTHING
+        estimation.likelihood: INDEPENDENT
+        estimation.problem: BOUNDLESS
+        estimation.put_back: SAME_IN_NOISE SAME_IN_FRICTION
+        estimation.random_effect: ROUNDING
+        estimation.refine: SETTLED EXACT_RECORD
+        estimation.search: NEAR SAME ENDED
+        estimation.spread: INSENSITIVE SINGULAR TAKES_PART
+        estimation.stroke: SHORTEST_M
+    """,
+    "limits computing time or memory; an exceeded budget is reported": """
+        diagnosis.candidates: RANKING_EVALUATIONS
+        diagnosis.power: LOOKS LOOKS_ALONE
+        diagnosis.side_by_side: FEW
+        diagnosis.terms.proposal: EVALUATIONS
+        diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
+        diagnosis.terms.shifts: EVALUATIONS STEPS
+        estimation.approach: TRIAL_EVALUATIONS FOLLOWED MANY LIKELY LOOKED
+        estimation.left_out: EVALUATIONS
+        estimation.minimum: MAX_EVALUATIONS FOLLOWED_IN_A_FIT NESTED_EVALUATIONS
+        estimation.peaks: CLIMBED
+        estimation.problem: SLOPES_COST
+        estimation.refine: ROUNDS EVALUATIONS
+        estimation.rows: MOST_HELD MOST_SEARCHED GROUP
+        estimation.run_start: RANKING_EVALUATIONS
+        estimation.weighting: ROUNDS
+        estimation.work: STEPS_A_SAMPLE ANY_STEPS
+    """,
+    "rejects impossible input": """
+        diagnosis.excitations: MOST LONGEST_S
+        diagnosis.plan: LEAST_RUNS MOST_RUNS
+        estimation.bootstrap: LEAST_REPEATS MOST_REPEATS
+    """,
+    "resolution of a grid, a derivative or a number of draws": """
+        diagnosis.level: DRAWS
+        diagnosis.ripples: MOST_BINS PADDING
+        estimation.converter: HARMONICS
+        estimation.exact_delay: COARSE FINE
+        estimation.film_gaps: EDGE
+        estimation.lateness: FINE_S
+        estimation.peaks: POINTS
+        estimation.pitches: MOST_BINS PADDING
+        estimation.prepared: FINER
+        estimation.put_back: SHARES
+        estimation.refine: STEP INTENSITY_STEP
+    """,
+    "range of a search, wider than any plausible result": """
+        diagnosis.power: POWERS
+        estimation.converter: MOST_NOISE
+        estimation.exact_delay: REACH LEAST_REACH_STEPS
+        estimation.peaks: REACH
+        estimation.refine: LEAST_NOISE LEAST_INTENSITY
+    """,
+    "property of a distribution or an estimator, no choice": """
+        diagnosis.terms.noise_variance: ERROR
+        estimation.campaign: NOISE_SPAN
+        estimation.reversals: MOST
+    """,
+    "starting values of searches": """
+        diagnosis.terms.noise_variance: START_FREEDOM
+        estimation.pitches: LINES BINS_A_PITCH KNOTS
+        estimation.refine: SIMPLEX
+        estimation.scales: HUM
+        estimation.starts: CELL_ERROR RULES LINEAR_RULES CAMPAIGN_RULES RULES_OF_ANY_LAW
+    """,
+    "definition of an effect": """
+        estimation.stroke: BEYOND
+    """,
+}
+"""Constants outside the policy: why they decide nothing, and their names by module."""
+COMPARED = {
+    ("estimation.bootstrap", 100.0),  # the bootstrap enters no verdict
+    ("estimation.reversals", 3.0),  # three values have a second difference
+    ("estimation.trajectory_fit", 1e6),  # a fit of simulated motions enters no verdict
+}
+"""Numbers other than 0, 1, 2 and a half in comparisons."""
+
+
+def _modules() -> Iterator[tuple[str, ast.Module]]:
+    for package in ("diagnosis", "estimation"):
+        for file in sorted((PACKAGE / package).rglob("*.py")):
+            name = ".".join(file.relative_to(PACKAGE).with_suffix("").parts)
+            if name not in POLICY:
+                yield name, ast.parse(file.read_text())
+
+
+def _numbers(node: ast.AST) -> list[float]:
+    return [
+        float(n.value)
+        for n in ast.walk(node)
+        if isinstance(n, ast.Constant) and type(n.value) in (int, float)
+    ]
+
+
+def _constants(tree: ast.Module) -> Iterator[str]:
+    """Module-level names in capitals whose value contains a number."""
+    for node in tree.body:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value and _numbers(node.value):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            names = (
+                n.id for target in targets for n in ast.walk(target) if isinstance(n, ast.Name)
+            )
+            yield from (name for name in names if name.isupper())
+
+
+def test_no_number_outside_the_policy_influences_a_verdict() -> None:
+    listed = {
+        f"{module.strip()}.{name}"
+        for lines in NUMERICAL.values()
+        for module, names in (line.split(":") for line in lines.strip().splitlines())
+        for name in names.split()
+    }
+    found = {f"{module}.{name}" for module, tree in _modules() for name in _constants(tree)}
+    assert found - listed == set(), "make it a field of the policy, or list it with its reason"
+    assert listed - found == set(), "remove it from the list"
+
+
+def test_comparisons_contain_no_number_that_is_not_listed() -> None:
+    found = {
+        (module, abs(number))
+        for module, tree in _modules()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Compare)
+        for side in (node.left, *node.comparators)
+        if isinstance(side, ast.Constant | ast.UnaryOp)
+        for number in _numbers(side)
+    }
+    assert {(m, n) for m, n in found if n not in (0.0, 0.5, 1.0, 2.0)} == COMPARED
+
+
+def test_every_number_of_the_policy_states_what_it_decides_and_its_source() -> None:
+    explained = jbf.Policy.explained()
+    assert explained.keys() == DEFAULT.to_dict().keys()
+    assert all(decides and source for _, decides, source in explained.values())
+
+
+def test_every_number_of_the_policy_is_used() -> None:
+    read = {
+        n.attr for _, tree in _modules() for n in ast.walk(tree) if isinstance(n, ast.Attribute)
+    }
+    assert {name for name in DEFAULT.to_dict() if name.split(".")[-1] not in read} == set()
+
+
+def test_policy_with_other_values_keeps_the_rest() -> None:
+    changed = DEFAULT.with_values({"terms.chance": 1e-3, "estimation.variance.min_runs": 4})
+    assert changed.terms.chance == 1e-3
+    assert changed.estimation.variance.min_runs == 4
+    before, after = DEFAULT.to_dict(), changed.to_dict()
+    assert {k for k in before if before[k] != after[k]} == {
+        "terms.chance",
+        "estimation.variance.min_runs",
+    }
+    with pytest.raises(InputError, match=r"no value terms\.odds"):
+        DEFAULT.with_values({"terms.odds": 1.0})
+
+
+def test_table_of_the_policy_is_up_to_date() -> None:
+    written = runpy.run_path(str(ROOT / "docs" / "policy.py"))
+    assert written["page"]() == written["PAGE"].read_text(), "run docs/policy.py"

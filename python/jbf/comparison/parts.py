@@ -57,12 +57,6 @@ def non_friction_effects(comparison: Comparison) -> tuple[str, ...]:
     return tuple(name for name in NO_FRICTION if name in comparison.model.effects)
 
 
-def friction_readings(comparison: Comparison) -> list[Array]:
-    """Readings of each run minus the contributions that the model attributes to other forces, N."""
-    rest = added_by(comparison, non_friction_effects(comparison))
-    return [p.friction - f for p, f in zip(comparison.campaign.prepared, rest, strict=True)]
-
-
 def explained_residual(before: Comparison, after: Comparison) -> dict[str, list[Array]]:
     """Part of a model's residual explained by each new effect of a larger model, N.
 

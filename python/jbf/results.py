@@ -132,8 +132,8 @@ class Result(Shown):
         return drawn if len(drawn) > 1 else single
 
     def to_dict(self) -> dict[str, Any]:
-        """Return numbers and words for JSON; every result implements its own."""
-        raise TypeError(f"{type(self).__name__} has no words for JSON")
+        """Return the result as data for JSON; every result implements its own."""
+        raise TypeError(f"{type(self).__name__} cannot be converted to JSON")
 
     def to_frame(self) -> Any:
         """Return a `pandas.DataFrame`; pandas is not a dependency of jbf and must be installed.

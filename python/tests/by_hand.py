@@ -15,6 +15,7 @@ from jbf import Comparison, Diagnosis, Fit, Model, ParameterValue, Rig, Run, com
 from jbf.diagnosis import Remainder, Step, Trial
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.selection import CHANCE
 
 Array = npt.NDArray[np.float64]
 Friction = Callable[[Array, Array, Array], Array]
@@ -147,8 +148,8 @@ def comparison_by_hand(rms: float, runs_rms: tuple[float, float]) -> Comparison:
 TRIALS = (
     Trial("sensor_offset", 0.525, 812.4, "added", "largest evidence"),
     Trial("sensor_drift", 1.5, 55.0, "ties", "fits as well as sensor_offset"),
-    Trial("inertia", 2.0, 7.4, "rejected", "sensor_offset leads by 805"),
-    Trial("sensor_lag", 2.5, -26.2, "no gain", "gains no more than chance would"),
+    Trial("inertia", 2.0, 7.4, "rejected", "evidence is 805 below that of sensor_offset"),
+    Trial("sensor_lag", 2.5, -26.2, "no gain", CHANCE),
 )
 RESIDUAL_STRUCTURE = (
     Remainder("frequency", "a 3.00 Hz tone", 0.12),

@@ -119,7 +119,7 @@ class Confirmation:
     def describe(self, unit: str) -> str:
         """Describe the held-out error."""
         what = "runs" if not self.halved else f"runs and halves of {_listed(self.halved)}"
-        return f"left-out {what} {self.after_n:.4g} {unit}"
+        return f"RMS of held-out {what} {self.after_n:.4g} {unit}"
 
     def describe_gain(self, unit: str) -> str:
         """Describe the held-out error and the share of the gain in the predictive density."""

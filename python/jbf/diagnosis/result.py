@@ -18,7 +18,7 @@ from jbf.estimation.fit import Fit
 from jbf.models.model import Model
 from jbf.records.findings.finding import Finding
 from jbf.records.run import PathLike
-from jbf.results import Result
+from jbf.results import Result, present
 
 
 @dataclass(frozen=True, repr=False)
@@ -129,6 +129,18 @@ class Diagnosis(Result):
     def model(self) -> Model:
         """The final model."""
         return self.fit.model
+
+    def summary(self, full: bool = False) -> str:
+        """Return the result as text for a terminal.
+
+        Parameters
+        ----------
+        full
+            Return the complete report, with all candidates and detection limits, in place of the
+            summary of at most 30 lines.
+        """
+        text: str = present("summary", self, full)
+        return text
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict as specified by the file contract."""

@@ -38,9 +38,9 @@ LESS = 0.95
 
 It concerns the text only.
 """
-CHANCE = "gains no more than chance would"
-SLIGHT = "gains more than noise would, but no more than what recordings do to a record"
-SMOOTH = "fits better, but by no more than so smooth a residual strays: too few independent samples"
+CHANCE = "no significant gain"
+SLIGHT = "significant, but within the margin for recording artefacts"
+SMOOTH = "fits better, but the residual is so strongly correlated that this may be chance"
 
 
 @dataclass(frozen=True)
@@ -111,15 +111,15 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             reason = SLIGHT
         if gain <= 0.0 and gain > candidates.level.significant - price_of(candidates, 1):
             outcome = "negligible"
-            reason = f"possible, but it reduces the error by {1.0 - rms / bare:.1%} only"
+            reason = f"significant, but reduces the error by only {1.0 - rms / bare:.1%}"
         if np.isfinite(found.most):
             outcome = "rejected"
-            reason = f"could have {max(found.most, 0.0):.0f} in evidence at most: not followed"
+            reason = f"skipped: its evidence is at most {max(found.most, 0.0):.0f}"
         elif gain > 0 and leader is None:
             out = candidates.confirmation(present, name)
             alone = evidence_on_common_samples(candidates, found.solution, base)
             if alone <= 0.0:
-                gain, reason = alone, "gains by the samples that it sets aside, not by itself"
+                gain, reason = alone, "the gain comes from the samples that it excludes"
             elif out.confirms(gain, bare**2 - rms**2, policy):
                 if _gain_is_from_local_minimum(candidates, present, name, base):
                     return try_candidates(candidates, present, follow)
@@ -128,15 +128,15 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             else:
                 outcome = "rejected"
                 held_out = out.describe_gain(unit)
-                reason = f"fits better but predicts left-out runs no better ({held_out})"
+                reason = f"fits better, but does not predict held-out runs better ({held_out})"
                 unconfirmed.add(name)
         elif gain > 0 and _has_larger_rms(found, least, policy):
-            outcome, reason = "rejected", f"leaves {rms:.3g} {unit} where {leader} does not"
+            outcome, reason = "rejected", f"leaves an RMS of {rms:.3g} {unit}, more than {leader}"
         elif gain > 0 and gain > best - policy.selection.tie:
             outcome, reason = "ties", f"fits as well as {leader}"
         elif gain > 0:
             outcome = "rejected"
-            reason = f"{leader} leads by {best - gain:.0f} in evidence"
+            reason = f"evidence is {best - gain:.0f} below that of {leader}"
         trials.append(Trial(name, rms, float(gain), outcome, reason))
     behind = max((r.most for r in ranked if np.isfinite(r.most)), default=-np.inf)
     if behind > best:

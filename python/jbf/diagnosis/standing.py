@@ -61,10 +61,8 @@ def best_predicting(candidates: Candidates, present: Names, named: Names) -> Nam
     return present if whole < less else named
 
 
-CONFOUNDER = (
-    "it stands in for something else: the runs disagree on it, or more remains than it explains"
-)
-REPLACED = "added, and not needed beside what came later"
+CONFOUNDER = "not named: the runs disagree on it, or more remains than it explains"
+REPLACED = "added first, but not needed with the effects added later"
 
 
 def with_final_outcomes(steps: Sequence[Step], present: Names, doubted: Names) -> list[Step]:

@@ -1,7 +1,6 @@
 """Usual causes and remedies for each kind of residual structure.
 
-The texts are general workshop experience. They complement the numerical results and do not depend
-on them.
+The texts are general practical experience and do not depend on the numerical results.
 """
 
 from __future__ import annotations
@@ -75,27 +74,27 @@ ADVICE = {
         "inspect the record at those instants; record the run again",
     ),
     "way": Advice(
-        "a wave of rack, ball, magnet or tooth whose phase is another in each run",
-        "reference the position, so that all runs count from one place",
+        "a periodic force of rack, ball, magnet or tooth whose phase differs between runs",
+        "reference the position, so that all runs have the same origin",
     ),
     "period": Advice(
-        "friction that depends on where the motion has been, in a way no effect here has",
+        "friction that depends on earlier positions in a way that no effect describes",
         "record the same motion at half and at twice the speed",
     ),
     "stroke": Advice(
-        "a level of its own in each stroke: lubricant that is pushed about, dirt, scatter",
-        "record more strokes, and let some rests lie between them",
+        "friction that changes from stroke to stroke: moving lubricant, particles, scatter",
+        "record more strokes, and include rests between them",
     ),
     "parameters": Advice(
-        "a machine that was not the same in all runs",
-        "look at what was changed between the runs that disagree; diagnose them apart",
+        "a machine that changed between runs",
+        "check what was changed between the runs that disagree; diagnose them separately",
     ),
     "unconfirmed": Advice(
-        "an effect that stands in for another, or that single runs ask for",
-        "look at the runs that ask for it; record one of them again",
+        "an effect that represents another one, or that only single runs require",
+        "inspect the runs that require it; record one of them again",
     ),
     "effects": Advice(
-        "more effects than are searched for, or another law altogether",
+        "more effects than the search allows, or a different law",
         "compare the laws (--law auto)",
     ),
 }

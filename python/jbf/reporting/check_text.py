@@ -9,7 +9,7 @@ from jbf.reporting.words import law_and_effects
 
 def check_report(check: Check) -> str:
     """Format one rate per line, with its 95 % interval."""
-    rows = [("campaigns like this one", "so often", "share", "95 % interval")]
+    rows = [("simulated campaigns", "count", "share", "95 % interval")]
     for rate in check.rates:
         share = 100.0 * rate.count / rate.campaigns
         rows.append(
@@ -21,11 +21,11 @@ def check_report(check: Check) -> str:
             )
         )
     return "\n".join(
-        [f"Recorded again by {law_and_effects(check.model)}", "", *columns(rows, "<>>>", 0)]
+        [f"Campaigns simulated with {law_and_effects(check.model)}", "", *columns(rows, "<>>>", 0)]
     )
 
 
 def short_check(check: Check) -> str:
     """Summarize the check in one line."""
     right = sum(a.right for a in check.answers)
-    return f"Check: {right} of {len(check.answers)} campaigns diagnosed right"
+    return f"Check: {right} of {len(check.answers)} campaigns diagnosed correctly"

@@ -23,11 +23,11 @@ def comparison_report(comparison: Comparison) -> str:
     if comparison.failures:
         lines += [
             "",
-            "Where it fails (share of the mean square)",
+            "Lack of fit (share of the mean square residual)",
             *where_lines(comparison.failures),
         ]
     else:
-        lines[0] += "; no pattern along any axis"
+        lines[0] += "; no lack of fit along any axis"
     lines += ["", "Runs", *_run_lines(comparison)]
     return "\n".join([*lines, *finding_lines(comparison.findings)])
 

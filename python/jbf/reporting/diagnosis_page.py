@@ -155,9 +155,9 @@ class Round:
     picture
         Ranking of the candidates; empty if none has evidence.
     rows
-        One row per candidate, without those rejected as no better than chance.
+        One row per candidate, without those that have no significant gain.
     nothing
-        Names of the candidates that gain no more than chance would.
+        Names of the candidates that have no significant gain.
     """
 
     beside: str

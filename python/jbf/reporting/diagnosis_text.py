@@ -1,14 +1,15 @@
-"""Diagnosis as plain text, 80 to 100 columns wide, on about one page."""
+"""Complete report of a diagnosis as plain text."""
 
 from __future__ import annotations
 
 from jbf.diagnosis.result import Diagnosis
 from jbf.records.counts import count_of
+from jbf.reporting.diagnosis_summary import verdict_line
 from jbf.reporting.effect_words import effect_lines
 from jbf.reporting.fit_text import lines_of_parameters
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.power_text import level_words, power_lines
-from jbf.reporting.tables import law_rows, ledger_rows, trial_rows
+from jbf.reporting.power_text import DETECTION_LIMITS, level_words, power_lines
+from jbf.reporting.tables import LEDGER_HEAD, law_rows, ledger_rows, trial_rows
 from jbf.reporting.text_parts import finding_lines, recorded, where_lines
 from jbf.reporting.words import (
     BARE,
@@ -28,7 +29,7 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
     for step in diagnosis.steps:
         if not step.trials:
             continue
-        lines += ["", f"Candidates tried beside the {' + '.join([BARE, *step.effects])}"]
+        lines += ["", f"Candidates added to the {' + '.join([BARE, *step.effects])}"]
         rows = trial_rows(step)
         head, *table = columns(
             [("effect", f"RMS ({unit})", "evidence", "outcome"), *(row[:4] for row in rows)],
@@ -36,21 +37,21 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
             4,
         )
         lead = max(map(len, [head, *table])) + 2
-        lines.append(f"{head:<{lead}}why")
+        lines.append(f"{head:<{lead}}reason")
         for line, row in zip(table, rows, strict=True):
             lines += hanging(f"{line:<{lead}}", row[4], 0)
     if diagnosis.not_tried:
-        lines += ["", "Not tried: these runs cannot show"]
+        lines += ["", "Not tested: these runs do not contain the necessary motion or data"]
         for name, reason in diagnosis.not_tried.items():
             lines += hanging(f"    {name}: ", reason, 0)
     if diagnosis.negligible:
-        lines += ["", "Possible, negligible"]
+        lines += ["", "Significant, but below the minimum effect size"]
         lines += hanging("    ", ", ".join(diagnosis.negligible), 0)
     if diagnosis.not_detectable:
-        lines += ["", "Could be there at a usual strength and hide in these runs"]
+        lines += ["", "Not detectable in these runs at a usual strength"]
         lines += hanging("    ", ", ".join(diagnosis.not_detectable), 0)
     if diagnosis.limitations:
-        lines += ["", "What these runs cannot show"]
+        lines += ["", "Conclusions that these runs do not support"]
         for sentence in diagnosis.limitations:
             lines += hanging("    ", sentence)
     return lines
@@ -62,7 +63,7 @@ def _power_lines(diagnosis: Diagnosis) -> list[str]:
     model = diagnosis.model
     return [
         "",
-        "What these runs would have shown, in 80 of 100 campaigns like this one",
+        DETECTION_LIMITS,
         *power_lines(diagnosis.power, model),
         *hanging("    ", f"({level_words(diagnosis.level)})", 0),
     ]
@@ -78,11 +79,11 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     samples = diagnosis.before.samples.count
     model = diagnosis.model
     unit = model.rig.quantities.force
-    lines = [f"Verdict: {diagnosis.verdict}", *hanging("", verdict_sentence(diagnosis))]
+    lines = [verdict_line(diagnosis), *hanging("", verdict_sentence(diagnosis))]
     if diagnosis.next_experiment:
         lines += hanging("Next experiment: ", diagnosis.next_experiment)
     if diagnosis.laws:
-        lines += ["", "Which law, each beside a zero, a mass and a weight of its own"]
+        lines += ["", "Law selection (each law with its own offset, mass and weight)"]
         names = ("law", "parameters", f"held out ({unit})", "")
         lines += columns([names, *law_rows(diagnosis)], "<>><", 4)
     lines += [
@@ -90,28 +91,26 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         "Measurement",
         f"    {recorded([p.run for p in campaign.prepared])}, "
         f"{count_of(samples, 'sample')} "
-        f"where the sign of the motion is known",
+        "with a known direction of motion",
         f"    noise floor {noise_words(bare.noise_rms, unit)}"
-        + (", estimated from the records alone" if bare.noise_rms > 0.0 else ""),
+        + (", estimated from the records" if bare.noise_rms > 0.0 else ""),
         "",
         f"The {step_name(diagnosis, 0)} ({law_words(model, ', ')})",
-        f"    misses by {number(bare.rms)} {unit} RMS, "
+        f"    RMS error {number(bare.rms)} {unit}, "
         f"{against_noise(bare.rms, bare.noise_rms)}"
-        + ("; where it fails (share of the mean square):" if diagnosis.failures else ""),
+        + ("; lack of fit (share of the mean square residual):" if diagnosis.failures else ""),
     ]
-    lines += where_lines(diagnosis.failures) or ["    and shows no pattern along any axis"]
+    lines += where_lines(diagnosis.failures) or ["    no lack of fit along any axis"]
     lines += _trial_lines(diagnosis)
     lines += _power_lines(diagnosis)
-    lines += ["", f"The error falling ({unit})"]
-    head = ("step", "fit", "held out", "noise", "held out / noise")
+    lines += ["", f"Error by step ({unit})"]
+    head = LEDGER_HEAD
     lines += columns([head, *ledger_rows(diagnosis)], "<>>>>", 4)
     for sentence in extrapolation_sentences(diagnosis):
         lines += hanging("    ", sentence)
     lines += finding_lines(diagnosis.findings)
-    lines += ["", "What remains"]
-    lines += where_lines(diagnosis.residual_structure) or [
-        "    nothing that stands above the noise"
-    ]
+    lines += ["", "Residual structure"]
+    lines += where_lines(diagnosis.residual_structure) or ["    none above the noise"]
     lines += ["", "Parameters of the final model"]
     lines += lines_of_parameters(diagnosis.fit)
     return "\n".join([*lines, *effect_lines(model)])

@@ -16,18 +16,17 @@ def summary_of(effect: Effect, said: Quantities) -> str:
         return effect.summary
     inertia = "inertia" if said.motion == "rotary" else "mass"
     own = {
-        "sensor_offset": f"the zero of {said.sensor} is off, or a constant {said.noun} is there "
+        "sensor_offset": f"offset of {said.sensor}, or a constant {said.noun} "
         "(gravity on an inclined axis, a spring, a counterweight)",
-        "sensor_drift": f"the zero of {said.sensor} wanders steadily during a run",
-        "sensor_lag": f"{said.sensor} or its filter follows the {said.noun} late",
+        "sensor_drift": f"the zero of {said.sensor} drifts steadily during a run",
+        "sensor_lag": f"{said.sensor} or its filter follows the {said.noun} with a delay",
         "sensor_hysteresis": f"{said.sensor} reads less while the {said.noun} rises than while it "
-        "falls: play or friction on the way to it",
-        "sensor_nonlinearity": f"{said.sensor} reads a large {said.noun} too large or too small",
-        "inertia": f"the {inertia} that the drive accelerates, in what {said.sensor} reads",
-        "drive_compliance": "a belt, coupling or shaft twists between the position sensor and what "
-        "is driven",
-        "cogging": f"a motor's {said.noun} that rises and falls with every pitch of the way, at "
-        "rest too",
+        "falls: play or friction in the force path",
+        "sensor_nonlinearity": f"{said.sensor} is not linear at a large {said.noun}",
+        "inertia": f"{inertia} that the drive accelerates, contained in {said.sensor}",
+        "drive_compliance": "elasticity of a belt, coupling or shaft between the position sensor "
+        "and the load",
+        "cogging": f"{said.noun} of the motor that varies periodically with position, also at rest",
     }
     return own.get(effect.name) or _here(effect.summary, said)
 
@@ -43,8 +42,8 @@ def _here(words: str, said: Quantities) -> str:
     """Replace the terms of a bearing rig in a catalogue text."""
     for of_bearing, here in (
         ("the cell", said.sensor),
-        ("the journal", "what is driven"),
-        ("which gamma takes up", "which the law's viscous friction takes up"),
+        ("the journal", "the load"),
+        ("which gamma takes up", "which the viscous friction of the law takes up"),
     ):
         words = words.replace(of_bearing, here)
     return words
@@ -55,7 +54,7 @@ def effect_lines(model: Model) -> list[str]:
     if model.rig.drive is None or not model.effects:
         return []
     said = model.rig.quantities
-    lines = ["", "What these effects are here"]
+    lines = ["", "Meaning of the effects"]
     for name in model.effects:
         lines += hanging(
             f"{name}: ", summary_of(find_effect(name), said) + known_mass(model, name), 4
@@ -78,4 +77,4 @@ def known_mass(model: Model, effect: str) -> str:
     unit = units_of(model.law, model.effects, model.rig.quantities)[name]
     value, error = value_and_error(model.parameters[name])
     found = f"{value} +/- {error}" if error else value
-    return f"; {found} {unit} where the rig's file says {number(known, 4)}"
+    return f"; {found} {unit}, rig file: {number(known, 4)}"

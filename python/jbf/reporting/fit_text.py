@@ -37,7 +37,7 @@ def noise_floor_words(fit: Fit) -> str:
     ratio = fit.rms / fit.noise_floor
     return (
         f"{number(fit.noise_floor)} {fit.model.rig.quantities.force} "
-        f"(the residual is {number(ratio)} times that)"
+        f"(the residual is {number(ratio)} times the noise)"
     )
 
 
@@ -60,33 +60,34 @@ def fit_report(fit: Fit) -> str:
         names = ", ".join(fit.doubtful)
         lines += hanging(
             "note: ",
-            f"of {names} the likelihood is no parabola within these errors, so they may be far "
-            "too small. `jbf fit --bootstrap 40` (jbf.bootstrap) finds theirs.",
+            f"the likelihood is not quadratic in {names}, so the standard errors may be far too "
+            "small; `jbf fit --bootstrap 40` (jbf.bootstrap) computes reliable ones.",
             4,
         )
     if fit.noise_floor is not None and fit.rms > ABOVE * fit.noise_floor:
         lines += hanging(
             "note: ",
-            "the residual is larger than the noise of the records: the model lacks an effect "
-            "(`jbf diagnose` looks for it), or the search ended in a local minimum "
-            "(`--start NAME=VALUE` begins elsewhere).",
+            "the residual is larger than the noise of the records: an effect is missing "
+            "(`jbf diagnose` identifies it), or the fit ended in a local minimum (choose other "
+            "start values: `--start NAME=VALUE`).",
             4,
         )
     pairs = correlation_pairs(fit)
     if pairs:
-        lines.append(f"[[Correlations]] (those above {LEAST_CORRELATION})")
+        lines.append(f"[[Correlations]] (absolute value above {LEAST_CORRELATION})")
         shown = [(f"C({a}, {b})", f"= {c:+.3f}") for a, b, c in pairs[:MOST_CORRELATIONS]]
         lines += columns(shown, "<<", 4)
         if len(pairs) > MOST_CORRELATIONS:
-            lines.append(f"    and {len(pairs) - MOST_CORRELATIONS} weaker ones")
+            lines.append(f"    and {len(pairs) - MOST_CORRELATIONS} smaller ones")
     return "\n".join([*lines, *effect_lines(model), *finding_lines(fit.findings)])
 
 
 def bootstrap_report(found: Bootstrap) -> str:
     """Format the fit with bootstrap standard errors."""
     repeats = len(next(iter(found.values.values())))
-    return f"Errors from {repeats} fits of simulated records of the same runs\n" + fit_report(
-        found.fit
+    return (
+        f"Standard errors from {repeats} fits to simulated records of the same runs\n"
+        + fit_report(found.fit)
     )
 
 

@@ -56,7 +56,7 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
             "",
             f"Nothing is open. {map_path} was written, should you want to change it; then",
         ]
-    lines.append(f"  jbf import {guess.path} --map {map_path} --out FOLDER")
+    lines.append(f"  jbf import {guess.path} --map {map_path} --folder FOLDER")
     return "\n".join(lines)
 
 

@@ -62,7 +62,7 @@ def short_fit(fit: Fit) -> str:
 def short_bootstrap(found: Bootstrap) -> str:
     """Summarize the number of repeated fits, and the parameters with bootstrap standard errors."""
     repeats = len(next(iter(found.values.values())))
-    return f"Bootstrap({count_of(repeats, 'fit')} again;\n    {_fitted(found.fit)})"
+    return f"Bootstrap({count_of(repeats, 'fit')};\n    {_fitted(found.fit)})"
 
 
 def short_trajectory_fit(fit: TrajectoryFit) -> str:
@@ -79,7 +79,7 @@ def short_comparison(comparison: Comparison) -> str:
     return (
         f"Comparison({_law(comparison.model)}; {count_of(len(comparison.runs), 'run')}, "
         f"RMS {number(rms)} {unit}, {against_noise(rms, noise, unit)};\n    "
-        + (f"fails along {where})" if where else "no pattern along any axis)")
+        + (f"lack of fit along {where})" if where else "no lack of fit along any axis)")
     )
 
 

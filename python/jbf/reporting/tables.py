@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from jbf.models.parameter_value import ParameterValue
     from jbf.records.findings.finding import Finding
 
+LEDGER_HEAD = ("step", "fit RMS", "held-out RMS", "noise", "held-out / noise")
+"""Header of the errors by step."""
 MOST_RUNS_NAMED = 3
 """Maximum number of runs named per kind of finding."""
 LEAST_CORRELATION = 0.3
@@ -117,7 +119,7 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
         said = [f"{words}, in {_named(those)}" for words, those in runs.items()]
         rest = sum(map(len, list(runs.values())[MOST_RUNS_NAMED:]))
         if rest:
-            said = [*said[:MOST_RUNS_NAMED], f"and in {count_of(rest, 'run')} more"]
+            said = [*said[:MOST_RUNS_NAMED], f"and in {count_of(rest, 'other run')}"]
         rows.append((kind.replace("_", " "), f"{'; '.join(said)} ({found[0].done})"))
     return rows
 
@@ -140,7 +142,7 @@ def power_rows(
             if p.detectable_80 is None
             else f"{p.parameter} {number(p.detectable_80)} {unit}".strip()
         )
-        found = "any" if p.always else found
+        found = "any size" if p.always else found
         alone = (
             ""
             if p.detectable_80 is None
@@ -161,7 +163,7 @@ def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
             tried.law,
             str(tried.parameters),
             number(tried.held_out_rms),
-            "taken" if i == 0 else "predicts as well" if tried.tied else "predicts worse",
+            "selected" if i == 0 else "equally good" if tried.tied else "worse",
         )
         for i, tried in enumerate(diagnosis.laws)
     ]

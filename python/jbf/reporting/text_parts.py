@@ -51,7 +51,7 @@ def where_lines(patterns: Iterable[Failure | Remainder]) -> list[str]:
 def finding_lines(findings: Iterable[Finding]) -> list[str]:
     """List the data-quality findings and how each was treated; empty without findings."""
     rows = finding_rows(findings)
-    lines = ["", "What the recording did"] if rows else []
+    lines = ["", "Data quality"] if rows else []
     for head, words in rows:
         lines += hanging(f"{head}: ", words, 4)
     return lines
@@ -62,4 +62,4 @@ def recorded(runs: Sequence[Run]) -> str:
     count = count_of(len(runs), "run")
     if any(run.steady for run in runs):
         return f"{count} of steady states"
-    return f"{count} of {sum(run.duration_s for run in runs):.0f} s in all"
+    return f"{count}, {sum(run.duration_s for run in runs):.0f} s in total"

@@ -59,7 +59,7 @@ def against_noise(error_n: float, noise_rms: float, unit: str = "") -> str:
     Without a unit, the size of the noise is omitted.
     """
     if not noise_rms > 0.0:
-        return f"where the noise is {UNKNOWN}"
+        return f"the noise is {UNKNOWN}"
     size = f" of {number(noise_rms)} {unit}" if unit else ""
     return f"{times(error_n, noise_rms)} the noise{size}"
 
@@ -77,7 +77,7 @@ def comparison_sentence(comparison: Comparison) -> str:
 
 
 def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
-    """State the result of the diagnosis in a few plain sentences.
+    """State the result of the diagnosis with everything that qualifies it.
 
     Parameters
     ----------
@@ -85,11 +85,11 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
         Where further residual structure is listed, relative to this text.
     """
     return (
-        _conclusion(diagnosis, place)
+        conclusion(diagnosis, place)
         + _unconfirmed_sentence(diagnosis)
         + _confounders_sentence(diagnosis.confounders)
         + _offset_sentence(diagnosis)
-        + _law_sentence(diagnosis)
+        + law_sentence(diagnosis)
     )
 
 
@@ -97,11 +97,10 @@ def headline_and_rest(diagnosis: Diagnosis) -> tuple[str, str]:
     """Split the verdict into a headline and the remaining sentences."""
     whole = verdict_sentence(diagnosis)
     if diagnosis.verdict == "unexplained":
-        remains = "something remains that no effect in the catalogue explains."
         if diagnosis.effects:
             rest = whole.partition(". ")[2]
-            return f"Missing: {listed(diagnosis.effects)}; besides, {remains}", rest
-        return f"S{remains[1:]}", whole
+            return f"Missing: {listed(diagnosis.effects)}. {_STRUCTURE}.", rest
+        return f"{_STRUCTURE}.", whole
     if diagnosis.verdict == "adequate":
         return "Nothing is missing.", whole
     first, stop, rest = whole.partition(". ")
@@ -119,7 +118,7 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
     if not asked or any(t.outcome == "added" for t in diagnosis.steps[-1].trials):
         return ""
     names = listed(t.effect for t in asked)
-    return f" Fits better, but runs left out do not confirm it, so it is not named: {names}."
+    return f" Improves the fit, but held-out runs do not confirm it, so it is not named: {names}."
 
 
 def _offset_sentence(diagnosis: Diagnosis) -> str:
@@ -132,27 +131,26 @@ def _offset_sentence(diagnosis: Diagnosis) -> str:
     ]
     if not others:
         return ""
-    return f" Instead of the offset it may be {listed(others, 'or')}: these runs cannot tell."
+    return f" In these runs the offset cannot be distinguished from {listed(others, 'or')}."
 
 
-def _law_sentence(diagnosis: Diagnosis) -> str:
-    """Name the law chosen by the data, or a different law that predicts with fewer terms."""
+def law_sentence(diagnosis: Diagnosis) -> str:
+    """Name the law selected from the data, or another law that predicts with fewer terms."""
     if diagnosis.laws:
         first, *others = diagnosis.laws
         tied = [other.law for other in others if other.tied]
-        words = f" The data chose the law {first.law}"
+        words = f" Law selected from the data: {first.law}"
         if tied:
-            return f"{words}, the simplest of those that predict alike ({listed(tied)} too)."
+            return f"{words}, the simplest of those that predict equally well ({listed(tied)} too)."
         return f"{words}."
     other = diagnosis.simpler_law
     if other is None:
         return ""
     here, unit = diagnosis.steps[-1].held_out_rms, diagnosis.model.rig.quantities.force
     return (
-        f" Another law may be the right one: {other.law}, which needs no other friction beside it, "
-        f"predicts runs left out to within "
-        f"{number(other.held_out_rms)} {unit}, {diagnosis.model.law} with all of this to "
-        f"{number(here)} {unit}; --law auto compares them all."
+        f" The law {other.law} without further friction effects predicts held-out runs within "
+        f"{number(other.held_out_rms)} {unit} (the model above: {number(here)} {unit}); "
+        "--law auto compares all laws."
     )
 
 
@@ -162,7 +160,17 @@ def _weighed(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
     return [f"{e} ({100.0 * weights[e]:.0f} %)" if e in weights else e for e in tied]
 
 
-def _conclusion(diagnosis: Diagnosis, place: str) -> str:
+_STRUCTURE = "The residual has structure that no effect in the catalogue explains"
+
+
+def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
+    """State the verdict, the held-out error and its ratio to the noise.
+
+    Parameters
+    ----------
+    place
+        Where further residual structure is listed, relative to this text.
+    """
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     unit = diagnosis.model.rig.quantities.force
     held_out_n = last.held_out_rms
@@ -175,8 +183,7 @@ def _conclusion(diagnosis: Diagnosis, place: str) -> str:
             terms = listed(diagnosis.machine)
             law = f"the {diagnosis.model.law} law with the machine's own {terms}"
         held_out = "runs" if len(diagnosis.before.campaign.prepared) > 1 else "parts of the run"
-        told = f"Nothing is missing: {law} predicts {held_out} that it was not fitted to"
-        return f"{told} within {reached}."
+        return f"Nothing is missing: {law} predicts held-out {held_out} within {reached}."
     if diagnosis.verdict == "missing":
         return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}."
     if diagnosis.verdict == "ambiguous":
@@ -186,17 +193,13 @@ def _conclusion(diagnosis: Diagnosis, place: str) -> str:
             if others and effect in diagnosis.effects
         )
         return (
-            f"Something is missing, and these runs cannot tell which: {ties}. "
-            f"With {added}, {fall}; the alternatives do as well."
+            f"An effect is missing, but these runs cannot tell which: {ties}. "
+            f"With {added}, {fall}; the alternatives fit equally well."
         )
-    worst = _worst(diagnosis.residual_structure, place)
-    remains = f"remains that no effect in the catalogue explains{worst}"
+    structure = f"{_STRUCTURE}{_worst(diagnosis.residual_structure, place)}."
     if diagnosis.effects:
-        return (
-            f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}. "
-            f"Besides, something {remains}."
-        )
-    return f"Something {remains}. The held-out error is {reached}."
+        return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}. {structure}"
+    return f"{structure} The held-out error is {reached}."
 
 
 def _worst(remains: Sequence[Remainder], place: str) -> str:
@@ -213,8 +216,8 @@ def _confounders_sentence(names: tuple[str, ...]) -> str:
         return ""
     one = len(names) == 1
     return (
-        f" The model also has {listed(names)}, with which it predicts runs left out better, but "
-        f"which {'is' if one else 'are'} not named: the runs disagree on "
+        f" The model also contains {listed(names)}, which {'improves' if one else 'improve'} the "
+        f"held-out prediction but {'is' if one else 'are'} not named, because the runs disagree on "
         f"{'its' if one else 'their'} parameters."
     )
 

@@ -114,7 +114,7 @@ def of_diagnosis(diagnosis: Diagnosis) -> Answer:
     next_run = diagnosis.experiment
     return {
         "sentence": verdict_sentence(diagnosis, ""),
-        "summary": diagnosis.summary(),
+        "summary": diagnosis.summary(full=True),
         "next_run": None if next_run is None else next_run.run.to_csv(),
         **{
             key: told[key]

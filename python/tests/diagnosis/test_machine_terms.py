@@ -124,4 +124,4 @@ def test_friction_that_differs_by_direction_is_an_alternative_of_the_offset() ->
     found = diagnose(Rig(drive=Drive("linear", "force")), runs, law="coulomb")
     assert (found.verdict, found.machine) == ("adequate", ("sensor_offset",))
     assert "dry_asymmetry" in found.alternatives["sensor_offset"]
-    assert "dry_asymmetry" in found.summary().partition("Measurement")[0]
+    assert "dry_asymmetry" in found.summary(full=True).partition("Measurement")[0]

@@ -31,5 +31,5 @@ def test_effect_below_the_smallest_size_is_listed_and_not_named(
     assert set(negligible) <= set(found.negligible)
     assert share > 0.0 or found.negligible == ()
     assert not set(effects) & set(found.negligible)
-    assert ("Possible, negligible" in found.summary()) == bool(found.negligible)
+    assert ("below the minimum effect size" in found.summary(full=True)) == bool(found.negligible)
     assert found.to_dict()["negligible"] == list(found.negligible)

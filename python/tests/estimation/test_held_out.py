@@ -142,7 +142,7 @@ def test_faster_run_is_held_out_in_parts_and_its_extrapolation_reported_separate
     assert "speed" in last.extrapolations[0].where
     assert last.held_out_rms < 0.055
     assert last.to_dict()["extrapolated"][0]["run"] == "fast"
-    assert "extrapolation" in result.summary()
+    assert "extrapolation" in result.summary(full=True)
 
 
 def test_runs_of_equal_range_have_no_extrapolation() -> None:

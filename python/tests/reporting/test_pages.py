@@ -17,7 +17,7 @@ from shared import shared
 Table = list[list[str]]
 VOID = {"meta", "img", "br", "link"}
 LINKS = ("src", "href", "xlink:href")
-LEDGER = ("step", "fit (N)", "held out (N)", "noise (N)", "held out / noise")
+LEDGER = ("step", "fit RMS (N)", "held-out RMS (N)", "noise (N)", "held-out / noise")
 
 
 class Page(HTMLParser):
@@ -114,7 +114,7 @@ def test_diagnosis_page_begins_with_the_verdict_and_the_ledger() -> None:
     assert text.index("<h1>") < text.index('id="ledger"') < text.index("<h2>")
     assert "<code>jbf diagnose &#39;a b&#39;</code>" in text
     assert "noise floor 0.500 N" in page("missing").text
-    assert "2 runs of 20 s in all, 1002 samples" in page("missing").text
+    assert "2 runs, 20 s in total, 1002 samples" in page("missing").text
 
 
 def test_diagnosis_page_lists_the_errors_of_each_step_of_the_ledger() -> None:
@@ -133,18 +133,18 @@ def test_diagnosis_page_has_the_rms_of_each_run_under_bare_law_and_final_model()
 
 
 def test_diagnosis_page_tabulates_candidates_with_a_gain_and_names_the_others() -> None:
-    head = ["effect", "RMS (N)", "evidence", "outcome", "why"]
+    head = ["effect", "RMS (N)", "evidence", "outcome", "reason"]
     rows = next(table for table in page("missing").tables if table[0] == head)[1:]
     assert [row[:4] for row in rows] == [
         ["sensor_offset", "0.525", "+812", "added"],
         ["sensor_drift", "1.50", "+55", "ties"],
         ["inertia", "2.00", "+7", "rejected"],
     ]
-    assert re.search(r"no more than chance would: sensor_lag\.", page("missing").text)
+    assert re.search(r"No significant gain: sensor_lag\.", page("missing").text)
 
 
 def test_diagnosis_page_lists_candidates_under_each_step_that_tried_them() -> None:
-    headings = re.findall(r"<h3>Beside the (.*?)</h3>", html_of("missing"))
+    headings = re.findall(r"<h3>Added to the (.*?)</h3>", html_of("missing"))
     assert headings == ["bare law", "bare law + sensor_offset"]
     assert len(re.findall("inertia</td>", html_of("missing"))) == 2
 
@@ -158,7 +158,7 @@ def test_diagnosis_page_has_parameters_correlations_and_the_added_effect() -> No
         ["sensor_offset.b", "-0.250", "0.025", "10 %", "N", ""],
     ]
     assert "F_c with F_v -0.90; F_c with sensor_offset.b +0.45" in found.text
-    assert "the zero of the force sensor is off" in found.text
+    assert "offset of the force sensor" in found.text
     held = re.findall(r'<tr class="held"><td class="name">(.*?)</td>', html_of("missing"))
     assert held == ["F_s"]
 
@@ -171,11 +171,11 @@ def test_diagnosis_page_has_failures_with_their_share_and_description() -> None:
 
 def test_diagnosis_page_has_detection_limits_undetectable_and_untried_effects() -> None:
     found = page("missing")
-    head = ("effect", "found from", "of friction", "alone from", "else it could be")
+    head = ("effect", "detectable from", "of friction", "distinct from", "confounded with")
     assert found.below(*head) == [["backlash", "gap 0.100 m", "2 %", "same", ""]]
     assert "Not detectable in these runs at a usual strength: running_in." in found.text
-    assert found.below("effect", "why")[0][0] == "position_ripple"
-    assert "structure stands above it" in page("unexplained").text
+    assert found.below("effect", "reason")[0][0] == "position_ripple"
+    assert "the residual has structure above the noise" in page("unexplained").text
 
 
 def test_diagnosis_page_of_a_rotary_drive_has_the_units_of_the_drive() -> None:

@@ -187,8 +187,8 @@ def test_repr_of_a_fit_has_runs_samples_rms_and_parameters() -> None:
 def test_repr_of_a_comparison_and_a_diagnosis_have_error_and_noise() -> None:
     comparison = comparison_by_hand(1.25, (1.0, 1.5))
     assert numbers(repr(comparison)) == ["2", "1.25", "2.50", "0.500"]
-    assert "fails along direction" in repr(comparison)
-    assert "no pattern" in repr(replace(comparison, failures=()))
+    assert "lack of fit along direction" in repr(comparison)
+    assert "no lack of fit" in repr(replace(comparison, failures=()))
     diagnosis = repr(diagnosis_by_hand("missing"))
     assert diagnosis.startswith("Diagnosis(missing: sensor_offset;")
     assert numbers(diagnosis) == ["0.550", "1.10", "0.500"]

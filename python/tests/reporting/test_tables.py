@@ -62,9 +62,9 @@ def test_ratio_to_the_noise_is_an_empty_text_if_the_noise_is_zero() -> None:
 def test_law_rows_mark_the_chosen_law_and_those_that_predict_as_well_or_worse() -> None:
     laws = (LawTried("a", 2, 0.5, True), LawTried("b", 4, 0.51, True), LawTried("c", 6, 1, False))
     assert tables.law_rows(replace(diagnosis_by_hand("missing"), laws=laws)) == [
-        ("a", "2", "0.500", "taken"),
-        ("b", "4", "0.510", "predicts as well"),
-        ("c", "6", "1.00", "predicts worse"),
+        ("a", "2", "0.500", "selected"),
+        ("b", "4", "0.510", "equally good"),
+        ("c", "6", "1.00", "worse"),
     ]
 
 
@@ -87,7 +87,7 @@ def findings_of(*cases: tuple[str, str]) -> list[Finding]:
     [
         ("xxx", "x, in a, b, c (left)"),
         ("xyxxx", "x, in a, c, d and 1 run more; y, in b (left)"),
-        ("xyzwvv", "x, in a; y, in b; z, in c; and in 3 runs more (left)"),
+        ("xyzwvv", "x, in a; y, in b; z, in c; and in 3 other runs (left)"),
     ],
 )
 def test_finding_row_lists_up_to_three_runs_and_three_texts(texts: str, expected: str) -> None:
@@ -121,7 +121,7 @@ def power_of(**changes: Any) -> Power:
             {"detectable_80": None, "share_80": None, "distinguishable_80": None},
             ("never", "", "", ""),
         ),
-        ({"always": True}, ("any", "", "3.00", "")),
+        ({"always": True}, ("any size", "", "3.00", "")),
         ({"confounded_with": ("a", "b", "c", "d")}, ("b 2.00 N", "1.2 %", "3.00", "a, b, c")),
     ],
 )

@@ -175,11 +175,11 @@ def test_chosen_law_is_named_with_the_laws_that_predict_as_well() -> None:
     laws = tuple(LawTried(name, 2, 0.5, flag) for name, flag in tied.items())
     diagnosis = diagnosis_by_hand("missing")
     sentence = words.verdict_sentence(replace(diagnosis, laws=laws))
-    assert "The data chose the law coulomb" in sentence
+    assert "selected from the data: coulomb" in sentence
     assert "stribeck and bristle too" in sentence
     assert "lugre" not in sentence
     without_ties = words.verdict_sentence(replace(diagnosis, laws=(laws[0], laws[2])))
-    assert without_ties.endswith("The data chose the law coulomb.")
+    assert without_ties.endswith("selected from the data: coulomb.")
 
 
 def test_verdict_sentence_names_a_simpler_law_unless_laws_were_compared() -> None:

@@ -1,0 +1,139 @@
+"""Diagnosis as a short plain text: at most 30 lines of at most 100 characters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from jbf.diagnosis.result import Diagnosis
+from jbf.models.parameter_value import ParameterValue
+from jbf.records.counts import count_of
+from jbf.records.findings.finding import Finding
+from jbf.reporting.advice import advice_on
+from jbf.reporting.paragraphs import columns, hanging
+from jbf.reporting.tables import LEDGER_HEAD, ledger_rows, parameter_rows, shown_names
+from jbf.reporting.words import conclusion, law_sentence, listed
+
+MOST_LINES, USUAL_LINES = 30, 24
+"""Maximum number of lines, and the number at which the list of parameters is truncated."""
+WIDEST = 100
+"""Maximum length of a line in characters."""
+FEWEST_PARAMETERS = 4
+MOST_STEPS = 4
+MOST_FINDINGS = 3
+
+
+def verdict_line(diagnosis: Diagnosis) -> str:
+    """Return the verdict with the effects on which it is based."""
+    names = []
+    for effect in diagnosis.effects:
+        others = diagnosis.alternatives.get(effect, ())
+        names.append(listed([effect, *others], "or") if others else effect)
+    return f"Verdict: {diagnosis.verdict}" + (f" ({', '.join(names)})" if names else "")
+
+
+def diagnosis_summary(diagnosis: Diagnosis, most_lines: int = MOST_LINES) -> str:
+    """Format verdict, error by step, parameters, data quality and the recommended next action.
+
+    Parameters
+    ----------
+    most_lines
+        Maximum number of lines; the last recommendations are left out first.
+    """
+    conclusions = f"{conclusion(diagnosis, '')}{law_sentence(diagnosis)}"
+    above = [_cut(verdict_line(diagnosis)), *_paragraph("", conclusions, 4), "", *_steps(diagnosis)]
+    findings, outlook = _findings(diagnosis), _outlook(diagnosis)
+    # In addition to these: two blank lines, the header of the parameters, those not determined.
+    used = len(above) + len(findings) + 4
+    while outlook and used + FEWEST_PARAMETERS + sum(map(len, outlook)) > most_lines:
+        outlook.pop()
+    room = min(USUAL_LINES, most_lines) - used - sum(map(len, outlook))
+    lines = [*above, "", *_parameters(diagnosis, max(room, FEWEST_PARAMETERS)), *findings]
+    return "\n".join([*lines, *([""] if outlook else []), *(x for part in outlook for x in part)])
+
+
+def _steps(diagnosis: Diagnosis) -> list[str]:
+    """Tabulate the errors of the first and the last steps."""
+    unit = diagnosis.model.rig.quantities.force
+    rows: list[Sequence[str]] = list(ledger_rows(diagnosis))
+    if len(rows) > MOST_STEPS:
+        skipped = (f"... {len(rows) - MOST_STEPS + 1} more steps", "", "", "", "")
+        rows = [rows[0], skipped, *rows[2 - MOST_STEPS :]]
+    head = (f"Error by step ({unit})", *LEDGER_HEAD[1:])
+    table = columns([head, *((f"  {row[0]}", *row[1:]) for row in rows)], "<>>>>", 0)
+    return [_cut(line) for line in table]
+
+
+def _parameters(diagnosis: Diagnosis, room: int) -> list[str]:
+    """Tabulate the best determined parameters, and name those that are not determined."""
+    fit, model = diagnosis.fit, diagnosis.model
+    free = {name: p for name, p in fit.parameters.items() if not p.held}
+    precise = sorted(free, key=lambda name: -_precision(free[name]))[:room]
+    # The parameters of the machine first, then those of the law and of the other effects.
+    own = [n for n in free if n in precise and n.partition(".")[0] in diagnosis.machine]
+    order = [*own, *(name for name in free if name in precise and name not in own)]
+    said = model.rig.quantities
+    rows = parameter_rows(model.law, model.effects, {name: free[name] for name in order}, said)
+    head = ("Parameters", "value", "standard error", "", "unit")
+    cells = [
+        (f"  {name}", value, error, share, unit) for name, value, error, share, unit, _ in rows
+    ]
+    found = [_cut(line) for line in columns([head, *cells], "<>>><", 0)]
+    if len(free) > len(order):
+        found[-1] += f"   (and {count_of(len(free) - len(order), 'other parameter')})"
+    called = shown_names(fit)
+    held = [called[name] for name, p in fit.parameters.items() if p.held]
+    return found + ([_cut(f"  not determined: {', '.join(held)}")] if held else [])
+
+
+def _precision(value: ParameterValue) -> float:
+    """Return the ratio of the value to its standard error; 0 if the error is unknown."""
+    return abs(value.value / value.stderr) if value.stderr else 0.0
+
+
+def _findings(diagnosis: Diagnosis) -> list[str]:
+    """Describe the largest data-quality finding of each kind in one line."""
+    kinds: dict[str, list[Finding]] = {}
+    for finding in diagnosis.findings:
+        kinds.setdefault(finding.kind, []).append(finding)
+    lines = []
+    for kind, findings in list(kinds.items())[:MOST_FINDINGS]:
+        largest = max(findings, key=lambda finding: abs(finding.size))
+        others = f" and {count_of(len(findings) - 1, 'other run')}" if len(findings) > 1 else ""
+        lead, place = f"  {kind.replace('_', ' ')}: ", f" ({largest.run}{others}; {largest.done})"
+        lines.append(_cut(lead + _cut(largest.words, WIDEST - len(lead + place)) + place))
+    if len(kinds) > MOST_FINDINGS:
+        lines.append(f"  and {count_of(len(kinds) - MOST_FINDINGS, 'other kind')} of findings")
+    return ["", "Data quality", *lines] if lines else []
+
+
+def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
+    """Recommend the next action, and name conclusions that the runs do not support."""
+    paragraphs = []
+    next_experiment = diagnosis.next_experiment or ""
+    if next_experiment:
+        paragraphs.append(_paragraph("Next experiment: ", next_experiment, 4))
+    elif diagnosis.residual_structure:
+        worst = max(diagnosis.residual_structure, key=lambda remainder: remainder.share)
+        paragraphs.append(_paragraph("Next: ", advice_on(worst.axis).to_do, 2))
+    if diagnosis.limitations:
+        first, *others = diagnosis.limitations
+        more = f" (and {len(others)} more)" if others else ""
+        paragraphs.append(_paragraph("Not supported by these runs: ", f"{first}{more}", 2))
+    if not all(effect in next_experiment for effect in diagnosis.not_detectable):
+        names = ", ".join(diagnosis.not_detectable)
+        paragraphs.append(_paragraph("Not detectable in these runs: ", names, 1))
+    return paragraphs
+
+
+def _paragraph(lead: str, text: str, most: int) -> list[str]:
+    """Wrap a paragraph, and truncate it to a number of lines."""
+    lines = hanging(lead, text, 0 if lead else 2)
+    return lines if len(lines) <= most else [*lines[: most - 1], f"{lines[most - 1]} ..."]
+
+
+def _cut(text: str, width: int = WIDEST) -> str:
+    """Truncate a text, between words where possible."""
+    if len(text) <= width:
+        return text
+    kept = text[: max(width - 4, 0)]
+    return f"{kept[: kept.rfind(' ')] if ' ' in kept.strip() else kept} ..."

@@ -10,93 +10,103 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable
+from dataclasses import dataclass
 from importlib.resources import as_file, files
 from pathlib import Path
 
 from jbf.comparison.compare import compare
+from jbf.comparison.comparison import Comparison
 from jbf.diagnosis import Diagnosis, diagnose
 from jbf.records.rig import read_rig
 from jbf.records.run import PathLike
 from jbf.records.run_files import read_runs
-from jbf.reporting.words import value_and_error
+from jbf.reporting.paragraphs import hanging
+from jbf.reporting.words import number
 
-Say = Callable[[str], None]
 Progress = Callable[[str, int, int], None]
 
 
-def run(
-    directory: PathLike = "jbf-demo",
-    say: Say = print,
-    progress: Progress | None = None,
-    jbf: str = "jbf",
-) -> Diagnosis:
-    """Copy the shipped data into `directory`, diagnose them, and report the results.
+@dataclass(frozen=True)
+class Demo:
+    """Results of the demonstration.
 
-    Writes `report.html` and `model.toml` there, next to the data. Returns the diagnosis of the
-    campaign with hidden effects. `jbf` is the name under which the command was started.
+    Attributes
+    ----------
+    folder
+        Folder of the data, of `report.html` and of `model.toml`.
+    diagnosis
+        Diagnosis of the campaign with hidden effects.
+    without_effects
+        Diagnosis of the same rig without hidden effects.
+    before, after
+        Comparison of the bare law and of the final model with a run that the diagnosis did not use.
+    truth
+        Parameters of the hidden effects, by effect and symbol.
     """
-    out = Path(directory)
-    with as_file(files("jbf") / "data" / "demo") as shipped:
-        shutil.copytree(shipped, out, dirs_exist_ok=True)
 
-    say("== 1. A rig with something hidden in it ==\n")
-    hidden = _diagnosed(out / "hidden", progress)
-    say(hidden.summary())
-    hidden.model.save(out / "model.toml")
-    hidden.report(out / "report.html")
-    say("\n== 2. A motion that took no part ==\n")
-    say(_compare_on_new_motion(hidden, out / "hidden"))
-    say("\n== 3. The same rig with nothing hidden ==\n")
-    plain = _diagnosed(out / "plain", progress)
-    step = plain.steps[-1]
-    say(
-        f"{len(plain.before.runs)} runs, every effect tried: {plain.verdict}"
-        f" ({', '.join(plain.effects) or 'nothing added'})."
-        f" Held-out RMS {step.held_out_rms:.3g} N, noise {step.noise_rms:.3g} N."
-    )
-    say("\n== What had been hidden ==\n")
-    say(_truth(hidden, out / "hidden"))
-    hid = f"{out}/hidden"
-    say(
-        f"\nWritten: {out / 'report.html'} (pictures), {out / 'model.toml'} (the fitted model).\n"
-        "The same by hand:\n"
-        f"  {jbf} diagnose {hid}/rig.toml {hid} --out model.toml --report report.html\n"
-        f"  {jbf} compare model.toml {hid}/unseen\n"
-        "\nNext, look and click: a page in your browser, with these data or a CSV of your own:\n"
-        f"  {jbf} workbench {out}"
-    )
-    return hidden
+    folder: Path
+    diagnosis: Diagnosis
+    without_effects: Diagnosis
+    before: Comparison
+    after: Comparison
+    truth: dict[str, dict[str, float]]
+
+    def text(self, *, full: bool = False, command: str = "jbf") -> str:
+        """Return the results as text for a terminal.
+
+        Parameters
+        ----------
+        full
+            Contain the complete report of the diagnosis in place of its summary.
+        command
+            Shell command that starts jbf, for the suggested next commands.
+        """
+        plain, step = self.without_effects, self.without_effects.steps[-1]
+        true_values = ", ".join(
+            f"{effect} {symbol} = {value:.4g}"
+            for effect, values in self.truth.items()
+            for symbol, value in values.items()
+        )
+        checks = [
+            f"New motion: RMS error {number(self.before.rms)} N with the law alone, "
+            f"{number(self.after.rms)} N with the final model, noise "
+            f"{number(self.after.noise_rms)} N",
+            f"Same rig without hidden effects: {plain.verdict} (held-out RMS "
+            f"{number(step.held_out_rms)} N, noise {number(step.noise_rms)} N)",
+            f"True values of the hidden effects: {true_values}",
+        ]
+        data = self.folder / "hidden"
+        return "\n".join(
+            [
+                self.diagnosis.summary(full=full),
+                "",
+                *(line for check in checks for line in hanging("", check, 0)),
+                "",
+                f"Report with figures: {self.folder / 'report.html'}; "
+                f"model: {self.folder / 'model.toml'}; complete text: --full",
+                f"Repeat:  {command} diagnose {data}/rig.toml {data}",
+                f"Explore: {command} workbench {self.folder}",
+            ]
+        )
+
+
+def run(directory: PathLike = "jbf-demo", progress: Progress | None = None) -> Demo:
+    """Copy the shipped data into `directory`, and diagnose them.
+
+    Writes `report.html` and `model.toml` there, next to the data.
+    """
+    folder = Path(directory)
+    with as_file(files("jbf") / "data" / "demo") as shipped:
+        shutil.copytree(shipped, folder, dirs_exist_ok=True)
+    diagnosis = _diagnosed(folder / "hidden", progress)
+    diagnosis.model.save(folder / "model.toml")
+    diagnosis.report(folder / "report.html")
+    unseen = read_runs(folder / "hidden" / "unseen")
+    before, after = compare(diagnosis.before.model, unseen), compare(diagnosis.model, unseen)
+    without_effects = _diagnosed(folder / "plain", progress)
+    truth = json.loads((folder / "hidden" / "truth.json").read_text(encoding="utf-8"))
+    return Demo(folder, diagnosis, without_effects, before, after, truth["effects"])
 
 
 def _diagnosed(folder: Path, progress: Progress | None) -> Diagnosis:
     return diagnose(read_rig(folder / "rig.toml"), read_runs(folder), progress=progress)
-
-
-def _compare_on_new_motion(diagnosis: Diagnosis, folder: Path) -> str:
-    """Compare the bare law and the completed one on a motion of another kind."""
-    runs = read_runs(folder / "unseen")
-    bare = compare(diagnosis.before.model, runs)
-    full = compare(diagnosis.model, runs)
-    name = runs[0].name
-    return (
-        f"{name}: the law alone misses it by {bare.rms:.3g} N RMS, with"
-        f" {' and '.join(diagnosis.effects) or 'nothing'} added {full.rms:.3g} N;"
-        f" the noise on it is {full.noise_rms:.3g} N."
-    )
-
-
-def _truth(diagnosis: Diagnosis, folder: Path) -> str:
-    """List the true effects of the simulator next to the estimates."""
-    truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
-    lines = []
-    for effect, values in truth["effects"].items():
-        found = {n: p for n, p in diagnosis.fit.parameters.items() if n.startswith(f"{effect}.")}
-        for symbol, value in values.items():
-            match = [p for n, p in found.items() if n.split(".")[1].startswith(symbol)]
-            if not match:
-                lines.append(f"{effect}: {symbol} = {value:.4g}; not found")
-                continue
-            shown, error = value_and_error(match[0])
-            said = f"found {shown} +/- {error}" if error else f"{shown}, {match[0].note}"
-            lines.append(f"{effect}: {symbol} = {value:.4g}; {said}")
-    return "\n".join(lines)

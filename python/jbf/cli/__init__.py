@@ -87,8 +87,9 @@ def parser(words: Sequence[str] | None = None) -> Parser:
 
     top = Parser(
         prog="jbf",
-        description="Dynamic friction of journal bearings: compare models with measured runs, "
-        "find the physical effect that is missing, predict.",
+        description="Find the friction effect that a model lacks. From recorded force and motion "
+        "of a joint, axis, seal or bearing, jbf fits a friction law, shows where it fails, names "
+        "the missing effect, confirms it on held-out data, and exports the model to a controller.",
         allow_abbrev=False,
         formatter_class=Help,
     )
@@ -97,7 +98,7 @@ def parser(words: Sequence[str] | None = None) -> Parser:
         "--completion",
         action=Completion,
         choices=SHELLS,
-        help="print a script that completes commands and options: bash, zsh or fish",
+        help="print a script for shell completion of commands and options: bash, zsh or fish",
     )
     top.epilog = "\n".join([HEAD, *(f"  {line}" for line in FIRST)])
     commands = top.add_subparsers(

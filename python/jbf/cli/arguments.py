@@ -1,31 +1,96 @@
-"""Arguments shared by several commands."""
+"""Arguments shared by several commands, and their conversion to typed options."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast, get_type_hints
 
+from jbf.cli import outputs
 from jbf.cli.examples import Help, examples
 from jbf.models.catalogue import laws
+from jbf.models.vocabulary import Clock
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
 
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
+Group: TypeAlias = "argparse._ArgumentGroup | argparse.ArgumentParser"
+Options = TypeVar("Options")
 
 
 def command(
-    commands: Commands, name: str, does: str, run: Callable[[argparse.Namespace], int]
+    commands: Commands,
+    name: str,
+    does: str,
+    options: type[Options],
+    run: Callable[[Options], int],
 ) -> Parser:
-    """Add a subcommand with a one-line help text."""
+    """Add a subcommand.
+
+    Parameters
+    ----------
+    does
+        Help text in one line.
+    options
+        Dataclass to which the parsed arguments are converted.
+    run
+        Runs the command with these options, and returns the exit code.
+    """
     added = commands.add_parser(
         name, help=does, description=f"{does[0].upper()}{does[1:]}.", allow_abbrev=False
     )
     added.epilog = examples(added.prog)
     added.formatter_class = Help
-    added.set_defaults(run=run)
+    added.set_defaults(run=lambda arguments: run(typed(options, arguments)))
     return added
+
+
+def typed(options: type[Options], arguments: argparse.Namespace) -> Options:
+    """Convert parsed arguments to a dataclass whose fields have the names of the arguments.
+
+    A field that is itself a dataclass takes its fields from the same arguments. Lists become
+    tuples.
+    """
+    hints, values = get_type_hints(options), {}
+    for field in fields(cast("Any", options)):
+        if is_dataclass(hints[field.name]):
+            values[field.name] = typed(cast("type[Any]", hints[field.name]), arguments)
+        else:
+            value = getattr(arguments, field.name)
+            values[field.name] = tuple(value) if isinstance(value, list) else value
+    return options(**values)
+
+
+class _Renamed(argparse.Action):
+    """Earlier spelling of an option, which is accepted with a note on stderr."""
+
+    def __init__(self, *args: Any, new: str, **named: Any) -> None:
+        super().__init__(*args, **named)
+        self.new = new
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[Any] | None,
+        option: str | None = None,
+    ) -> None:
+        outputs.complain(f"{option} is now called {self.new}")
+        setattr(namespace, self.dest, values)
+
+
+def add_earlier_name(parser: Parser, earlier: str, new: str) -> None:
+    """Accept the earlier spelling of an option with one value."""
+    parser.add_argument(
+        earlier,
+        dest=new.removeprefix("--").replace("-", "_"),
+        action=_Renamed,
+        new=new,
+        default=argparse.SUPPRESS,
+        help=argparse.SUPPRESS,
+    )
 
 
 def add_runs(parser: Parser, *, needed: bool = True) -> None:
@@ -34,28 +99,53 @@ def add_runs(parser: Parser, *, needed: bool = True) -> None:
         "runs",
         metavar="RUN",
         nargs="+" if needed else "*",
-        help="a CSV file, a folder of them, or a pattern",
+        help="CSV file of a run, folder of such files, or pattern",
     )
+
+
+def add_rig(parser: Parser, nargs: str | None = None) -> None:
+    """Add the positional argument `RIG` of a recorded campaign."""
+    parser.add_argument(
+        "rig",
+        metavar="RIG",
+        nargs=nargs,
+        help="rig file (TOML), folder written by jbf import, or map of jbf import",
+    )
+
+
+@dataclass(frozen=True)
+class LawOptions:
+    """Base law of a model, and the clock of its lubricant film.
+
+    Attributes
+    ----------
+    law
+        Name of the law; None for the default of the command.
+    """
+
+    law: str | None
+    clock: Clock
 
 
 def add_law(parser: Parser, also: str = "") -> None:
     """Add `--law` and `--clock`.
 
-    `also` is appended to the help and names further values of `--law`.
+    `also` is appended to the help and describes the default or further values of `--law`.
     """
-    add_law_name(parser, "journal", f"base law: {', '.join(laws())} (journal){also}")
+    add_law_name(parser, f"base friction law: {', '.join(laws())}{also}")
     parser.add_argument(
         "--clock",
         metavar="NAME",
         choices=("journal", "thesis"),
         default="journal",
-        help="the film's clock: journal (default) or thesis",
+        help="time base of the film equation: shaft angle of the journal (journal, default) or as "
+        "printed in Cohn 1998 (thesis)",
     )
 
 
-def add_law_name(parser: Parser, default: str | None, does: str) -> None:
+def add_law_name(parser: Parser, does: str) -> None:
     """Add `--law` without `--clock`."""
-    parser.add_argument("--law", metavar="NAME", default=default, help=does)
+    parser.add_argument("--law", metavar="NAME", help=does)
 
 
 def add_effects_from(parser: Parser) -> None:
@@ -65,17 +155,34 @@ def add_effects_from(parser: Parser) -> None:
         metavar="FILE.py",
         action="append",
         default=[],
-        help="run this Python file first, which registers effects of your own; may be repeated",
+        help="Python file that registers your own effects, executed first; may be repeated",
     )
 
 
 def add_json(parser: Parser) -> None:
     """Add `--json`."""
     parser.add_argument(
-        "--json", metavar="FILE", help="write the result as JSON; - is standard output"
+        "--json", metavar="FILE", help="write the result as JSON (- for standard output)"
     )
 
 
 def add_report(parser: Parser) -> None:
     """Add `--report`."""
-    parser.add_argument("--report", metavar="FILE.html", help="write a page with pictures")
+    parser.add_argument("--report", metavar="FILE.html", help="write a report with figures")
+
+
+@dataclass(frozen=True)
+class Verbosity:
+    """Length of the printed text: complete report, verdict only, or in between."""
+
+    full: bool
+    quiet: bool
+
+
+def add_verbosity(parser: Parser) -> None:
+    """Add `--full` and `--quiet`."""
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument(
+        "--full", action="store_true", help="print the complete report, not the summary"
+    )
+    group.add_argument("-q", "--quiet", action="store_true", help="print only the verdict")

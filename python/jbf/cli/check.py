@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,10 +23,26 @@ if TYPE_CHECKING:
     from jbf.diagnosis.check import Answer
 
 
+@dataclass(frozen=True)
+class CheckOptions:
+    """Arguments of the command."""
+
+    model: str
+    runs: tuple[str, ...]
+    campaigns: int
+    jobs: int | None
+    resume: str | None
+    level: level.LevelOptions
+    json: str | None
+    effects_from: tuple[str, ...]
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "check", COMMANDS["check"], run)
-    parser.add_argument("model", metavar="MODEL", help="model of the runs (jbf diagnose --out)")
+    parser = command(commands, "check", COMMANDS["check"], CheckOptions, run)
+    parser.add_argument(
+        "model", metavar="MODEL", help="model of the runs, written by jbf diagnose --out"
+    )
     add_runs(parser)
     parser.add_argument(
         "-n",
@@ -34,52 +50,55 @@ def add(commands: Commands) -> None:
         metavar="N",
         type=int,
         default=200,
-        help="campaigns with the model's effects, and so many without; 200",
+        help="number of simulated campaigns with the effects of the model, and of campaigns "
+        "without (default 200)",
     )
-    parser.add_argument("--jobs", metavar="N", type=int, help="campaigns at a time; all cores")
+    parser.add_argument(
+        "--jobs", metavar="N", type=int, help="number of parallel processes (default: all cores)"
+    )
     parser.add_argument(
         "--resume",
         metavar="FILE.jsonl",
-        help="keep each answer in this file as it comes, and go on from what is there",
+        help="append each result to this file, and continue from the results that it contains",
     )
     level.add(parser)
     add_json(parser)
     add_effects_from(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: CheckOptions) -> int:
     """Run the command."""
     from jbf.diagnosis.check import check, identity
 
-    wanted = {"--json": arguments.json, "--resume": arguments.resume}
-    outputs.check(wanted, outputs.read_by(arguments))
-    check_jobs(arguments.jobs)
-    jobs = processes(arguments.jobs, 2 * arguments.campaigns)
-    model = inputs.model(arguments.model)
-    policy = level.policy(arguments, model.rig.quantities)
-    runs = read_runs(arguments.runs, model.rig)
+    wanted = {"--json": options.json, "--resume": options.resume}
+    outputs.check(wanted, outputs.inputs_in(options.model, options.runs, options.effects_from))
+    check_jobs(options.jobs)
+    jobs = processes(options.jobs, 2 * options.campaigns)
+    model = inputs.model(options.model)
+    policy = options.level.policy(model.rig.quantities)
+    runs = read_runs(options.runs, model.rig)
     name = identity(model, runs, policy)
-    done = [] if arguments.resume is None else _known(Path(arguments.resume), name)
+    done = [] if options.resume is None else _known(Path(options.resume), name)
 
     def keep(answer: Answer) -> None:
-        if arguments.resume is not None:
-            with Path(arguments.resume).open("a", encoding="utf-8") as file:
+        if options.resume is not None:
+            with Path(options.resume).open("a", encoding="utf-8") as file:
                 file.write(json.dumps({"of": name, **answer.to_dict()}) + "\n")
 
     with shown("diagnosing") as report, ProcessPoolExecutor(jobs) as executor:
         found = check(
             model,
             runs,
-            campaigns=arguments.campaigns,
+            campaigns=options.campaigns,
             policy=policy,
             executor=executor,
             progress=report,
             done=done,
             keep=keep,
         )
-    if arguments.json:
-        outputs.write({arguments.json: json_text(found.to_dict())})
-    outputs.say(found.summary(), {"--json": arguments.json})
+    if options.json:
+        outputs.write({options.json: json_text(found.to_dict())})
+    outputs.say(found.summary(), {"--json": options.json})
     return 0
 
 
@@ -109,13 +128,13 @@ def _known(file: Path, name: str) -> Sequence[Answer]:
                 write_text(file, "".join(f"{kept}\n" for kept in lines[:-1]))
                 break
             raise InputError(
-                file=file, row=row, problem="is no answer of jbf check", mend="name another file"
+                file=file, row=row, problem="is not a result of jbf check", mend="name another file"
             ) from None
         if of != name:
             raise InputError(
                 file=file,
                 row=row,
-                problem="is of another model, other runs or another level",
+                problem="belongs to another model, other runs or another level",
                 mend="name another file, or remove this one",
             )
         found.append(answer)

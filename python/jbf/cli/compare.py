@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_effects_from, add_json, add_report, add_runs, command
@@ -11,28 +11,42 @@ from jbf.cli.progress import shown
 from jbf.reporting.json import json_text
 
 
+@dataclass(frozen=True)
+class CompareOptions:
+    """Arguments of the command."""
+
+    model: str
+    runs: tuple[str, ...]
+    map: str | None
+    json: str | None
+    report: str | None
+    effects_from: tuple[str, ...]
+    typed: str
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "compare", COMMANDS["compare"], run)
+    parser = command(commands, "compare", COMMANDS["compare"], CompareOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     add_runs(parser)
     parser.add_argument(
-        "--map", metavar="MAP", help="the runs are recordings, read through this map (jbf import)"
+        "--map", metavar="MAP", help="map of jbf import with which the runs are read"
     )
     add_json(parser)
     add_report(parser)
     add_effects_from(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: CompareOptions) -> int:
     """Run the command."""
-    wanted = {"--json": arguments.json, "--report": arguments.report}
-    outputs.check(wanted, outputs.read_by(arguments))
-    model = inputs.model(arguments.model)
-    if arguments.map is None:
-        runs = inputs.runs(arguments.runs, model.rig, first="MODEL")
+    wanted = {"--json": options.json, "--report": options.report}
+    read = outputs.inputs_in(options.model, options.runs, options.map, options.effects_from)
+    outputs.check(wanted, read)
+    model = inputs.model(options.model)
+    if options.map is None:
+        runs = inputs.runs(options.runs, model.rig, first="MODEL")
     else:
-        _, runs = inputs.recordings(arguments.map, arguments.runs)
+        _, runs = inputs.recordings(options.map, options.runs)
     outputs.check(wanted, [run.path for run in runs if run.path])
 
     from jbf.comparison.compare import compare
@@ -40,12 +54,12 @@ def run(arguments: argparse.Namespace) -> int:
     texts = {}
     with shown("comparing"):
         comparison = compare(model, runs)
-        if arguments.report:
+        if options.report:
             from jbf.reporting.comparison_page import comparison_page
 
-            texts[arguments.report] = comparison_page(comparison, arguments.typed)
-    if arguments.json:
-        texts[arguments.json] = json_text(comparison.to_dict())
+            texts[options.report] = comparison_page(comparison, options.typed)
+    if options.json:
+        texts[options.json] = json_text(comparison.to_dict())
     summary = comparison.summary()
     outputs.write(texts)
     outputs.say(summary, wanted)

@@ -41,6 +41,8 @@ class _Words:
         self.options: dict[str, str] = {}
         self.values: dict[str, list[str]] = {}
         for action in parser._actions:
+            if action.help == argparse.SUPPRESS:
+                continue
             for option in action.option_strings:
                 self.options[option] = action.help or ""
                 if action.choices is not None:

@@ -2,35 +2,54 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import shlex
 import shutil
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 from jbf.cli import outputs
-from jbf.cli.arguments import Commands, command
+from jbf.cli.arguments import Commands, Verbosity, add_verbosity, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 
 
+@dataclass(frozen=True)
+class DemoOptions:
+    """Arguments of the command."""
+
+    directory: str
+    verbosity: Verbosity
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "demo", COMMANDS["demo"], run)
+    parser = command(commands, "demo", COMMANDS["demo"], DemoOptions, run)
     parser.add_argument(
-        "directory", metavar="DIR", nargs="?", default="jbf-demo", help="folder for its files"
+        "directory",
+        metavar="DIR",
+        nargs="?",
+        default="jbf-demo",
+        help="folder for the data and the results (default: jbf-demo)",
     )
+    add_verbosity(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: DemoOptions) -> int:
     """Run the command."""
     from jbf.demo import run as run_demo
+    from jbf.reporting.diagnosis_summary import verdict_line
 
-    directory = Path(arguments.directory)
+    directory = Path(options.directory)
     outputs.check_folder("DIR", directory)
-    with shown("the demo") as report:
-        run_demo(directory, progress=report, jbf=called(sys.argv[0]))
+    with shown("diagnosing the shipped data") as report:
+        demo = run_demo(directory, report)
+    if options.verbosity.quiet:
+        outputs.say(verdict_line(demo.diagnosis), {})
+    else:
+        text = demo.text(full=options.verbosity.full, command=called(sys.argv[0]))
+        outputs.say(text, {})
     return 0
 
 

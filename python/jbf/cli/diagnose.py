@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-import argparse
 import os
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from jbf.cli import diagnose_many, hold_out, inputs, level, limits, outputs
 from jbf.cli.arguments import (
     Commands,
+    LawOptions,
+    Verbosity,
     add_effects_from,
     add_json,
     add_law,
     add_report,
+    add_rig,
     add_runs,
+    add_verbosity,
     command,
 )
 from jbf.cli.commands import COMMANDS
@@ -25,20 +29,44 @@ from jbf.reporting.json import json_text
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
+    from jbf.diagnosis import Diagnosis
+
+
+@dataclass(frozen=True)
+class DiagnoseOptions:
+    """Arguments of the command."""
+
+    rig: str | None
+    runs: tuple[str, ...]
+    law: LawOptions
+    hold_out: tuple[str, ...]
+    level: level.LevelOptions
+    next_run: str | None
+    next_duration_s: float
+    limits: limits.LimitOptions
+    many: str | None
+    jobs: int | None
+    out: str | None
+    json: str | None
+    report: str | None
+    verbosity: Verbosity
+    effects_from: tuple[str, ...]
+    typed: str
 
 
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "diagnose", COMMANDS["diagnose"], run)
-    parser.add_argument(
-        "rig", metavar="RIG", nargs="?", help="rig file (TOML), a folder of jbf import, or its map"
-    )
+    parser = command(commands, "diagnose", COMMANDS["diagnose"], DiagnoseOptions, run)
+    add_rig(parser, nargs="?")
     add_runs(parser, needed=False)
-    parser.add_argument("--out", metavar="MODEL", help="write the completed model")
+    parser.add_argument("--out", metavar="MODEL", help="write the completed model (TOML)")
     add_json(parser)
     add_report(parser)
-    add_law(parser, also=f"; {AUTO}, which a drive takes: the one that alone predicts best")
-    parser.set_defaults(law=None)
+    add_verbosity(parser)
+    also = (
+        f", or {AUTO}: the law that predicts held-out runs best (default: journal for a bearing, "
+    )
+    add_law(parser, also=f"{also}{AUTO} for a drive)")
     add_effects_from(parser)
     hold_out.add(parser)
     level.add(parser)
@@ -48,40 +76,55 @@ def add(commands: Commands) -> None:
 
 def _add_next_run(parser: Parser) -> None:
     group = parser.add_argument_group(
-        "next experiment", "the run that would part effects that fit equally well"
+        "next experiment", "a run that distinguishes effects that fit equally well"
     )
     group.add_argument(
-        "--next-run", metavar="CSV", help="write its motion, to be played; needs a tie"
+        "--next-run",
+        metavar="CSV",
+        help="write the motion of that run, if effects fit equally well",
     )
-    group.add_argument("--next-duration-s", metavar="X", type=float, default=60.0, help="60")
+    group.add_argument(
+        "--next-duration-s",
+        metavar="X",
+        type=float,
+        default=60.0,
+        help="duration of that run, s (default 60)",
+    )
     limits.add(group, otherwise="as recorded", sharpest="as recorded")
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: DiagnoseOptions) -> int:
     """Run the command."""
-    if arguments.many is not None:
-        if arguments.hold_out:
-            raise InputError(
-                file=hold_out.OPTION, problem="goes with one rig", mend="leave out --many"
-            )
-        return diagnose_many.run(arguments, limits.limits(arguments, arguments.next_duration_s))
-    alone = arguments.rig is not None and os.path.isdir(arguments.rig)
-    if arguments.rig is None or not (arguments.runs or alone):
+    if options.many is not None:
+        for name, given in (
+            (hold_out.OPTION, options.hold_out),
+            ("--full", options.verbosity.full),
+            ("--quiet", options.verbosity.quiet),
+        ):
+            if given:
+                raise InputError(
+                    file=name, problem="applies to a single rig", mend="leave out --many"
+                )
+        return diagnose_many.run(options, options.many)
+    alone = options.rig is not None and os.path.isdir(options.rig)
+    if options.rig is None or not (options.runs or alone):
         raise InputError(
             file="jbf diagnose",
             problem="RIG and RUN are missing",
-            mend="name the rig's TOML and its runs, or --many FOLDER",
+            mend="name the rig file and its runs, or --many FOLDER",
         )
-    wanted = {"--out": arguments.out, "--json": arguments.json, "--report": arguments.report}
-    wanted["--next-run"] = arguments.next_run
-    outputs.check(wanted, outputs.read_by(arguments))
-    if arguments.law not in (None, AUTO):
-        find_law(arguments.law)
-    rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)
-    policy = level.policy(arguments, rig.quantities)
-    asked = limits.limits(arguments, arguments.next_duration_s, rig.quantities)
+    wanted = {"--out": options.out, "--json": options.json, "--report": options.report}
+    wanted["--next-run"] = options.next_run
+    read = outputs.inputs_in(options.rig, options.runs, options.effects_from)
+    outputs.check(wanted, read)
+    law = options.law.law
+    if law not in (None, AUTO):
+        find_law(law)
+    rig, runs = inputs.campaign(options.rig, options.runs, law)
+    policy = options.level.policy(rig.quantities)
+    limits_of_rig = options.limits.limits(options.next_duration_s, rig.quantities)
     outputs.check(wanted, [run.path for run in runs if run.path])
-    runs, held = hold_out.split(runs, arguments)
+    runs, held = hold_out.split(runs, options.hold_out)
 
     from jbf.diagnosis import diagnose
 
@@ -91,31 +134,44 @@ def run(arguments: argparse.Namespace) -> int:
             diagnosis = diagnose(
                 rig,
                 runs,
-                law=inputs.law_for(rig, arguments.law),
-                clock=arguments.clock,
-                limits=asked,
+                law=inputs.law_for(rig, law),
+                clock=options.law.clock,
+                limits=limits_of_rig,
                 policy=policy,
                 progress=report,
             )
-            if arguments.report:
+            if options.report:
                 from jbf.reporting.diagnosis_page import diagnosis_page
 
-                texts[arguments.report] = diagnosis_page(diagnosis, arguments.typed)
+                texts[options.report] = diagnosis_page(diagnosis, options.typed)
     except Stopped as stop:
-        raise outputs.keep(stop, arguments.out) from None
+        raise outputs.keep(stop, options.out) from None
     except Unfinished as end:
-        kept = outputs.keep_unfinished(end, arguments.out, arguments.json, arguments.report)
+        kept = outputs.keep_unfinished(end, options.out, options.json, options.report)
         raise kept from None
     told = hold_out.error_for_json(diagnosis.model, held)
-    if arguments.json:
-        texts[arguments.json] = json_text(diagnosis.to_dict() | told)
-    if arguments.out:
-        texts[arguments.out] = diagnosis.model.to_toml()
-    summary = diagnosis.summary() + hold_out.words(diagnosis.model, told)
-    if arguments.next_run and diagnosis.experiment:
-        texts[arguments.next_run] = diagnosis.experiment.run.to_csv()
-    elif arguments.next_run:
-        summary += f"\n\nNo next run to play: {arguments.next_run} was not written"
+    if options.json:
+        texts[options.json] = json_text(diagnosis.to_dict() | told)
+    if options.out:
+        texts[options.out] = diagnosis.model.to_toml()
+    if options.next_run and diagnosis.experiment:
+        texts[options.next_run] = diagnosis.experiment.run.to_csv()
     outputs.write(texts)
-    outputs.say(summary, wanted)
+    outputs.say(_text(diagnosis, options, hold_out.words(diagnosis.model, told)), wanted)
     return 0
+
+
+def _text(diagnosis: Diagnosis, options: DiagnoseOptions, held_out: list[str]) -> str:
+    """Return the printed text."""
+    from jbf.reporting.diagnosis_summary import MOST_LINES, diagnosis_summary, verdict_line
+
+    if options.verbosity.quiet:
+        return verdict_line(diagnosis)
+    lines = list(held_out)
+    if options.next_run and diagnosis.experiment is None:
+        lines += ["", f"No effects fit equally well: {options.next_run} was not written"]
+    if options.verbosity.full:
+        return "\n".join([diagnosis.summary(full=True), *lines])
+    report = options.report or "add --report FILE.html"
+    lines += ["", f"Complete report: add --full; with figures: {report}"]
+    return "\n".join([diagnosis_summary(diagnosis, MOST_LINES - len(lines)), *lines])

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jbf.cli import level, outputs
+from jbf.cli import outputs
 from jbf.cli.progress import shown
 from jbf.cores import check_jobs, processes
 from jbf.errors import InputError
@@ -18,7 +17,8 @@ from jbf.reporting.words import number
 
 if TYPE_CHECKING:
     from jbf.cli import Parser
-    from jbf.diagnosis import Diagnosis, Limits
+    from jbf.cli.diagnose import DiagnoseOptions
+    from jbf.diagnosis import Diagnosis
     from jbf.errors import JbfError
 
 
@@ -28,75 +28,76 @@ def add(parser: Parser) -> None:
     group.add_argument(
         "--many",
         metavar="FOLDER",
-        help="diagnose each folder in it, which holds rig.toml and CSV files; --out and --report "
-        "then name folders, for one file a campaign",
+        help="diagnose every subfolder with a rig.toml and CSV files; --out and --report then name "
+        "folders with one file per campaign",
     )
-    group.add_argument("--jobs", metavar="N", type=int, help="campaigns at a time; all cores")
+    group.add_argument(
+        "--jobs", metavar="N", type=int, help="number of parallel processes (default: all cores)"
+    )
 
 
-def run(arguments: argparse.Namespace, limits: Limits) -> int:
+def run(options: DiagnoseOptions, folder: str) -> int:
     """Run the command; a campaign that fails is reported, and the others continue."""
     from jbf.diagnosis import diagnose_many
 
-    if arguments.rig is not None or arguments.next_run:
+    if options.rig is not None or options.next_run:
         raise InputError(
             file="jbf diagnose --many",
-            problem="takes neither RIG nor RUN nor --next-run",
-            mend="each folder in it holds its own rig.toml and runs",
+            problem="excludes RIG, RUN and --next-run",
+            mend="each subfolder contains its own rig.toml and runs",
         )
-    check_jobs(arguments.jobs)
-    campaigns = campaigns_in(arguments.many)
-    jobs = processes(arguments.jobs, len(campaigns))
-    read = list(outputs.read_by(arguments))
-    outputs.check({"--json": arguments.json}, read)
-    for option in ("out", "report"):
-        if getattr(arguments, option):
-            outputs.check_folder(f"--{option}", Path(getattr(arguments, option)))
+    check_jobs(options.jobs)
+    campaigns = campaigns_in(folder)
+    jobs = processes(options.jobs, len(campaigns))
+    inside = [str(path) for path in Path(folder).iterdir()]
+    read = list(outputs.inputs_in(folder, inside, options.effects_from))
+    outputs.check({"--json": options.json}, read)
+    for option, path in (("--out", options.out), ("--report", options.report)):
+        if path:
+            outputs.check_folder(option, Path(path))
     for name in campaigns:
-        outputs.check({"--json": arguments.json} | _paths(arguments, name), read)
+        outputs.check({"--json": options.json} | _paths(options, name), read)
     with shown("diagnosing") as report, ProcessPoolExecutor(jobs) as executor:
         found = diagnose_many(
             campaigns,
             executor=executor,
             progress=report,
-            law=arguments.law or "journal",
-            clock=arguments.clock,
-            limits=limits,
-            policy=level.policy(arguments),
+            law=options.law.law or "journal",
+            clock=options.law.clock,
+            limits=options.limits.limits(options.next_duration_s),
+            policy=options.level.policy(),
         )
     texts: dict[str, str] = {}
     for name, result in found.items():
-        texts |= _files(arguments, name, result)
-    if arguments.json:
+        texts |= _files(options, name, result)
+    if options.json:
         pages = {name: _page(result) for name, result in found.items()}
-        texts[arguments.json] = json_text(pages)
+        texts[options.json] = json_text(pages)
     outputs.write(texts)
-    outputs.say("\n".join(_table(found)), {"--json": arguments.json})
+    outputs.say("\n".join(_table(found)), {"--json": options.json})
     return 0
 
 
-def _paths(arguments: argparse.Namespace, name: str) -> dict[str, str]:
+def _paths(options: DiagnoseOptions, name: str) -> dict[str, str]:
     """Return the output files of one campaign, by option."""
     found = {}
-    if arguments.out:
-        found["--out"] = str(Path(arguments.out) / f"{name}.toml")
-    if arguments.report:
-        found["--report"] = str(Path(arguments.report) / f"{name}.html")
+    if options.out:
+        found["--out"] = str(Path(options.out) / f"{name}.toml")
+    if options.report:
+        found["--report"] = str(Path(options.report) / f"{name}.html")
     return found
 
 
-def _files(
-    arguments: argparse.Namespace, name: str, result: Diagnosis | JbfError
-) -> dict[str, str]:
+def _files(options: DiagnoseOptions, name: str, result: Diagnosis | JbfError) -> dict[str, str]:
     if isinstance(result, Exception):
         return {}
-    paths, found = _paths(arguments, name), {}
+    paths, found = _paths(options, name), {}
     if "--out" in paths:
         found[paths["--out"]] = result.model.to_toml()
     if "--report" in paths:
         from jbf.reporting.diagnosis_page import diagnosis_page
 
-        found[paths["--report"]] = diagnosis_page(result, arguments.typed)
+        found[paths["--report"]] = diagnosis_page(result, options.typed)
     return found
 
 
@@ -109,7 +110,7 @@ def _table(found: dict[str, Diagnosis | JbfError]) -> list[str]:
     units = {r.model.rig.quantities.force for r in done} or {"N"}
     # If the units of the rigs differ, each number carries its own unit.
     head = f" ({units.pop()})" if len(units) == 1 else ""
-    rows = [("campaign", "verdict", "effects", f"held out{head}", f"noise{head}")]
+    rows = [("campaign", "verdict", "effects", f"held-out RMS{head}", f"noise{head}")]
     failed = []
     for name, result in found.items():
         if isinstance(result, Exception):

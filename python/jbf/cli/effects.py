@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
-from dataclasses import asdict, fields
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from jbf.cli import outputs
@@ -13,33 +12,44 @@ from jbf.models.catalogue import Effect, effects, find_effect, find_law, reason_
 from jbf.reporting.json import json_text
 
 
+@dataclass(frozen=True)
+class EffectsOptions:
+    """Arguments of the command."""
+
+    name: str | None
+    law: str | None
+    json: str | None
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "effects", COMMANDS["effects"], run)
-    parser.add_argument("name", metavar="NAME", nargs="?", help="one effect's page")
-    add_law_name(parser, None, "say which effects go with this law, and why the others do not")
+    parser = command(commands, "effects", COMMANDS["effects"], EffectsOptions, run)
+    parser.add_argument(
+        "name", metavar="NAME", nargs="?", help="effect whose description is printed"
+    )
+    add_law_name(parser, "list the effects that apply to this law, and why the others do not")
     add_json(parser)
     add_effects_from(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: EffectsOptions) -> int:
     """Run the command."""
     from jbf.reporting.catalogue_text import effect_page, effects_page
 
-    wanted = {"--json": arguments.json}
+    wanted = {"--json": options.json}
     outputs.check(wanted)
-    law = None if arguments.law is None else find_law(arguments.law).name
-    if arguments.name is None:
+    law = None if options.law is None else find_law(options.law).name
+    if options.name is None:
         pages = list(effects().values())
         text = effects_page(pages, law)
     else:
-        pages = [find_effect(arguments.name)]
+        pages = [find_effect(options.name)]
         text = effect_page(pages[0])
         reason = None if law is None else reason_not_applicable(pages[0], law)
         if reason is not None:
             text += f"\n\nDoes not apply: the law {law} {reason}"
-    if arguments.json:
-        outputs.write({arguments.json: json_text({"effects": list(map(_plain, pages))})})
+    if options.json:
+        outputs.write({options.json: json_text({"effects": list(map(_plain, pages))})})
     outputs.say(text, wanted)
     return 0
 

@@ -9,12 +9,12 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "workbench": ("jbf workbench", "jbf workbench measurements --no-browser --port 8000"),
     "import": (
         "jbf import log.tdms",
-        "jbf import log.tdms --map map.toml --out campaign",
-        "jbf import logs/*.csv --map map.toml --out campaign --plot cut.png",
+        "jbf import log.tdms --map map.toml --folder campaign",
+        "jbf import logs/*.csv --map map.toml --folder campaign --plot cut.png",
     ),
     "compare": ("jbf compare model.toml runs/ --report compare.html",),
     "fit": (
-        "jbf fit rig.toml runs/ --out model.toml",
+        "jbf fit rig.toml runs/",
         "jbf fit rig.toml runs/ --law lugre --effects inertia,sensor_offset --out model.toml",
         "jbf fit rig.toml runs/ --fix f_m=0.26 --bootstrap 50 --out model.toml",
     ),
@@ -28,20 +28,20 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "jbf power model.toml planned/ --json power.json",
     ),
     "check": ("jbf check model.toml runs/ -n 200 --resume answers.jsonl",),
-    "plan": ("jbf plan rig.toml --minutes 10 --max-velocity 0.1 --noise 0.5 --out planned",),
+    "plan": ("jbf plan rig.toml --minutes 10 --max-velocity 0.1 --noise 0.5 --folder planned",),
     "predict": (
         "jbf predict model.toml motion.csv --out friction.csv",
-        "jbf predict model.toml motion.csv --out -",
+        "jbf predict model.toml motion.csv",
     ),
     "export": ("jbf export model.toml --rust friction.rs", "jbf export model.toml --c friction.h"),
     "effects": ("jbf effects", "jbf effects presliding", "jbf effects --law lugre"),
-    "control": ("jbf control", "jbf control run --scheme none,observed --plot loops.png"),
+    "control": ("jbf control tables", "jbf control run --scheme none,observed --plot loops.png"),
     "control run": (
         "jbf control run model.toml --scheme none,observed --plot loops.png",
-        "jbf control run --scheme observed --task 'velocity sine' --out loop.csv",
+        "jbf control run --scheme observed --task 'velocity sine' --csv loop.csv",
     ),
     "control tables": ("jbf control tables --plot tables.png",),
-    "control tune": ("jbf control tune model.toml --out settings.toml",),
+    "control tune": ("jbf control tune model.toml --toml settings.toml",),
     "control robustness": ("jbf control robustness model.toml --json robustness.json",),
 }
 """Examples, keyed by the words of the command."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 
 from jbf.cli import inputs, outputs
@@ -12,31 +12,42 @@ from jbf.errors import InputError
 from jbf.export import c, rust
 
 
+@dataclass(frozen=True)
+class ExportOptions:
+    """Arguments of the command."""
+
+    model: str
+    rust: str | None
+    c: str | None
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "export", COMMANDS["export"], run)
+    parser = command(commands, "export", COMMANDS["export"], ExportOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
-    parser.add_argument("--rust", metavar="FILE.rs", help="a Rust module for jbf-core; - is stdout")
-    parser.add_argument("--c", metavar="FILE.h", help="a C header for jbf-c; - is stdout")
+    parser.add_argument(
+        "--rust", metavar="FILE.rs", help="write a Rust module for jbf-core (- for standard output)"
+    )
+    parser.add_argument(
+        "--c", metavar="FILE.h", help="write a C header for jbf-c (- for standard output)"
+    )
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: ExportOptions) -> int:
     """Run the command."""
-    wanted = {"--rust": arguments.rust, "--c": arguments.c}
+    wanted = {"--rust": options.rust, "--c": options.c}
     if not any(wanted.values()):
-        raise InputError(
-            problem="nothing to write", mend="name a file: --rust FILE.rs or --c FILE.h"
-        )
-    outputs.check(wanted, outputs.read_by(arguments))
-    model = inputs.model(arguments.model)
-    name = Path(arguments.model).name
+        raise InputError(problem="no output is given", mend="add --rust FILE.rs or --c FILE.h")
+    outputs.check(wanted, [options.model])
+    model = inputs.model(options.model)
+    name = Path(options.model).name
     texts = {}
     try:
-        for path, write in ((arguments.rust, rust), (arguments.c, c)):
+        for path, write in ((options.rust, rust), (options.c, c)):
             if path is not None:
                 texts[path] = write(model, name)
     except InputError as error:
-        raise error.within(file=arguments.model) from None
+        raise error.within(file=options.model) from None
     outputs.write(texts)
     outputs.say(f"model written to {', '.join(texts)}", wanted)
     return 0

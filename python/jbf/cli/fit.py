@@ -1,13 +1,21 @@
-"""`jbf fit RIG RUN... --out MODEL`: fit the base law with the named effects."""
+"""`jbf fit RIG RUN... [--out MODEL]`: fit the base law with the named effects."""
 
 from __future__ import annotations
 
-import argparse
 import os
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from jbf.cli import hold_out, inputs, outputs
-from jbf.cli.arguments import Commands, add_effects_from, add_law, add_runs, command
+from jbf.cli.arguments import (
+    Commands,
+    LawOptions,
+    add_effects_from,
+    add_law,
+    add_rig,
+    add_runs,
+    command,
+)
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import Report, shown
 from jbf.errors import InputError, Stopped, Unfinished, quoted
@@ -18,65 +26,79 @@ if TYPE_CHECKING:
     from jbf.records.run import Run
 
 
+@dataclass(frozen=True)
+class FitOptions:
+    """Arguments of the command."""
+
+    rig: str
+    runs: tuple[str, ...]
+    effects: str
+    law: LawOptions
+    fix: tuple[str, ...]
+    start: tuple[str, ...]
+    bootstrap: int | None
+    hold_out: tuple[str, ...]
+    out: str | None
+    effects_from: tuple[str, ...]
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "fit", COMMANDS["fit"], run)
-    parser.add_argument(
-        "rig", metavar="RIG", help="rig file (TOML), a folder of jbf import, or its map"
-    )
+    parser = command(commands, "fit", COMMANDS["fit"], FitOptions, run)
+    add_rig(parser)
     add_runs(parser, needed=False)
     parser.add_argument(
         "--effects",
         metavar="A,B",
         default="",
-        help="effects to fit beside the law (jbf effects lists them)",
+        help="effects to fit in addition to the law (jbf effects lists them)",
     )
-    add_law(parser)
+    add_law(parser, also="; default journal")
     parser.add_argument(
         "--fix",
         metavar="NAME=VALUE",
         action="append",
         default=[],
-        help="hold a parameter at a value, SI units; may be repeated",
+        help="fix a parameter at a value, SI units; may be repeated",
     )
     parser.add_argument(
         "--start",
         metavar="NAME=VALUE",
         action="append",
         default=[],
-        help="start the search of a parameter at a value, SI units; may be repeated",
+        help="start value of a parameter, SI units; may be repeated",
     )
     parser.add_argument(
         "--bootstrap",
         metavar="N",
         type=int,
-        help="take the errors from N fits of simulated records of the same runs (19 or more; "
+        help="standard errors from N fits to simulated records of the same runs (at least 19; "
         "takes N times as long)",
     )
     hold_out.add(parser)
-    parser.add_argument("--out", metavar="MODEL", required=True, help="model file to write")
+    parser.add_argument("--out", metavar="MODEL", help="write the fitted model (TOML)")
     add_effects_from(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: FitOptions) -> int:
     """Run the command."""
-    wanted = {"--out": arguments.out}
-    if not arguments.runs and not os.path.isdir(arguments.rig):
+    wanted, law = {"--out": options.out}, options.law.law or "journal"
+    if not options.runs and not os.path.isdir(options.rig):
         raise InputError(
             file="jbf fit", problem="RUN is missing", mend="name the runs after the rig"
         )
-    outputs.check(wanted, outputs.read_by(arguments))
-    effects = in_chain_order(name.strip() for name in arguments.effects.split(",") if name.strip())
-    check_applies(arguments.law, effects)
-    fixed = _values("--fix", arguments.fix, arguments.law, effects)
-    start = _values("--start", arguments.start, arguments.law, effects)
-    rig, runs = inputs.campaign(arguments.rig, arguments.runs, arguments.law)
+    outputs.check(wanted, outputs.inputs_in(options.rig, options.runs, options.effects_from))
+    effects = in_chain_order(name.strip() for name in options.effects.split(",") if name.strip())
+    check_applies(law, effects)
+    fixed = _values("--fix", options.fix, law, effects)
+    start = _values("--start", options.start, law, effects)
+    rig, runs = inputs.campaign(options.rig, options.runs, law)
     outputs.check(wanted, [run.path for run in runs if run.path])
-    runs, held = hold_out.split(runs, arguments)
+    runs, held = hold_out.split(runs, options.hold_out)
 
     from jbf.estimation.fit import fit
 
-    repeats = arguments.bootstrap
+    repeats = options.bootstrap
     if repeats is not None:
         from jbf.estimation.bootstrap import check_repeats
 
@@ -87,24 +109,25 @@ def run(arguments: argparse.Namespace) -> int:
                 rig,
                 runs,
                 effects,
-                law=arguments.law,
-                clock=arguments.clock,
+                law=law,
+                clock=options.law.clock,
                 start=start,
                 fixed=fixed,
             )
             if repeats is not None:
                 fitted = _repeated(fitted, runs, repeats, report)
     except Stopped as stop:
-        raise outputs.keep(stop, arguments.out) from None
+        raise outputs.keep(stop, options.out) from None
     except Unfinished as end:
-        raise outputs.keep_unfinished(end, arguments.out) from None
+        raise outputs.keep_unfinished(end, options.out) from None
     told = hold_out.error_for_json(fitted.model, held)
-    outputs.write({arguments.out: fitted.model.to_toml()})
-    outputs.say(fitted.report() + hold_out.words(fitted.model, told), wanted)
+    if options.out:
+        outputs.write({options.out: fitted.model.to_toml()})
+    outputs.say("\n".join([fitted.report(), *hold_out.words(fitted.model, told)]), wanted)
     return 0
 
 
-def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report | None) -> Fit:
+def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report) -> Fit:
     """Return the fit with bootstrap standard errors.
 
     Raise `Stopped` with the fit if interrupted.
@@ -117,7 +140,9 @@ def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report | None)
         raise Stopped(fitted) from None
 
 
-def _values(option: str, items: list[str], law: str, effects: tuple[str, ...]) -> dict[str, float]:
+def _values(
+    option: str, items: tuple[str, ...], law: str, effects: tuple[str, ...]
+) -> dict[str, float]:
     """Parse the `NAME=VALUE` items of an option into full names and values."""
     known = parameters_of(law, effects)
     found: dict[str, float] = {}
@@ -143,7 +168,7 @@ def _values(option: str, items: list[str], law: str, effects: tuple[str, ...]) -
             raise InputError(
                 file=place,
                 problem="is out of range",
-                mend=f"choose from {page.lower:g} to {page.upper:g}",
+                mend=f"choose a value from {page.lower:g} to {page.upper:g}",
             )
         found[full] = value
     return found

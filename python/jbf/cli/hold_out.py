@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
+from textwrap import shorten
 from typing import TYPE_CHECKING, Any
 
 from jbf.errors import InputError
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from jbf.models.model import Model
 
 OPTION = "--hold-out"
+WIDEST = 98
+"""Maximum length of the list of errors by run, in characters."""
 
 
 def add(parser: Parser) -> None:
@@ -26,12 +28,12 @@ def add(parser: Parser) -> None:
         metavar="PATTERN",
         action="append",
         default=[],
-        help="use runs with such names (*, ?) for nothing but the error that the model leaves on "
-        "them; may be repeated",
+        help="exclude runs with matching names (wildcards * and ?) from all fits, and report the "
+        "error of the model on them; may be repeated",
     )
 
 
-def split(runs: Sequence[Run], asked: argparse.Namespace) -> tuple[list[Run], list[Run]]:
+def split(runs: Sequence[Run], patterns: Sequence[str]) -> tuple[list[Run], list[Run]]:
     """Split the runs into those used and those held out.
 
     Raises
@@ -39,19 +41,20 @@ def split(runs: Sequence[Run], asked: argparse.Namespace) -> tuple[list[Run], li
     InputError
         A pattern matches no run, or the patterns match all runs.
     """
-    patterns: list[str] = asked.hold_out
     for pattern in patterns:
         if not any(_fits(run, pattern) for run in runs):
             raise InputError(
                 file=f"{OPTION} {pattern}",
-                problem="fits no run",
-                mend=f"there are {listed(run.name for run in runs)}",
+                problem="matches no run",
+                mend=f"the runs are {listed(run.name for run in runs)}",
             )
     held = [run for run in runs if any(_fits(run, pattern) for pattern in patterns)]
     used = [run for run in runs if not any(_fits(run, pattern) for pattern in patterns)]
     if not used:
         raise InputError(
-            file=f"{OPTION} {patterns[0]}", problem="fits every run", mend="leave some to be fitted"
+            file=f"{OPTION} {patterns[0]}",
+            problem="matches every run",
+            mend="leave some runs for the fit",
         )
     return used, held
 
@@ -74,18 +77,19 @@ def error_for_json(model: Model, held: Sequence[Run]) -> dict[str, Any]:
     return {"hold_out": {key: error[key] for key in ("rms", "noise_rms", "runs")}}
 
 
-def words(model: Model, error: dict[str, Any]) -> str:
-    """Format the error on the held-out runs as text."""
+def words(model: Model, error: dict[str, Any]) -> list[str]:
+    """Format the error on the held-out runs as lines."""
     if not error:
-        return ""
+        return []
     from jbf.reporting.words import against_noise
 
     found = error["hold_out"]
     unit = model.rig.quantities.force
     ratio = against_noise(found["rms"], found["noise_rms"] or 0.0)
     runs = ", ".join(f"{run['run']} {run['rms']:.3g}" for run in found["runs"])
-    return (
-        f"\n\nHeld out ({count_of(len(found['runs']), 'run')}, used for nothing else): RMS "
-        f"{found['rms']:.4g} {unit}, {ratio}"
-        f"\n  {runs}"
-    )
+    return [
+        "",
+        f"Held out ({count_of(len(found['runs']), 'run')}, excluded from all fits): RMS "
+        f"{found['rms']:.4g} {unit}, {ratio}",
+        f"  {shorten(runs, WIDEST, placeholder=' ...')}",
+    ]

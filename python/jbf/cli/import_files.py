@@ -1,14 +1,14 @@
-"""`jbf import FILE... [--map MAP] [--out FOLDER]`: convert recordings to a campaign."""
+"""`jbf import FILE... [--map MAP] [--folder FOLDER]`: convert recordings to a campaign."""
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jbf.cli import outputs
-from jbf.cli.arguments import Commands, command
+from jbf.cli.arguments import Commands, add_earlier_name, command
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.errors import InputError
@@ -22,134 +22,163 @@ EVERY = "all"
 """Value of `--joint` that selects every joint."""
 
 
+@dataclass(frozen=True)
+class ImportOptions:
+    """Arguments of the command."""
+
+    files: tuple[str, ...]
+    map: str | None
+    beside: tuple[str, ...] | None
+    folder: str | None
+    joint: str | None
+    cut: str | None
+    no_cut: bool
+    plot: str | None
+    force: bool
+
+    def inputs(self) -> list[Path]:
+        """Return every file that the command may read."""
+        return list(outputs.inputs_in(self.files, self.map, self.beside, self.cut))
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "import", COMMANDS["import"], run)
+    parser = command(commands, "import", COMMANDS["import"], ImportOptions, run)
     parser.add_argument(
-        "files", metavar="FILE", nargs="+", help="recordings; one map fits all of them"
+        "files", metavar="FILE", nargs="+", help="recordings, all read with one map"
     )
     parser.add_argument(
         "--map",
         metavar="MAP",
-        help="which columns make which, in which units (TOML); without it and --out the file is "
-        "looked at and map.toml is written beside it",
+        help="map of the columns and their units (TOML); without --map and --folder, the file is "
+        "inspected and a map.toml to edit is written next to it",
     )
     parser.add_argument(
         "--beside",
         metavar="FILE",
         action="append",
-        help="a file that was recorded at the same time with a clock of its own; may be repeated; "
-        "replaces [file] beside of the map",
+        help="file recorded at the same time by another logger with its own clock; may be "
+        "repeated; overrides beside in the [file] table of the map",
     )
-    parser.add_argument("--out", metavar="FOLDER", help="write the runs and rig.toml there")
+    parser.add_argument(
+        "--folder", metavar="FOLDER", help="write the runs and rig.toml to this folder"
+    )
+    add_earlier_name(parser, "--out", "--folder")
     parser.add_argument(
         "--joint",
         metavar="NAME",
-        help="one of the joints in the file; all: import each joint into a subfolder of FOLDER",
+        help="joint to import, where the file contains several; all: each joint into a subfolder "
+        "of FOLDER",
     )
-    parser.add_argument("--cut", metavar="CUT", help="cut.toml of an earlier import, edited")
+    parser.add_argument("--cut", metavar="CUT", help="edited cut.toml of an earlier import")
     parser.add_argument(
         "--no-cut",
         action="store_true",
-        help="do not cut at rests where the map says nothing of cutting",
+        help="do not divide recordings at rests, unless the map says so",
     )
-    parser.add_argument("--plot", metavar="PNG", help="draw how the recordings were cut")
     parser.add_argument(
-        "--force", action="store_true", help="replace an earlier import, an earlier map.toml"
+        "--plot", metavar="PNG", help="plot how the recordings were divided into runs"
+    )
+    parser.add_argument(
+        "--force", action="store_true", help="replace an earlier import or map.toml"
     )
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: ImportOptions) -> int:
     """Run the command."""
-    outputs.check({"--plot": arguments.plot}, outputs.read_by(arguments))
-    if arguments.joint is not None and arguments.map is not None:
-        raise InputError(file="--joint", problem="goes without --map", mend="the map names columns")
-    if arguments.map is None and arguments.out is None:
-        return _look(arguments)
-    if arguments.joint == EVERY:
-        return _each_joint(arguments)
-    return _import(arguments, arguments.joint, arguments.out)
+    outputs.check({"--plot": options.plot}, options.inputs())
+    if options.joint is not None and options.map is not None:
+        raise InputError(
+            file="--joint",
+            problem="cannot be combined with --map",
+            mend="the map names the columns of a joint",
+        )
+    if options.map is None and options.folder is None:
+        return _look(options)
+    if options.joint == EVERY:
+        return _each_joint(options)
+    return _import(options, options.joint, options.folder)
 
 
-def _each_joint(arguments: argparse.Namespace) -> int:
+def _each_joint(options: ImportOptions) -> int:
     """Import each joint as a campaign into a folder with the joint's name."""
     from jbf.importing.campaign_folder import check_folder
     from jbf.importing.import_files import look
     from jbf.importing.joints import JointNotChosen
 
-    if arguments.out is None or arguments.plot is not None:
-        mend = "name --out FOLDER, and no --plot"
-        raise InputError(file="--joint", problem="all makes a folder of each joint", mend=mend)
+    if options.folder is None or options.plot is not None:
+        mend = "add --folder FOLDER, and leave out --plot"
+        raise InputError(file="--joint", problem="all writes a folder for each joint", mend=mend)
     try:
-        look(arguments.files[0], beside=arguments.beside or ())
+        look(options.files[0], beside=options.beside or ())
     except JointNotChosen as several:
         joints = several.joints
     else:
-        mend = "leave --joint out"
-        raise InputError(file=arguments.files[0], problem="holds one joint", mend=mend)
-    out = Path(arguments.out)
-    check_folder(out, replace=arguments.force, holding=joints)
+        mend = "leave out --joint"
+        raise InputError(file=options.files[0], problem="contains a single joint", mend=mend)
+    out = Path(options.folder)
+    check_folder(out, replace=options.force, holding=joints)
     out.mkdir(exist_ok=True)
     for joint in joints:
-        check_folder(out / joint, replace=arguments.force)
-    return max(_import(arguments, joint, str(Path(arguments.out) / joint)) for joint in joints)
+        check_folder(out / joint, replace=options.force)
+    return max(_import(options, joint, str(Path(options.folder) / joint)) for joint in joints)
 
 
-def _import(arguments: argparse.Namespace, joint: str | None, out: str | None) -> int:
+def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
     """Import one campaign."""
     from jbf.importing.import_files import OpenQuestions, import_files
 
     try:
         with shown("importing") as report:
             found = import_files(
-                arguments.files,
-                arguments.map,
+                options.files,
+                options.map,
                 out,
-                cut_file=arguments.cut,
-                whole=arguments.no_cut,
-                replace_folder=arguments.force,
+                cut_file=options.cut,
+                whole=options.no_cut,
+                replace_folder=options.force,
                 joint=joint,
-                beside=arguments.beside,
+                beside=options.beside,
                 progress=report,
             )
     except OpenQuestions as questions:
         for line in questions.lines:
             outputs.complain(line)
         return 2
-    if arguments.plot is not None:
-        _draw(found, arguments.plot)
+    if options.plot is not None:
+        _draw(found, options.plot)
     outputs.say(found.summary(), {})
     if out is None:
-        outputs.say("\nNothing was written: name --out FOLDER", {})
+        outputs.say("\nNothing was written; add --folder FOLDER", {})
     return 0
 
 
-def _look(arguments: argparse.Namespace) -> int:
+def _look(options: ImportOptions) -> int:
     """Inspect a file, print the guess, and write a map to edit."""
     from jbf.importing.import_files import look
     from jbf.importing.map_text import map_text
     from jbf.reporting.import_text import guess_report
 
-    for option in ("cut", "plot"):
-        if getattr(arguments, option) is not None:
+    for option, path in (("--cut", options.cut), ("--plot", options.plot)):
+        if path is not None:
             raise InputError(
-                file=f"--{option}",
-                problem="goes with --map or --out",
-                mend="jbf import FILE alone looks at the file",
+                file=option,
+                problem="requires --map or --folder",
+                mend="jbf import FILE alone inspects the file",
             )
-    file = Path(arguments.files[0])
-    if arguments.beside and len(arguments.files) > 1:
+    file = Path(options.files[0])
+    if options.beside and len(options.files) > 1:
         mend = "name one FILE, and the others with --beside"
-        raise InputError(file="--beside", problem="goes with one main file", mend=mend)
-    target, kept = _map_path(file, arguments.joint, replace=arguments.force)
+        raise InputError(file="--beside", problem="requires a single FILE", mend=mend)
+    target, kept = _map_path(file, options.joint, replace=options.force)
     shown_path = file.parent / target.name
     if not kept:
-        outputs.check({shown_path.name: str(target)}, outputs.read_by(arguments))
-    if kept and arguments.beside:
-        problem = f"{shown_path.name} is there and may name other files"
-        mend = f"--force replaces it; or go on with --map {shown_path}"
+        outputs.check({shown_path.name: str(target)}, options.inputs())
+    if kept and options.beside:
+        problem = f"{shown_path.name} exists and may name other files"
+        mend = f"replace it with --force, or use it with --map {shown_path}"
         raise InputError(file=shown_path, problem=problem, mend=mend)
-    found = look(file, arguments.joint, arguments.beside or ())
+    found = look(file, options.joint, options.beside or ())
     if not kept:
         write_text(target, map_text(found, str(shown_path)))
     outputs.say(guess_report(found, str(shown_path), kept=kept), {})

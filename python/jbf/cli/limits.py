@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from jbf.cli.arguments import Group
 from jbf.records.quantities import OF_BEARING, Quantities
 from jbf.units.quantity import number_in
 
@@ -14,13 +15,7 @@ if TYPE_CHECKING:
 SPEED, SHARPNESS, LOADS = "--max-velocity", "--max-acceleration", "--loads"
 
 
-def add(
-    group: argparse._ArgumentGroup | argparse.ArgumentParser,
-    *,
-    otherwise: str,
-    sharpest: str,
-    needed: bool = False,
-) -> None:
+def add(group: Group, *, otherwise: str, sharpest: str, needed: bool = False) -> None:
     """Add the options.
 
     Parameters
@@ -30,60 +25,60 @@ def add(
     needed
         Whether the maximum speed is required.
     """
-    usual = "" if needed else f"; {otherwise}"
+    usual = "" if needed else f" (default: {otherwise})"
     group.add_argument(
         SPEED,
         metavar="X",
         required=needed,
-        help=f"maximum speed of the rig, in its unit or as '0.2 rad/s'{usual}",
+        help=f"largest speed, in the unit of the rig or as '12 deg/s'{usual}",
     )
     group.add_argument(
         SHARPNESS,
         metavar="X",
-        help=f"maximum acceleration of the rig, in its unit or as '5 rad/s^2'; {sharpest}",
+        help=f"largest acceleration, likewise or as '5 rad/s^2' (default: {sharpest})",
     )
     group.add_argument(
         LOADS,
         metavar=("LOW", "HIGH"),
         nargs=2,
-        help=f"lowest and highest load, in N or as '2 kN'; {otherwise}",
+        help=f"smallest and largest load, in N or as '2 kN' (default: {otherwise})",
     )
     group.add_argument(
         "--temperatures-c",
         metavar=("LOW", "HIGH"),
         nargs=2,
         type=float,
-        help=f"lowest and highest temperature, in degrees Celsius; {otherwise}",
+        help=f"lowest and highest temperature of a recording, deg C (default: {otherwise})",
     )
 
 
-def limits(
-    arguments: argparse.Namespace, duration_s: float, quantities: Quantities = OF_BEARING
-) -> Limits:
-    """Return the limits given by the options, for runs of the given duration in seconds.
+@dataclass(frozen=True)
+class LimitOptions:
+    """Operating limits of a rig, with or without units; None for the default."""
 
-    Raises
-    ------
-    InputError
-        A value is not a number in the unit of the rig, or a limit is not positive.
-    """
-    from jbf.diagnosis import Limits
+    max_velocity: str | None
+    max_acceleration: str | None
+    loads: tuple[str, str] | None
+    temperatures_c: tuple[float, float] | None
 
-    speed, acceleration, loads = arguments.max_velocity, arguments.max_acceleration, arguments.loads
-    celsius = arguments.temperatures_c
-    unit = quantities.speed
+    def limits(self, duration_s: float, quantities: Quantities = OF_BEARING) -> Limits:
+        """Return the limits in the units of a rig, for runs of the given duration in seconds.
 
-    def in_newtons(load: str) -> float:
-        return number_in("N", load, LOADS)
+        Raises
+        ------
+        InputError
+            A value is not a number in the unit of the rig, or a limit is not positive.
+        """
+        from jbf.diagnosis import Limits
 
-    return Limits(
-        velocity=None if speed is None else number_in(unit, speed, SPEED),
-        acceleration=(
-            None
-            if acceleration is None
-            else number_in(f"{unit.removesuffix('/s')}/s^2", acceleration, SHARPNESS)
-        ),
-        duration_s=duration_s,
-        load_n=None if loads is None else (in_newtons(loads[0]), in_newtons(loads[1])),
-        temperature_c=None if celsius is None else tuple(celsius),
-    )
+        def given(option: str, text: str | None, unit: str) -> float | None:
+            return None if text is None else number_in(unit, text, option)
+
+        low, high = (number_in("N", load, LOADS) for load in self.loads or ("0", "0"))
+        return Limits(
+            velocity=given(SPEED, self.max_velocity, quantities.speed),
+            acceleration=given(SHARPNESS, self.max_acceleration, f"{quantities.length}/s^2"),
+            duration_s=duration_s,
+            load_n=None if self.loads is None else (low, high),
+            temperature_c=self.temperatures_c,
+        )

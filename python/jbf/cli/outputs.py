@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import secrets
 import sys
@@ -13,35 +12,25 @@ from jbf.errors import InputError, Stopped, Unfinished, printable
 from jbf.text_files import real_path, write_texts
 
 STDOUT = "-"
-_READ = (
-    "rig", "model", "runs", "map", "motion", "files", "beside", "cut", "carried", "settings",
-    "effects_from", "many",
-)  # fmt: skip
-"""Arguments of all commands that name input files."""
 
 
-def read_by(arguments: argparse.Namespace) -> Iterator[Path]:
-    """Yield every file that a command may read, including rigs and runs inside named folders."""
-    for name in _READ:
-        value = getattr(arguments, name, None)
-        for item in value if isinstance(value, list) else [value]:
+def inputs_in(*named: str | Iterable[str] | None) -> Iterator[Path]:
+    """Yield every named file or folder, and the rigs and runs inside the folders."""
+    for value in named:
+        for item in [value] if value is None or isinstance(value, str) else value:
             if item is None:
                 continue
             yield Path(item)
             if os.path.isdir(item):
-                yield from _read_in(Path(item), deeper=name == "many")
+                yield from _campaign_files(Path(item))
 
 
-def _read_in(folder: Path, *, deeper: bool) -> Iterator[Path]:
+def _campaign_files(folder: Path) -> Iterator[Path]:
     try:
         inside = list(folder.iterdir())
     except OSError:
         return  # reported where the folder is read
-    for path in inside:
-        if path.suffix.lower() == ".csv" or path.name == "rig.toml":
-            yield path
-        if deeper and path.is_dir():
-            yield from _read_in(path, deeper=False)
+    yield from (p for p in inside if p.suffix.lower() == ".csv" or p.name == "rig.toml")
 
 
 def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
@@ -66,7 +55,7 @@ def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[
         target = Path(path) if path == STDOUT else real_path(path)
         if target in taken:
             raise InputError(
-                file=f"{option} {path}", problem=taken[target], mend="name another file"
+                file=f"{option} {path}", problem=taken[target], mend="choose another file"
             )
         taken[target] = "is also the file of another option"
         if path != STDOUT:
@@ -82,13 +71,13 @@ def _check_writable(option: str, path: str) -> None:
         raise wrong("is not a file name", "name a file")
     try:
         if real_path(target).is_symlink():
-            raise wrong("is a link that leads to itself", "name another file")
+            raise wrong("is a link to itself", "choose another file")
         if target.is_dir():
             raise wrong("is a folder", "name a file in it")
         if target.exists() and not target.is_file():
             return  # a pipe or a device
         if not real_path(target).parent.is_dir():
-            raise wrong("its folder does not exist", "make the folder or correct the path")
+            raise wrong("its folder does not exist", "create the folder or correct the path")
         # Permission bits do not reveal read-only disks or names that are too long; a test file
         # does.
         trial = real_path(target).with_name(f".{target.name}.{secrets.token_hex(4)}.tmp")
@@ -121,13 +110,13 @@ def check_folder(argument: str, path: Path) -> None:
         raise InputError(
             file=f"{argument} {path}",
             problem="its parent folder does not exist",
-            mend="make it or correct the path",
+            mend="create it or correct the path",
         ) from None
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise InputError(
             file=f"{argument} {path}",
-            problem=f"cannot be made ({reason})",
+            problem=f"cannot be created ({reason})",
             mend="check the path and its permissions",
         ) from None
     _check_writable(argument, str(path / "report.html"))
@@ -148,7 +137,7 @@ def keep(stop: Stopped, out: str | None) -> Kept:
     found = stop.fit
     model = " + ".join([found.model.law, *found.model.effects])
     unit = found.model.rig.quantities.force
-    told = f"interrupted; the best so far is {model}, RMS {found.rms:.3g} {unit}"
+    told = f"interrupted; the best model so far is {model}, RMS {found.rms:.3g} {unit}"
     if out is None:
         say(found.summary(), {})
         return Kept(f"{told}, not finished")
@@ -192,7 +181,7 @@ def write(texts: Mapping[str, str]) -> None:
     if STDOUT in texts:
         if sys.stdout is None:
             raise InputError(
-                file="standard output", problem="is closed", mend="name a file in the place of -"
+                file="standard output", problem="is closed", mend="name a file in place of -"
             )
         _put(texts[STDOUT], data=True)
 
@@ -241,5 +230,5 @@ def _put(text: str, *, data: bool = False) -> None:
         raise InputError(
             file="standard output",
             problem=f"cannot be written ({(error.strerror or type(error).__name__).lower()})",
-            mend="let it go elsewhere",
+            mend="redirect the output to another place",
         ) from None

@@ -1,69 +1,104 @@
-"""`jbf plan RIG`: design the runs to record."""
+"""`jbf plan RIG`: suggest the runs to record."""
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 
 from jbf.cli import level, limits, outputs, power
-from jbf.cli.arguments import Commands, add_effects_from, add_json, add_law, command
+from jbf.cli.arguments import (
+    Commands,
+    LawOptions,
+    add_earlier_name,
+    add_effects_from,
+    add_json,
+    add_law,
+    command,
+)
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.reporting.json import json_text
 
 
+@dataclass(frozen=True)
+class PlanOptions:
+    """Arguments of the command."""
+
+    rig: str
+    minutes: float
+    run_s: float
+    step_s: float
+    limits: limits.LimitOptions
+    noise: str | None
+    law: LawOptions
+    level: level.LevelOptions
+    folder: str | None
+    json: str | None
+    effects_from: tuple[str, ...]
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "plan", COMMANDS["plan"], run)
+    parser = command(commands, "plan", COMMANDS["plan"], PlanOptions, run)
+    power.add_rig_or_model(parser)
     parser.add_argument(
-        "rig", metavar="RIG", help="rig file (TOML), or a model of it (jbf fit --out)"
+        "--minutes",
+        metavar="X",
+        type=float,
+        default=10.0,
+        help="total duration of the runs, min (default 10)",
     )
     parser.add_argument(
-        "--minutes", metavar="X", type=float, default=10.0, help="all runs together; 10"
+        "--run-s", metavar="X", type=float, default=60.0, help="duration of a run, s (default 60)"
     )
-    parser.add_argument("--run-s", metavar="X", type=float, default=60.0, help="each run; 60")
     limits.add(
         parser,
-        otherwise="one",
+        otherwise="a single value",
         sharpest="that of a sine of the largest speed at 2 rad/s",
         needed=True,
     )
     power.add_noise(parser)
     parser.add_argument(
-        "--step-s", metavar="X", type=float, default=0.02, help="from sample to sample; 0.02"
+        "--step-s",
+        metavar="X",
+        type=float,
+        default=0.02,
+        help="sampling interval, s (default 0.02)",
     )
-    parser.add_argument("--out", metavar="FOLDER", help="write the motions, to be played")
+    parser.add_argument(
+        "--folder", metavar="FOLDER", help="write the motions to CSV files in this folder"
+    )
+    add_earlier_name(parser, "--out", "--folder")
     level.add(parser)
     add_json(parser)
-    add_law(parser)
-    parser.set_defaults(law=None)
+    add_law(parser, also="; default journal")
     add_effects_from(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: PlanOptions) -> int:
     """Run the command."""
     from jbf.diagnosis.plan import plan
 
-    wanted = {"--json": arguments.json}
-    outputs.check(wanted, outputs.read_by(arguments))
-    model = power.machine(arguments)
+    wanted = {"--json": options.json}
+    outputs.check(wanted, outputs.inputs_in(options.rig, options.effects_from))
+    model = power.model_of(options.rig, options.law)
     quantities = model.rig.quantities
     with shown("planning"):
         found = plan(
             model,
-            limits=limits.limits(arguments, arguments.run_s, quantities),
-            minutes=arguments.minutes,
-            noise_rms=power.noise_rms(arguments, model),
-            step_s=arguments.step_s,
-            policy=level.policy(arguments, quantities),
+            limits=options.limits.limits(options.run_s, quantities),
+            minutes=options.minutes,
+            noise_rms=power.noise_of(options.noise, model),
+            step_s=options.step_s,
+            policy=options.level.policy(quantities),
         )
     texts = {}
-    if arguments.out:
-        folder = Path(arguments.out)
-        outputs.check_folder("--out", folder)
+    if options.folder:
+        folder = Path(options.folder)
+        outputs.check_folder("--folder", folder)
         texts = {str(folder / f"{one.name}.csv"): one.to_csv() for one in found.runs}
-    if arguments.json:
-        texts[arguments.json] = json_text(found.to_dict())
+    if options.json:
+        texts[options.json] = json_text(found.to_dict())
     outputs.write(texts)
     outputs.say(found.summary(), wanted)
     return 0

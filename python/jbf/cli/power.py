@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from jbf.cli import inputs, level, outputs
-from jbf.cli.arguments import Commands, add_effects_from, add_json, add_law, add_runs, command
+from jbf.cli.arguments import (
+    Commands,
+    LawOptions,
+    add_effects_from,
+    add_json,
+    add_law,
+    add_runs,
+    command,
+)
 from jbf.cli.commands import COMMANDS
 from jbf.cli.progress import shown
 from jbf.errors import InputError
@@ -20,19 +28,36 @@ if TYPE_CHECKING:
     from jbf.cli import Parser
 
 
+@dataclass(frozen=True)
+class PowerOptions:
+    """Arguments of the command."""
+
+    rig: str
+    runs: tuple[str, ...]
+    law: LawOptions
+    noise: str | None
+    level: level.LevelOptions
+    json: str | None
+    effects_from: tuple[str, ...]
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "power", COMMANDS["power"], run)
-    parser.add_argument(
-        "rig", metavar="RIG", help="rig file (TOML), or a model of it (jbf fit --out)"
-    )
+    parser = command(commands, "power", COMMANDS["power"], PowerOptions, run)
+    add_rig_or_model(parser)
     add_runs(parser)
     add_noise(parser)
     level.add(parser)
     add_json(parser)
-    add_law(parser)
-    parser.set_defaults(law=None)
+    add_law(parser, also="; default journal")
     add_effects_from(parser)
+
+
+def add_rig_or_model(parser: Parser) -> None:
+    """Add the positional argument `RIG`, which may be a model."""
+    parser.add_argument(
+        "rig", metavar="RIG", help="rig file (TOML), or a model written by jbf fit or diagnose"
+    )
 
 
 def add_noise(parser: Parser) -> None:
@@ -41,55 +66,55 @@ def add_noise(parser: Parser) -> None:
         "--noise",
         metavar="X",
         help="standard deviation of the noise of the friction, in the unit of the rig or as "
-        "'0.1 N' (default: the residual of the fitted model)",
+        "'0.1 N' (default: the RMS residual of the fitted model)",
     )
 
 
-def noise_rms(arguments: argparse.Namespace, model: Model) -> float:
-    """Return the noise given by `--noise`, or the RMS residual of the fitted model.
+def noise_of(option: str | None, model: Model) -> float:
+    """Return the value of `--noise`, or the RMS residual of the fitted model.
 
     Raises
     ------
     InputError
         Neither is available.
     """
-    if arguments.noise is not None:
-        return number_in(model.rig.quantities.force, arguments.noise, "--noise")
-    left = model.fit.get("rms", model.fit.get("rms_n"))  # files before 0.1.0 have "rms_n"
-    if left is None or isinstance(left, str):
-        raise InputError(problem="--noise is missing", mend="state the expected noise")
-    return float(left)
+    if option is not None:
+        return number_in(model.rig.quantities.force, option, "--noise")
+    residual = model.fit.get("rms", model.fit.get("rms_n"))  # "rms_n" before version 0.1.0
+    if residual is None or isinstance(residual, str):
+        raise InputError(problem="--noise is missing", mend="give the expected noise")
+    return float(residual)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: PowerOptions) -> int:
     """Run the command."""
     from jbf.diagnosis.planned import planned_power
 
-    wanted = {"--json": arguments.json}
-    outputs.check(wanted, outputs.read_by(arguments))
-    model = machine(arguments)
-    noise = noise_rms(arguments, model)
-    runs = read_runs(arguments.runs, model.rig, need_friction=False)
-    policy = level.policy(arguments, model.rig.quantities)
-    with shown("power"):
+    wanted = {"--json": options.json}
+    outputs.check(wanted, outputs.inputs_in(options.rig, options.runs, options.effects_from))
+    model = model_of(options.rig, options.law)
+    noise = noise_of(options.noise, model)
+    runs = read_runs(options.runs, model.rig, need_friction=False)
+    policy = options.level.policy(model.rig.quantities)
+    with shown("computing the power"):
         found = planned_power(model, runs, noise_rms=noise, policy=policy)
-    if arguments.json:
-        outputs.write({arguments.json: json_text(found.to_dict())})
+    if options.json:
+        outputs.write({options.json: json_text(found.to_dict())})
     outputs.say(found.summary(), wanted)
     return 0
 
 
-def machine(arguments: argparse.Namespace) -> Model:
+def model_of(path: str, law_options: LawOptions) -> Model:
     """Load a model, or build one from a rig and a law with the catalogue's typical values."""
-    if inputs.is_model(arguments.rig):
-        if arguments.law is not None:
+    if inputs.is_model(path):
+        if law_options.law is not None:
             raise InputError(
                 file="--law",
-                problem="goes with a rig, and a model has its law",
+                problem="applies to a rig, and a model has its own law",
                 mend="leave it out",
             )
-        return inputs.model(arguments.rig)
-    law = arguments.law or "journal"
-    rig = inputs.rig(arguments.rig, law)
+        return inputs.model(path)
+    law = law_options.law or "journal"
+    rig = inputs.rig(path, law)
     values = {name: page.starts[0] for name, page in parameters_of(law, ()).items()}
-    return Model(rig, law, (), values, arguments.clock)
+    return Model(rig, law, (), values, law_options.clock)

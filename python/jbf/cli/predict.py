@@ -1,8 +1,8 @@
-"""`jbf predict MODEL RUN --out CSV`: friction predicted by the model for a run's motion."""
+"""`jbf predict MODEL RUN [--out CSV]`: friction predicted by the model for a run's motion."""
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 
 from jbf.cli import inputs, outputs
 from jbf.cli.arguments import Commands, add_effects_from, command
@@ -11,30 +11,46 @@ from jbf.errors import InputError
 from jbf.records.checks import POINT
 
 
+@dataclass(frozen=True)
+class PredictOptions:
+    """Arguments of the command."""
+
+    model: str
+    motion: str
+    out: str
+    effects_from: tuple[str, ...]
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "predict", COMMANDS["predict"], run)
+    parser = command(commands, "predict", COMMANDS["predict"], PredictOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
-    parser.add_argument("motion", metavar="RUN", help="a CSV file; it need not hold friction_n")
-    parser.add_argument("--out", metavar="CSV", required=True, help="file to write; - is stdout")
+    parser.add_argument("motion", metavar="RUN", help="CSV file of a run, with or without friction")
+    parser.add_argument(
+        "--out",
+        metavar="CSV",
+        default=outputs.STDOUT,
+        help="write the predicted friction to this file (default: standard output)",
+    )
     add_effects_from(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: PredictOptions) -> int:
     """Run the command."""
-    wanted = {"--out": arguments.out}
-    outputs.check(wanted, outputs.read_by(arguments))
-    model = inputs.model(arguments.model)
-    motion = inputs.motion(arguments.motion, model.rig)
+    wanted = {"--out": options.out}
+    read = outputs.inputs_in(options.model, options.motion, options.effects_from)
+    outputs.check(wanted, read)
+    model = inputs.model(options.model)
+    motion = inputs.motion(options.motion, model.rig)
     try:
         friction = model.predict(motion)
     except InputError as error:
-        raise error.within(file=arguments.motion) from None
+        raise error.within(file=options.motion) from None
     instants, clock = (motion.extra[POINT], POINT) if motion.steady else (motion.time_s, "time_s")
     rows = zip(instants.tolist(), friction.tolist(), strict=True)
     # The repr of a float is the shortest text that is read back as the same value.
     column = model.rig.quantities.friction_column
     lines = [f"{clock},{column}", *(f"{t!r},{f!r}" for t, f in rows)]
-    outputs.write({arguments.out: "\n".join(lines) + "\n"})
-    outputs.say(f"{len(motion)} samples of friction written to {arguments.out}", wanted)
+    outputs.write({options.out: "\n".join(lines) + "\n"})
+    outputs.say(f"{len(motion)} samples of predicted friction written to {options.out}", wanted)
     return 0

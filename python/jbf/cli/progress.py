@@ -1,23 +1,45 @@
-"""Progress display on stderr if it is a terminal, otherwise none."""
+"""Progress on stderr: a bar on a terminal, otherwise a log with one line a minute."""
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Event, Thread
+
+from jbf.errors import printable
 
 Report = Callable[[str, int, int], None]
 
+LOG_INTERVAL_S = 60.0
+
 
 @contextmanager
-def shown(message: str) -> Iterator[Report | None]:
-    """Show a progress line during the work.
+def shown(message: str, log_interval_s: float = LOG_INTERVAL_S) -> Iterator[Report]:
+    """Show the progress of the work.
 
-    Yields `report(message, done, total)`, or None if stderr is not a terminal.
+    Yields `report(message, done, total)`.
+
+    Parameters
+    ----------
+    message
+        Description of the work until the first report.
+    log_interval_s
+        Time between the lines of the log where stderr is not a terminal.
     """
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield None
-        return
+    if sys.stderr is None:
+        yield lambda message, done, total: None
+    elif sys.stderr.isatty():
+        with _bar(message) as report:
+            yield report
+    else:
+        with _log(message, log_interval_s) as report:
+            yield report
+
+
+@contextmanager
+def _bar(message: str) -> Iterator[Report]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -30,7 +52,7 @@ def shown(message: str) -> Iterator[Report | None]:
         console=Console(stderr=True),
         transient=True,
         # Otherwise rich would redirect printed output to stderr, even from a pipe or a file.
-        redirect_stdout=sys.stdout.isatty(),
+        redirect_stdout=sys.stdout is not None and sys.stdout.isatty(),
     ) as progress:
         task = progress.add_task(message, total=None)
 
@@ -38,3 +60,26 @@ def shown(message: str) -> Iterator[Report | None]:
             progress.update(task, description=message, completed=done, total=total or None)
 
         yield report
+
+
+@contextmanager
+def _log(message: str, interval_s: float) -> Iterator[Report]:
+    start_s, finished, state = time.monotonic(), Event(), [message]
+
+    def report(message: str, done: int, total: int) -> None:
+        state[0] = f"{message}, {done} of {total}" if total else message
+
+    def write() -> None:
+        while not finished.wait(interval_s):
+            elapsed_min = (time.monotonic() - start_s) / 60.0
+            line = f"jbf: {printable(state[0])} ({elapsed_min:.0f} min)\n"
+            sys.stderr.write(line)
+            sys.stderr.flush()
+
+    thread = Thread(target=write, daemon=True)
+    thread.start()
+    try:
+        yield report
+    finally:
+        finished.set()
+        thread.join()

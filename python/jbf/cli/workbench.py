@@ -2,42 +2,58 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 import webbrowser
+from dataclasses import dataclass
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, command
 from jbf.cli.commands import COMMANDS
 
 
+@dataclass(frozen=True)
+class WorkbenchOptions:
+    """Arguments of the command."""
+
+    folder: str
+    demo: bool
+    port: int
+    no_browser: bool
+
+
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    parser = command(commands, "workbench", COMMANDS["workbench"], run)
+    parser = command(commands, "workbench", COMMANDS["workbench"], WorkbenchOptions, run)
     parser.add_argument(
-        "folder", metavar="FOLDER", nargs="?", default=".", help="what the page may see (here)"
+        "folder",
+        metavar="FOLDER",
+        nargs="?",
+        default=".",
+        help="folder that the page may read (default: the current folder)",
     )
-    parser.add_argument("--demo", action="store_true", help="open with the shipped data")
-    parser.add_argument("--port", type=int, default=0, metavar="N", help="any free one")
+    parser.add_argument("--demo", action="store_true", help="open the shipped data of jbf demo")
     parser.add_argument(
-        "--no-browser", action="store_true", help="print the address and open nothing"
+        "--port", type=int, default=0, metavar="N", help="port (default: any free port)"
+    )
+    parser.add_argument(
+        "--no-browser", action="store_true", help="print the address without opening a browser"
     )
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: WorkbenchOptions) -> int:
     """Run the command."""
     from jbf.workbench.serve import serve
 
     def opened(address: str) -> None:
-        shown = not arguments.no_browser and _has_a_screen()
-        where = "It opens in your browser" if shown else "Open this address in a browser"
-        outputs.say(f"{address}\n{where}; the page says what to do. Ctrl-C ends it.", {})
+        shown = not options.no_browser and _has_a_screen()
+        where = "The page opens in your browser" if shown else "Open this address in a browser"
+        outputs.say(f"{address}\n{where}. Ctrl-C stops the program.", {})
         outputs.flush()
         if shown:
             webbrowser.open(address)
 
-    serve(arguments.folder, arguments.port, opened, demo=arguments.demo)
+    serve(options.folder, options.port, opened, demo=options.demo)
     return 0
 
 

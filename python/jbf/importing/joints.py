@@ -35,7 +35,7 @@ class JointNotChosen(InputError):
         self.joints = tuple(joints)
         held = f"holds the joints {', '.join(joints)}"
         problem = held if named is None else f"{held}; none is called {named}"
-        mend = f"say which: --joint {joints[0]}, or --joint all with --out"
+        mend = f"say which: --joint {joints[0]}, or --joint all with --folder"
         super().__init__(file=path, problem=problem, mend=mend)
 
     def __reduce__(self) -> tuple[object, ...]:

@@ -14,7 +14,7 @@ from jbf.text_files import real_path
 
 _HEAD = """\
 # A map: which columns of the file make which columns of a run. Made by jbf import; edit it, then
-#   jbf import {file} --map {map} --out FOLDER
+#   jbf import {file} --map {map} --folder FOLDER
 # A column stands as the file names it, in back quotes or not; + - * / and brackets are allowed, and
 # units in square brackets: "`Torque [Nm]` / 12.7 [mm]", "-`Speed` [rpm]". Units are converted to
 # what the name on the left ends in. Each ? is open: put what it is in its place.

@@ -10,7 +10,7 @@ from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.reporting.advice import advice_on
 from jbf.reporting.paragraphs import columns, hanging
-from jbf.reporting.tables import LEDGER_HEAD, ledger_rows, parameter_rows, shown_names
+from jbf.reporting.tables import LEDGER_HEAD, ledger_rows, parameter_rows
 from jbf.reporting.words import conclusion, law_sentence, listed
 
 MOST_LINES, USUAL_LINES = 30, 24
@@ -80,8 +80,7 @@ def _parameters(diagnosis: Diagnosis, room: int) -> list[str]:
     found = [_cut(line) for line in columns([head, *cells], "<>>><", 0)]
     if len(free) > len(order):
         found[-1] += f"   (and {count_of(len(free) - len(order), 'other parameter')})"
-    called = shown_names(fit)
-    held = [called[name] for name, p in fit.parameters.items() if p.held]
+    held = [name for name, p in fit.parameters.items() if p.held]
     return found + ([_cut(f"  not determined: {', '.join(held)}")] if held else [])
 
 

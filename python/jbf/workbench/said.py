@@ -41,7 +41,7 @@ def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
     lines = []
     if steps.imported:
         files = shlex.join(steps.imported)
-        into = f"--map {shlex.quote(steps.map)} --out {shlex.quote(steps.out)}"
+        into = f"--map {shlex.quote(steps.map)} --folder {shlex.quote(steps.out)}"
         lines.append(f"jbf import {files} {into} --force")
     if steps.trims:
         lines.append("# trimmed/ is saved in room 4: The runs as trimmed")

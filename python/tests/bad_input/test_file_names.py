@@ -73,8 +73,8 @@ def test_device_is_refused_by_every_command(device: str, capfd: Capture) -> None
         ["compare", "model.toml", device],
         ["compare", device, "a.csv"],
         ["fit", device, "a.csv", "--out", "new.toml"],
-        ["import", device, "--map", "map.toml", "--out", "new"],
-        ["import", "a.csv", "--map", device, "--out", "new"],
+        ["import", device, "--map", "map.toml", "--folder", "new"],
+        ["import", "a.csv", "--map", device, "--folder", "new"],
     ):
         refused(words, fragment, capfd)
 
@@ -92,8 +92,8 @@ def test_file_without_read_permission_is_refused(capfd: Capture) -> None:
     [
         ["predict", "model.toml", "a.csv", "--out", "shut/new.csv"],
         ["compare", "model.toml", "a.csv", "--json", "shut/new.json"],
-        ["import", "a.csv", "--map", "map.toml", "--out", "shut/new"],
-        ["import", "a.csv", "--map", "map.toml", "--out", "shut"],
+        ["import", "a.csv", "--map", "map.toml", "--folder", "shut/new"],
+        ["import", "a.csv", "--map", "map.toml", "--folder", "shut"],
         ["demo", "shut/new"],
     ],
     ids=" ".join,
@@ -108,7 +108,7 @@ def test_output_to_folder_without_permission_is_refused(words: list[str], capfd:
     "compare model.toml large",
     "compare large a.csv",
     "fit large a.csv --out new.toml",
-    "import a.csv --map large --out new",
+    "import a.csv --map large --folder new",
 ])  # fmt: skip
 def test_file_of_2_gigabytes_is_refused_without_reading_it(words: str, capfd: Capture) -> None:
     with Path("large").open("wb") as sparse_file:

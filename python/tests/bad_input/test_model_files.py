@@ -74,4 +74,4 @@ def test_time_column_with_a_unit_of_speed_is_refused(capfd: Capture) -> None:
     text = Path("a.csv").read_text().replace("time_s", "time_m_s", 1)
     Path("odd.csv").write_text(text)
     Path("map.toml").unlink()
-    refused(["import", "odd.csv", "--out", "new"], "odd.csv", capfd)
+    refused(["import", "odd.csv", "--folder", "new"], "odd.csv", capfd)

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ import pytest
 from conftest import DRAG_N, NOISE_N
 from input_checks import Capture
 from jbf.cli import COMMANDS, main
+from jbf.cli.progress import shown
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs pipes and terminals of POSIX")
 
@@ -76,6 +78,13 @@ def test_fit_command_writes_model_with_the_hidden_effect(campaign: Path, capsys:
     assert abs(drag.value - DRAG_N) < 4.0 * drag.stderr
 
 
+def test_fit_command_without_out_prints_its_report(campaign: Path, capsys: Capture) -> None:
+    files = set(campaign.rglob("*"))
+    assert main(["fit", str(campaign / "rig.toml"), str(campaign / "runs")]) == 0
+    assert "[[Parameters]]" in capsys.readouterr().out
+    assert set(campaign.rglob("*")) == files
+
+
 def test_parameters_given_with_the_fix_option_keep_their_values(campaign: Path) -> None:
     out = campaign / "fitted.toml"
     command = ["fit", str(campaign / "rig.toml"), str(campaign / "runs" / "*.csv")]
@@ -116,9 +125,10 @@ def test_predict_command_accepts_motion_without_friction(
     table = np.loadtxt(out, delimiter=",", skiprows=1)
     assert np.array_equal(table[:, 0], source.time_s)
     assert np.array_equal(table[:, 1], jbf.Model.load(model).predict(source))
-    capsys.readouterr()
-    assert main(["predict", str(model), str(motion), "--out", "-"]) == 0
-    assert capsys.readouterr().out == out.read_text()
+    for options in ([], ["--out", "-"]):
+        capsys.readouterr()
+        assert main(["predict", str(model), str(motion), *options]) == 0
+        assert capsys.readouterr().out == out.read_text()
 
 
 def test_predict_warns_of_a_too_fast_film(tmp_path: Path, runs: Any, capsys: Capture) -> None:
@@ -140,6 +150,17 @@ def test_command_ends_without_a_message_if_its_output_pipe_is_closed() -> None:
     done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE)
     os.close(write)
     assert (done.returncode, done.stderr) == (141, b"")
+
+
+def test_progress_is_logged_in_lines_where_stderr_is_not_a_terminal(capsys: Capture) -> None:
+    with shown("starting", log_interval_s=0.05) as report:
+        time.sleep(0.2)
+        report("run [a]", 3, 10)
+        time.sleep(0.2)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].startswith("jbf: starting")
+    assert "run [a]" in lines[-1]
+    assert "3 of 10" in lines[-1]
 
 
 @posix

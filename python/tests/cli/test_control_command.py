@@ -22,6 +22,13 @@ def folder(working_folder: Path) -> None:
     Path("run.csv").write_text("\n".join(["time_s,velocity_m_s", *rows]) + "\n")
 
 
+def test_control_without_an_action_prints_its_help(capsys: Capture) -> None:
+    assert main(["control"]) == 0
+    printed = capsys.readouterr()
+    assert "robustness" in printed.out
+    assert printed.err == ""
+
+
 def test_control_run_prints_every_scheme_and_writes_a_png(capsys: Capture) -> None:
     run = ["control", "run", "model.toml", "--task", "position sine", "--seconds", "5"]
     assert main([*run, "--plot", "p.png"]) == 0
@@ -32,7 +39,7 @@ def test_control_run_prints_every_scheme_and_writes_a_png(capsys: Capture) -> No
 
 
 def test_control_run_writes_one_csv_row_for_each_sample() -> None:
-    assert main(["control", "run", "--scheme", "observed", "--seconds", "4", "--out", "r.csv"]) == 0
+    assert main(["control", "run", "--scheme", "observed", "--seconds", "4", "--csv", "r.csv"]) == 0
     with open("r.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 2000
@@ -51,7 +58,7 @@ def test_control_run_omits_the_learning_scheme_for_a_law_without_a_film(capsys: 
 
 
 def test_control_run_has_the_same_result_with_tuned_and_without_settings(capsys: Capture) -> None:
-    assert main(["control", "tune", "model.toml", "--out", "s.toml"]) == 0
+    assert main(["control", "tune", "model.toml", "--toml", "s.toml"]) == 0
     run = ["control", "run", "model.toml", "--scheme", "observed", "--seconds", "5"]
     capsys.readouterr()
     assert main(run) == 0
@@ -91,8 +98,8 @@ def test_control_tables_reproduce_12_published_cells_within_a_factor_of_2(capsys
         ("run --seconds nan", ["nan"]),
         ("run --frequency-rad-s 0", ["frequency"]),
         ("run --settings wrong.toml", ["wrong.toml", "bandwidth"]),
-        ("run --out x.csv", ["--out", "one scheme"]),
-        ("run model.toml --scheme none --out model.toml", ["model.toml", "input"]),
+        ("run --csv x.csv", ["--csv", "one scheme"]),
+        ("run model.toml --scheme none --csv model.toml", ["model.toml", "input"]),
         ("run --motion run.csv --high 2", ["--high", "--motion"]),
         ("run --motion run.csv --control position", ["run.csv", "angle_rad"]),
         ("run --counts-per-rad 1e12", ["roll-over", "counts_per_rad"]),

@@ -10,15 +10,17 @@ from jbf.demo import run
 
 @pytest.mark.extended
 def test_demo_identifies_the_hidden_effects_and_writes_report_and_model(tmp_path: Path) -> None:
-    lines: list[str] = []
-    d = run(tmp_path / "demo", lines.append, jbf="bin/jbf")
+    demo = run(tmp_path / "demo")
+    d = demo.diagnosis
     assert d.verdict == "missing"
     assert set(d.effects) == {"coulomb_drag", "sensor_lag"}
-    text = "\n".join(lines)
-    assert "adequate (nothing added)" in text
-    assert "coulomb_drag: F_d" in text
+    assert demo.without_effects.verdict == "adequate"
+    assert demo.after.rms < 0.5 * demo.before.rms
+    lines = demo.text(command="bin/jbf").splitlines()
+    assert len(lines) <= 30
     # The last line is the suggested next command.
-    assert text.splitlines()[-1] == f"  bin/jbf workbench {tmp_path / 'demo'}"
+    assert lines[-1].endswith(f"bin/jbf workbench {tmp_path / 'demo'}")
+    assert d.summary(full=True) in demo.text(full=True)
     assert (tmp_path / "demo" / "report.html").stat().st_size > 50_000
     assert Model.load(tmp_path / "demo" / "model.toml") == d.model
 

@@ -42,6 +42,17 @@ def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys
     assert level["chance"] <= 0.01 / level["candidates"]
 
 
+def test_printed_text_is_short_complete_or_the_verdict_alone(slide: Path, capsys: Capture) -> None:
+    printed = {}
+    for option in ("", "--quiet", "--full"):
+        assert main(["diagnose", str(slide), *LAW, *option.split()]) == 0
+        printed[option] = capsys.readouterr().out.splitlines()
+    assert len(printed["--quiet"]) == 1
+    assert len(printed["--quiet"]) < len(printed[""]) <= 30 < len(printed["--full"])
+    assert printed["--quiet"] == printed[""][:1] == printed["--full"][:1]
+    assert main(["diagnose", "--many", str(slide), "--quiet"]) == 2
+
+
 def test_diagnosis_beyond_the_work_limit_writes_the_partial_result_and_exits_with_2(
     slide: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

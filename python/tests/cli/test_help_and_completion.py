@@ -34,6 +34,25 @@ def test_option_value_is_accepted_after_an_equals_sign_or_a_space() -> None:
     assert main(["effects", "presliding", "--law", "lugre"]) == 0
 
 
+@pytest.mark.parametrize(
+    ("command", "current"),
+    [
+        ("import a.csv --out b", "--folder"),
+        ("plan rig.toml --max-velocity 1 --out b", "--folder"),
+        ("control run --out b", "--csv"),
+        ("control tune model.toml --out b", "--toml"),
+    ],
+)
+def test_earlier_name_of_an_option_is_accepted_with_a_note(
+    command: str, current: str, capsys: Capture
+) -> None:
+    arguments = parser().parse_args(command.split())
+    assert getattr(arguments, current.strip("-")) == "b"
+    note = capsys.readouterr().err
+    assert current in note
+    assert note.count("\n") == 1
+
+
 def completed(text: str, *words: str) -> list[str]:
     """Completions that bash offers after the given words."""
     line = " ".join(shlex.quote(word) for word in ("jbf", *words))

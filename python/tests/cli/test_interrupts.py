@@ -114,7 +114,7 @@ def test_interrupted_command_writes_model_and_exits_with_130(command: str, capsy
     options = ["--law", "coulomb", "--effects-from", "own.py", "--out", "m.toml"]
     assert main([*command.split(), *options]) == 130
     printed = capsys.readouterr()
-    assert printed.err.startswith("jbf: interrupted; the best so far is coulomb")
+    assert printed.err.startswith("jbf: interrupted; the best model so far is coulomb")
     assert printed.err.endswith("written to m.toml, not finished\n")
     assert printed.err.count("\n") == 1
     assert printed.out == ""
@@ -128,4 +128,4 @@ def test_interrupted_diagnosis_prints_model_if_no_file_is_given(capsys: Capture)
     assert main(["diagnose", "runs", "--law", "coulomb", "--effects-from", "own.py"]) == 130
     printed = capsys.readouterr()
     assert "F_c" in printed.out
-    assert "best so far is coulomb" in printed.err
+    assert "best model so far is coulomb" in printed.err

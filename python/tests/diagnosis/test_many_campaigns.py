@@ -142,7 +142,7 @@ def test_diagnose_command_writes_json_and_models_of_many_folders(
     [
         (["diagnose"], "RIG and RUN are missing"),
         (["diagnose", "--many", "nowhere"], "holds no campaign"),
-        (["diagnose", "rig.toml", "--many", "."], "takes neither"),
+        (["diagnose", "rig.toml", "--many", "."], "excludes"),
         (["diagnose", "--many", ".", "--jobs", "0"], "1 or more"),
     ],
 )

@@ -183,7 +183,7 @@ def test_plan_command_writes_runs_that_the_power_command_reads(
     command += ["--max-velocity", "0.2", "--noise", "0.1"]
     if loads:
         command += ["--loads", *loads]
-    assert main([*command, "--out", str(out), "--json", str(table)]) == 0
+    assert main([*command, "--folder", str(out), "--json", str(table)]) == 0
     assert [f.name for f in sorted(out.glob("*.csv"))] == ["01.csv", "02.csv", "03.csv"]
     runs = read_runs([out], Rig(), need_friction=False)
     recorded = {float(run.load_n[0]) for run in runs if run.load_n is not None}

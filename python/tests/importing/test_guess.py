@@ -187,7 +187,7 @@ def test_each_joint_of_a_recording_is_imported_as_a_separate_campaign(
     assert torques[0] is not None
     assert torques[1] is not None
     np.testing.assert_allclose(torques[1], 3.0 * torques[0], atol=2e-4)
-    assert main(["import", str(path), "--joint", "all", "--out", str(tmp_path / "each")]) == 0
+    assert main(["import", str(path), "--joint", "all", "--folder", str(tmp_path / "each")]) == 0
     assert {p.name for p in (tmp_path / "each").iterdir()} == set(joints)
 
 

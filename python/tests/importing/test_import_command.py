@@ -24,7 +24,7 @@ motion = "linear"
 friction = "force"
 """
 RESTS = MAP + '[cut]\nby = "rests"\n'
-IMPORT = "import log.csv --map map.toml --out runs"
+IMPORT = "import log.csv --map map.toml --folder runs"
 OPEN = "time,speed_rpm,torque_pct\n" + "".join(f"{k},2,3\n" for k in range(40))
 """A recording whose map has open entries."""
 
@@ -53,7 +53,7 @@ def test_import_without_a_map_writes_a_map_that_can_be_imported(capsys: Capture)
     Path("map.toml").unlink()
     text = printed(capsys, "import log.csv")
     assert "Nothing is open" in text
-    assert "jbf import log.csv --map map.toml --out FOLDER" in text
+    assert "jbf import log.csv --map map.toml --folder FOLDER" in text
     assert "1 run of" in printed(capsys, f"{IMPORT} --no-cut")
     written = {path.name for path in Path("runs").iterdir()}
     assert written == {"cut.toml", "import.json", "log.csv", "map.toml", "rig.toml"}
@@ -86,7 +86,7 @@ def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture)
     assert 'rated_torque_n_m = "?"' in text
     assert "key columns.time_s: is open" in printed(capsys, IMPORT, 2)
     # Without the map, each question is one line.
-    lines = printed(capsys, "import log.csv --out runs", 2).splitlines()
+    lines = printed(capsys, "import log.csv --folder runs", 2).splitlines()
     assert len(lines) == 2
     assert all(line.startswith("jbf: log.csv, ") for line in lines)
     assert not Path("runs").exists()
@@ -272,14 +272,14 @@ def test_invalid_map_is_refused_and_writes_nothing(text: str, capsys: Capture) -
 
 
 BAD_COMMANDS = {
-    "import nothing.csv --out runs": "the file does not exist",
-    "import . --map map.toml --out runs": "is a folder",
-    "import log.csv log.csv --map map.toml --out runs": "the same name",
-    "import log.csv --map map.toml --out log.csv": "is a file, not a folder",
-    "import log.csv --map map.toml --out a/b": "its parent folder does not exist",
-    "import log.csv --map none.toml --out runs": "does not exist",
-    "import log.csv --map map.toml --out runs --cut none.toml": "does not exist",
-    "import log.csv --cut cut.toml": "goes with --map or --out",
+    "import nothing.csv --folder runs": "the file does not exist",
+    "import . --map map.toml --folder runs": "is a folder",
+    "import log.csv log.csv --map map.toml --folder runs": "the same name",
+    "import log.csv --map map.toml --folder log.csv": "is a file, not a folder",
+    "import log.csv --map map.toml --folder a/b": "its parent folder does not exist",
+    "import log.csv --map none.toml --folder runs": "does not exist",
+    "import log.csv --map map.toml --folder runs --cut none.toml": "does not exist",
+    "import log.csv --cut cut.toml": "requires --map or --folder",
     "import log.csv --map map.toml --plot log.csv": "is also an input",
     "diagnose map.toml": "RUN are missing",
     "fit map.toml --out m.toml": "RUN is missing",

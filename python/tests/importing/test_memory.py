@@ -17,7 +17,7 @@ MAP = (
 IMPORT = """\
 import sys
 from jbf.cli import main
-assert main(["import", sys.argv[1], "--map", sys.argv[2], "--out", sys.argv[3]]) == 0
+assert main(["import", sys.argv[1], "--map", sys.argv[2], "--folder", sys.argv[3]]) == 0
 # getrusage would include the memory of the parent process.
 lines = open("/proc/self/status").read().splitlines()
 print(next(int(line.split()[1]) for line in lines if line.startswith("VmHWM")) / 1024.0)

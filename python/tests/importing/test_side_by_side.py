@@ -288,7 +288,7 @@ def test_look_reports_a_missing_common_signal_and_proposes_the_only_common_colum
     assert written.align == {"force": "?", "temp": "`drive/pos [mm]` ~ `temp/pos [mm]`"}
     answered = Path("map.toml").read_text(encoding="utf-8").replace('force = "?"', ALIGN)
     Path("map.toml").write_text(answered, encoding="utf-8")
-    assert main(shlex.split("import drive.csv --map map.toml --out campaign")) == 0
+    assert main(shlex.split("import drive.csv --map map.toml --folder campaign")) == 0
     assert "3 files" in capsys.readouterr().out
 
 
@@ -349,11 +349,11 @@ def test_damaged_rows_of_a_further_file_are_reported_with_its_name() -> None:
 
 BAD_COMMANDS = {
     "import drive.csv --map two.toml --beside none.csv": "none.csv",
-    "import drive.csv temp.csv --beside force.csv": "goes with one main file",
-    "import drive.csv temp.csv --map two.toml --out campaign": "name one main file",
+    "import drive.csv temp.csv --beside force.csv": "requires a single FILE",
+    "import drive.csv temp.csv --map two.toml --folder campaign": "name one main file",
     "import drive.csv --beside drive.csv": "called drive, too",
-    "import drive.csv --map two.toml --beside cut.csv.gz --out campaign": "cut.csv.gz",
-    "import drive.csv --beside force.csv --out campaign": "align.force",
+    "import drive.csv --map two.toml --beside cut.csv.gz --folder campaign": "cut.csv.gz",
+    "import drive.csv --beside force.csv --folder campaign": "align.force",
 }
 
 

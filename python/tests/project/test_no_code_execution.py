@@ -91,7 +91,7 @@ HOSTILE = {"array": ("bomb.npy",), "pickle": ("bomb.pkl",), "map": ("stopgo.csv 
 
 @pytest.mark.parametrize("words", cases(HOSTILE, ("array", "map")))
 def test_import_refuses_a_pickle_or_map_without_running_its_code(hostile: Path, words: str) -> None:
-    done = watched(hostile, "import", *words.split(), "--out", "out")
+    done = watched(hostile, "import", *words.split(), "--folder", "out")
     assert done.returncode == 2
     assert done.stderr.startswith("jbf: ")
     assert not re.search("it ran|uid=", done.stdout + done.stderr)

@@ -135,7 +135,7 @@ def test_command_line_shown_for_an_import_reproduces_the_run(
     client.post("/api/import", json=request_of(client, into="slide"))
     before = (folder / "slide" / "log1.csv").read_bytes()
     command = client.get("/api/state").json()["command"].splitlines()[0]
-    assert command == "jbf import log1.csv log2.csv --map slide/map.toml --out slide --force"
+    assert command == "jbf import log1.csv log2.csv --map slide/map.toml --folder slide --force"
     monkeypatch.chdir(folder)
     assert main(shlex.split(command)[1:]) == 0
     assert (folder / "slide" / "log1.csv").read_bytes() == before

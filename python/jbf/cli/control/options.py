@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import argparse
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 from jbf.errors import InputError, did_you_mean
 
@@ -16,66 +15,100 @@ if TYPE_CHECKING:
 
 def add_bench(parser: Parser) -> None:
     """Add the options of motor, shaft, encoder and noise."""
-    group = parser.add_argument_group("bench")
+    group = parser.add_argument_group("bench", "changes of the thesis's bench")
     numbers = {
-        "volts-per-n": "volts for one newton of friction on one bearing",
-        "damping-1-s": "the plant's a",
-        "input-rad-s2-v": "the plant's b",
-        "counts-per-rad": "counts of the encoder",
-        "limit-v": "largest output",
-        "noise-times": "noise, so many times the standard one",
+        "volts-per-n": "motor voltage per newton of friction of one bearing, V/N",
+        "damping-1-s": "damping a of the plant, 1/s",
+        "input-rad-s2-v": "input gain b of the plant, rad/(s^2 V)",
+        "counts-per-rad": "encoder counts per radian",
+        "limit-v": "largest output voltage, V",
+        "noise-times": "noise as a multiple of the standard noise",
     }
     for name, does in numbers.items():
         group.add_argument(f"--{name}", metavar="X", type=float, help=does)
-    group.add_argument("--seed", metavar="N", type=int, help="of the noise")
+    group.add_argument("--seed", metavar="N", type=int, help="random seed of the noise")
 
 
-def bench_of(arguments: argparse.Namespace) -> Bench:
-    """Return the bench defined by the options; by default the thesis's bench."""
-    from jbf.control.bench import THESIS_BENCH, with_noise
+@dataclass(frozen=True)
+class BenchOptions:
+    """Changes of the thesis's bench; None for its own value."""
 
-    names = ("volts_per_n", "damping_1_s", "input_rad_s2_v", "counts_per_rad", "limit_v", "seed")
-    given = {n: getattr(arguments, n) for n in names if getattr(arguments, n) is not None}
-    bench = replace(THESIS_BENCH, **given)
-    times = arguments.noise_times
-    if times is None:
-        return bench
-    if not 0.0 <= times < 1e6:
-        raise InputError(problem=f"--noise-times {times:g} is no factor", mend="give zero or more")
-    return with_noise(bench, times)
+    volts_per_n: float | None
+    damping_1_s: float | None
+    input_rad_s2_v: float | None
+    counts_per_rad: float | None
+    limit_v: float | None
+    noise_times: float | None
+    seed: int | None
+
+    def bench(self) -> Bench:
+        """Return the bench."""
+        from jbf.control.bench import THESIS_BENCH, with_noise
+
+        given = _given(self)
+        times = given.pop("noise_times", None)
+        bench = replace(THESIS_BENCH, **given)
+        if times is None:
+            return bench
+        if not 0.0 <= times < 1e6:
+            raise InputError(
+                problem=f"--noise-times {times:g} is not a factor",
+                mend="choose zero or a positive number",
+            )
+        return with_noise(bench, times)
 
 
 def add_task(parser: Parser) -> None:
     """Add the options of the reference that the loop follows."""
     group = parser.add_argument_group(
-        "task", "a row of the thesis's tables (--task), changed by whatever else is given"
+        "task", "a row of the thesis's tables (--task), modified by the other options"
     )
-    group.add_argument("--task", metavar="NAME", default="velocity sine", help="velocity sine")
     group.add_argument(
-        "--motion", metavar="RUN", help="follow the speed (or angle) of a recorded run, CSV"
+        "--task", metavar="NAME", default="velocity sine", help="name (default: velocity sine)"
     )
-    group.add_argument("--control", choices=("position", "velocity"), help="what is controlled")
-    group.add_argument("--wave", choices=("sine", "triangle", "square"), help="its reference")
+    group.add_argument(
+        "--motion", metavar="RUN", help="follow the speed or angle of a recorded run (CSV)"
+    )
+    group.add_argument("--control", choices=("position", "velocity"), help="controlled quantity")
+    group.add_argument("--wave", choices=("sine", "triangle", "square"), help="reference signal")
     for name, does in (
-        ("low", "rad or rad/s"),
-        ("high", "rad or rad/s"),
-        ("frequency-rad-s", "of the reference"),
-        ("seconds", "length of the run"),
-        ("skip-s", "seconds at the start that do not count"),
+        ("low", "smallest reference, rad or rad/s"),
+        ("high", "largest reference, rad or rad/s"),
+        ("frequency-rad-s", "angular frequency of the reference, rad/s"),
+        ("seconds", "duration of the run, s"),
+        ("skip-s", "time at the start that is excluded from the errors, s"),
     ):
         group.add_argument(f"--{name}", metavar="X", type=float, help=does)
 
 
-def task_of(arguments: argparse.Namespace) -> Task:
-    """Return the task defined by the options."""
-    from jbf.control.task import TASKS
+@dataclass(frozen=True)
+class TaskOptions:
+    """A row of the thesis's tables and its changes, or a recorded motion."""
 
-    if arguments.task not in TASKS:
-        mend = f"{did_you_mean(arguments.task, TASKS)} (in quotes)"
-        raise InputError(problem=f'there is no task "{arguments.task}"', mend=mend)
-    names = ("control", "wave", "low", "high", "frequency_rad_s", "seconds", "skip_s")
-    given = {n: getattr(arguments, n) for n in names if getattr(arguments, n) is not None}
-    return replace(TASKS[arguments.task], **given)
+    task: str
+    motion: str | None
+    control: Literal["position", "velocity"] | None
+    wave: str | None
+    low: float | None
+    high: float | None
+    frequency_rad_s: float | None
+    seconds: float | None
+    skip_s: float | None
+
+    def reference(self) -> Task:
+        """Return the task without a recorded motion."""
+        from jbf.control.task import TASKS
+
+        if self.task not in TASKS:
+            mend = f"{did_you_mean(self.task, TASKS)} (in quotes)"
+            raise InputError(problem=f'there is no task "{self.task}"', mend=mend)
+        given = _given(self)
+        return replace(TASKS[given.pop("task")], **given)
+
+
+def _given(options: BenchOptions | TaskOptions) -> dict[str, Any]:
+    """Return the options that have a value."""
+    return {name: value for name, value in asdict(options).items() if value is not None}
 
 
 def model_of(path: str | None) -> Model:

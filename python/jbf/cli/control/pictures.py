@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 def add_plot(parser: Parser) -> None:
     """Add `--plot`."""
-    parser.add_argument("--plot", metavar="PNG", help="write a picture (png, svg or pdf)")
+    parser.add_argument("--plot", metavar="PNG", help="write a figure (png, svg or pdf)")
 
 
 def check_picture(path: str | None) -> None:
@@ -24,7 +24,9 @@ def check_picture(path: str | None) -> None:
     kind = path.rpartition(".")[2].lower()
     if kind not in FigureCanvasBase.get_supported_filetypes():
         raise InputError(
-            file=f"--plot {path}", problem="is no picture", mend="name a png, svg or pdf file"
+            file=f"--plot {path}",
+            problem="is not an image file",
+            mend="name a png, svg or pdf file",
         )
 
 

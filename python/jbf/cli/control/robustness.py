@@ -2,44 +2,54 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 
 from jbf.cli import outputs
 from jbf.cli.arguments import Commands, add_json, command
-from jbf.cli.control.options import add_bench, bench_of, model_of
+from jbf.cli.control.options import BenchOptions, add_bench, model_of
 from jbf.cli.control.pictures import add_plot, check_picture, save_picture
 from jbf.cli.progress import shown
 from jbf.reporting.json import json_text
 
 
+@dataclass(frozen=True)
+class RobustnessOptions:
+    """Arguments of the action."""
+
+    model: str | None
+    bench: BenchOptions
+    json: str | None
+    plot: str | None
+
+
 def add(actions: Commands) -> None:
     """Add the action to the parser."""
-    does = "does it still help when its model is wrong: every effect hidden, wrong load, more noise"
-    parser = command(actions, "robustness", does, run)
-    parser.add_argument("model", metavar="MODEL", nargs="?", help="model file; the thesis's")
+    does = "test the compensation with a wrong model: missing effects, wrong load, more noise"
+    parser = command(actions, "robustness", does, RobustnessOptions, run)
+    parser.add_argument("model", metavar="MODEL", nargs="?", help="model file (default: thesis)")
     add_bench(parser)
     add_json(parser)
     add_plot(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: RobustnessOptions) -> int:
     """Run the action."""
     from jbf.control.bench import thesis_model
     from jbf.control.robustness import robustness
     from jbf.reporting.control_json import robustness_dict
     from jbf.reporting.control_run_text import robustness_text
 
-    wanted = {"--json": arguments.json, "--plot": arguments.plot}
-    outputs.check(wanted, outputs.read_by(arguments))
-    check_picture(arguments.plot)
-    base = thesis_model(elastic="nothing") if arguments.model is None else model_of(arguments.model)
-    with shown("robustness") as report:
-        found = robustness(base, bench_of(arguments), report=report)
-    if arguments.json:
-        outputs.write({arguments.json: json_text(robustness_dict(found))})
-    if arguments.plot:
+    wanted = {"--json": options.json, "--plot": options.plot}
+    outputs.check(wanted, outputs.inputs_in(options.model))
+    check_picture(options.plot)
+    base = thesis_model(elastic="nothing") if options.model is None else model_of(options.model)
+    with shown("testing wrong models") as report:
+        found = robustness(base, options.bench.bench(), report=report)
+    if options.json:
+        outputs.write({options.json: json_text(robustness_dict(found))})
+    if options.plot:
         from jbf.reporting.control_plots import plot_robustness
 
-        save_picture(plot_robustness(found), arguments.plot)
+        save_picture(plot_robustness(found), options.plot)
     outputs.say(robustness_text(found), wanted)
     return 0

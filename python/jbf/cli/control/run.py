@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from jbf.cli import outputs
-from jbf.cli.arguments import Commands, command
-from jbf.cli.control.options import add_bench, add_task, bench_of, model_of, task_of
+from jbf.cli.arguments import Commands, add_earlier_name, command
+from jbf.cli.control.options import BenchOptions, TaskOptions, add_bench, add_task, model_of
 from jbf.cli.control.pictures import add_plot, check_picture, save_picture
 from jbf.cli.progress import shown
 from jbf.errors import InputError
@@ -20,57 +19,79 @@ if TYPE_CHECKING:
 _DEFAULT = "none,learning,coulomb,observed"
 
 
+@dataclass(frozen=True)
+class RunOptions:
+    """Arguments of the action."""
+
+    model: str | None
+    scheme: str | None
+    carried: str | None
+    settings: str | None
+    precision: str
+    csv: str | None
+    task: TaskOptions
+    bench: BenchOptions
+    plot: str | None
+
+
 def add(actions: Commands) -> None:
     """Add the action to the parser."""
-    does = "run loops on the bench and compare schemes"
-    parser = command(actions, "run", does, run)
+    does = "simulate control loops on the bench, and compare compensation schemes"
+    parser = command(actions, "run", does, RunOptions, run)
     parser.add_argument(
-        "model", metavar="MODEL", nargs="?", help="friction of the bench; the thesis's by default"
+        "model", metavar="MODEL", nargs="?", help="friction model of the bench (default: thesis)"
     )
     parser.add_argument(
         "--scheme",
         metavar="A,B",
-        help="of none, learning, coulomb, table, repetitive, observed; all but table and "
-        "repetitive by default, and learning only for the journal law",
+        help="compensation schemes: none, learning, coulomb, table, repetitive, observed (default: "
+        "all but table and repetitive; learning only for the journal law)",
     )
     parser.add_argument(
-        "--carried", metavar="MODEL", help="what the compensator believes; the true model"
+        "--carried",
+        metavar="MODEL",
+        help="model used by the compensator (default: the model of the bench)",
     )
-    parser.add_argument("--settings", metavar="TOML", help="what `jbf control tune` wrote")
-    parser.add_argument("--precision", choices=("f64", "f32"), default="f64", help="of the loop")
-    parser.add_argument("--out", metavar="CSV", help="write the run (of one scheme)")
+    parser.add_argument("--settings", metavar="TOML", help="settings written by jbf control tune")
+    parser.add_argument(
+        "--precision", choices=("f64", "f32"), default="f64", help="arithmetic of the loop"
+    )
+    parser.add_argument("--csv", metavar="CSV", help="write the run (of a single scheme)")
+    add_earlier_name(parser, "--out", "--csv")
     add_task(parser)
     add_bench(parser)
     add_plot(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: RunOptions) -> int:
     """Run the action."""
     from jbf.control.run import run as run_loop
     from jbf.control.settings import Settings
     from jbf.reporting.control_run_text import runs_text
 
-    wanted = {"--plot": arguments.plot, "--out": arguments.out}
-    outputs.check(wanted, outputs.read_by(arguments))
-    check_picture(arguments.plot)
-    asked = arguments.scheme
+    wanted = {"--plot": options.plot, "--csv": options.csv}
+    read = outputs.inputs_in(options.model, options.carried, options.settings, options.task.motion)
+    outputs.check(wanted, read)
+    check_picture(options.plot)
+    asked = options.scheme
     if asked is None:
         asked = _DEFAULT
-        if arguments.model and model_of(arguments.carried or arguments.model).law != "journal":
+        if options.model and model_of(options.carried or options.model).law != "journal":
             asked = asked.replace("learning,", "")
     names = [name.strip() for name in asked.split(",") if name.strip()]
     if not names:
-        raise InputError(problem="--scheme names none", mend="name one: --scheme observed")
-    if arguments.out and len(names) != 1:
+        raise InputError(problem="--scheme is empty", mend="name a scheme: --scheme observed")
+    if options.csv and len(names) != 1:
         raise InputError(
-            problem=f"--out takes one scheme, not {len(names)}", mend="name one: --scheme observed"
+            problem=f"--csv requires one scheme, not {len(names)}",
+            mend="name one: --scheme observed",
         )
-    truth = None if arguments.model is None else model_of(arguments.model)
-    carried = truth if arguments.carried is None else model_of(arguments.carried)
-    settings = None if arguments.settings is None else Settings.load(arguments.settings)
-    bench = bench_of(arguments)
-    task, reference, load_n = _requested_motion(arguments, truth, bench)
-    with shown("the loop"):
+    truth = None if options.model is None else model_of(options.model)
+    carried = truth if options.carried is None else model_of(options.carried)
+    settings = None if options.settings is None else Settings.load(options.settings)
+    bench = options.bench.bench()
+    task, reference, load_n = _requested_motion(options.task, truth, bench)
+    with shown("simulating the loop"):
         results = [
             run_loop(
                 truth,
@@ -81,34 +102,34 @@ def run(arguments: argparse.Namespace) -> int:
                 load_n=load_n,
                 carried=carried,
                 settings=settings,
-                precision=arguments.precision,
+                precision=options.precision,
             )
             for name in names
         ]
-    if arguments.plot:
+    if options.plot:
         from jbf.reporting.control_run_plot import plot_runs
 
-        save_picture(plot_runs(results), arguments.plot)
-    if arguments.out:
-        outputs.write({arguments.out: results[0].to_csv()})
+        save_picture(plot_runs(results), options.plot)
+    if options.csv:
+        outputs.write({options.csv: results[0].to_csv()})
     outputs.say(runs_text(results), wanted)
     return 0
 
 
-def _requested_motion(arguments: argparse.Namespace, truth: Model | None, bench: Bench) -> Motion:
+def _requested_motion(options: TaskOptions, truth: Model | None, bench: Bench) -> Motion:
     """Return the task, and the reference and load if a recorded motion is followed."""
     from jbf.control import Motion, follow, thesis_model
     from jbf.records.csv_file import read_run
 
-    if arguments.motion is None:
-        return Motion(task_of(arguments), None, None)
+    if options.motion is None:
+        return Motion(options.reference(), None, None)
     wave = ("wave", "low", "high", "frequency_rad_s", "seconds")
-    given = [n for n in wave if getattr(arguments, n) is not None]
+    given = [n for n in wave if getattr(options, n) is not None]
     if given:
         option = f"--{given[0].replace('_', '-')}"
-        raise InputError(problem=f"{option} means nothing beside --motion", mend="drop one")
-    recorded = read_run(arguments.motion, need_friction=False)
+        raise InputError(problem=f"{option} cannot be combined with --motion", mend="leave out one")
+    recorded = read_run(options.motion, need_friction=False)
     rig = (thesis_model() if truth is None else truth).rig
-    motion = follow(recorded, rig, arguments.control or "velocity", bench)
-    skip_s = arguments.skip_s or 0.0
+    motion = follow(recorded, rig, options.control or "velocity", bench)
+    skip_s = options.skip_s or 0.0
     return motion._replace(task=replace(motion.task, skip_s=skip_s))

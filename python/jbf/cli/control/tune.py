@@ -2,33 +2,44 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 
 from jbf.cli import outputs
-from jbf.cli.arguments import Commands, command
-from jbf.cli.control.options import add_bench, bench_of, model_of
+from jbf.cli.arguments import Commands, add_earlier_name, command
+from jbf.cli.control.options import BenchOptions, add_bench, model_of
 from jbf.cli.progress import shown
+
+
+@dataclass(frozen=True)
+class TuneOptions:
+    """Arguments of the action."""
+
+    model: str
+    toml: str | None
+    bench: BenchOptions
 
 
 def add(actions: Commands) -> None:
     """Add the action to the parser."""
-    parser = command(actions, "tune", "settings of the compensator from a fitted model", run)
+    does = "compute the settings of the compensator from a fitted model"
+    parser = command(actions, "tune", does, TuneOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
-    parser.add_argument("--out", metavar="TOML", help="write them to a file")
+    parser.add_argument("--toml", metavar="FILE", help="write the settings to this file")
+    add_earlier_name(parser, "--out", "--toml")
     add_bench(parser)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(options: TuneOptions) -> int:
     """Run the action."""
     from jbf.control import tune
 
-    wanted = {"--out": arguments.out}
-    outputs.check(wanted, outputs.read_by(arguments))
+    wanted = {"--toml": options.toml}
+    outputs.check(wanted, outputs.inputs_in(options.model))
     with shown("tuning"):
-        text = tune(model_of(arguments.model), bench_of(arguments)).to_toml()
-    if arguments.out:
-        outputs.write({arguments.out: text})
-        outputs.say(f"settings written to {arguments.out}", wanted)
+        text = tune(model_of(options.model), options.bench.bench()).to_toml()
+    if options.toml:
+        outputs.write({options.toml: text})
+        outputs.say(f"settings written to {options.toml}", wanted)
     else:
         outputs.say(text.rstrip(), wanted)
     return 0

@@ -16,7 +16,7 @@ _KEYS = ("name", "file", "from_s", "to_s", "keep", "stretch", "why")
 _HEAD = """\
 # How the recordings were cut. Edit names, times (s; numbers of steady states) and keep, add and
 # take away lines, and then:
-#   jbf import FILE... --map map.toml --cut cut.toml --out FOLDER
+#   jbf import FILE... --map map.toml --cut cut.toml --folder FOLDER
 # Both instants belong to the run. Where time starts again in a file, stretch counts from 1.
 """
 

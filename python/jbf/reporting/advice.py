@@ -83,11 +83,11 @@ ADVICE = {
     ),
     "stroke": Advice(
         "friction that changes from stroke to stroke: moving lubricant, particles, scatter",
-        "record more strokes, and include rests between them",
+        "record more strokes, with rests between them",
     ),
     "parameters": Advice(
         "a machine that changed between runs",
-        "check what was changed between the runs that disagree; diagnose them separately",
+        "check what changed between the runs that disagree; diagnose them separately",
     ),
     "unconfirmed": Advice(
         "an effect that represents another one, or that only single runs require",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from jbf.diagnosis.result import Diagnosis
 from jbf.records.counts import count_of
-from jbf.reporting.diagnosis_summary import verdict_line
+from jbf.reporting.diagnosis_summary import diagnosis_summary, verdict_line
 from jbf.reporting.effect_words import effect_lines
 from jbf.reporting.fit_text import lines_of_parameters
 from jbf.reporting.paragraphs import columns, hanging
@@ -67,6 +67,11 @@ def _power_lines(diagnosis: Diagnosis) -> list[str]:
         *power_lines(diagnosis.power, model),
         *hanging("    ", f"({level_words(diagnosis.level)})", 0),
     ]
+
+
+def diagnosis_text(diagnosis: Diagnosis, full: bool = False) -> str:
+    """Return the summary or the complete report of a diagnosis."""
+    return diagnosis_report(diagnosis) if full else diagnosis_summary(diagnosis)
 
 
 def diagnosis_report(diagnosis: Diagnosis) -> str:

@@ -48,13 +48,13 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
         for question in guess.questions:
             lines += hanging("- ", str(question))
     if kept:
-        lines += ["", f"{map_path} is there and was kept (--force writes it anew); go on with"]
+        lines += ["", f"{map_path} exists and was kept (--force replaces it); continue with"]
     elif guess.questions:
-        lines += ["", f"{map_path} was written: answer there, then"]
+        lines += ["", f"{map_path} was written; answer the questions there, then run"]
     else:
         lines += [
             "",
-            f"Nothing is open. {map_path} was written, should you want to change it; then",
+            f"No questions are open. {map_path} was written; edit it if necessary, then run",
         ]
     lines.append(f"  jbf import {guess.path} --map {map_path} --folder FOLDER")
     return "\n".join(lines)
@@ -124,7 +124,7 @@ def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
     for page in ledger["files"]:
         for further in page.get("beside", ()):
             alignment = further["alignment"]
-            how = "nothing is taken from it" if alignment is None else alignment["text"]
+            how = "no column is used" if alignment is None else alignment["text"]
             lines += hanging("- ", f"{further['file']}: {how}")
     return lines
 
@@ -139,7 +139,7 @@ def skipped_row_lines(ledger: Mapping[str, Any]) -> list[str]:
             of = dropped.get("file", page["file"])
             said.append(f"{of}: {rows} left out, for {dropped['why']}{first}")
         said += [f"{page['file']}: {note}" for note in page["notes"]]
-    return ["", "On the way:", *[line for s in said for line in hanging("- ", s)]] if said else []
+    return ["", "Notes:", *[line for s in said for line in hanging("- ", s)]] if said else []
 
 
 def short_import(found: Import) -> str:

@@ -22,23 +22,17 @@ from jbf.reporting import frames, import_text, short, small_tables
 from jbf.reporting.check_text import check_report, short_check
 from jbf.reporting.comparison_text import comparison_report, model_comparison_report
 from jbf.reporting.control_run_text import runs_text
-from jbf.reporting.diagnosis_summary import diagnosis_summary
-from jbf.reporting.diagnosis_text import diagnosis_report
+from jbf.reporting.diagnosis_text import diagnosis_text
 from jbf.reporting.fit_text import bootstrap_report, fit_report, trajectory_report
 from jbf.reporting.power_text import plan_report, planned_report, short_plan, short_power
 from jbf.results import register
-
-
-def _diagnosis_text(diagnosis: Diagnosis, full: bool) -> str:
-    return diagnosis_report(diagnosis) if full else diagnosis_summary(diagnosis)
-
 
 register("summary", Fit, fit_report)
 register("summary", Bootstrap, bootstrap_report)
 register("summary", TrajectoryFit, trajectory_report)
 register("summary", Comparison, comparison_report)
 register("summary", ModelComparison, model_comparison_report)
-register("summary", Diagnosis, _diagnosis_text)
+register("summary", Diagnosis, diagnosis_text)
 register("summary", LoopRun, lambda run: runs_text([run]))
 register("summary", Import, import_text.import_report)
 register("summary", PlannedPower, planned_report)

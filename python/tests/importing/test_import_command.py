@@ -52,7 +52,7 @@ def refusal(capsys: Capture, command: str, fragment: str) -> str:
 def test_import_without_a_map_writes_a_map_that_can_be_imported(capsys: Capture) -> None:
     Path("map.toml").unlink()
     text = printed(capsys, "import log.csv")
-    assert "Nothing is open" in text
+    assert "No questions are open" in text
     assert "jbf import log.csv --map map.toml --folder FOLDER" in text
     assert "1 run of" in printed(capsys, f"{IMPORT} --no-cut")
     written = {path.name for path in Path("runs").iterdir()}
@@ -100,7 +100,7 @@ def test_second_look_keeps_an_edited_map_and_another_file_gets_a_separate_map(
     assert Path("map.toml").read_text() == MAP
     edited = Path("log.map.toml").read_text().replace("linear", "rotary")
     Path("log.map.toml").write_text(edited)
-    assert "log.map.toml is there and was kept" in printed(capsys, "import log.csv")
+    assert "log.map.toml exists and was kept" in printed(capsys, "import log.csv")
     assert Path("log.map.toml").read_text() == edited
     printed(capsys, "import log.csv --force")
     assert Path("log.map.toml").read_text() != edited

@@ -107,7 +107,7 @@ def test_second_look_keeps_an_edited_map_and_another_file_gets_a_separate_map(
     Path("other.csv").write_text(Path("log.csv").read_text())
     Path("map.toml").unlink()
     assert "map.toml was written" in printed(capsys, "import other.csv")
-    assert "log.map.toml is there" in printed(capsys, "import log.csv")
+    assert "log.map.toml exists" in printed(capsys, "import log.csv")
 
 
 def test_force_option_replaces_an_import_but_no_folder_with_other_files(capsys: Capture) -> None:

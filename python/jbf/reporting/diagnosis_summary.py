@@ -78,10 +78,12 @@ def _parameters(diagnosis: Diagnosis, room: int) -> list[str]:
         (f"  {name}", value, error, share, unit) for name, value, error, share, unit, _ in rows
     ]
     found = [_cut(line) for line in columns([head, *cells], "<>>><", 0)]
-    if len(free) > len(order):
-        found[-1] += f"   (and {count_of(len(free) - len(order), 'other parameter')})"
-    held = [name for name, p in fit.parameters.items() if p.held]
-    return found + ([_cut(f"  not determined: {', '.join(held)}")] if held else [])
+    groups = {
+        "less precise": [name for name in free if name not in order],
+        "not determined": [name for name, p in fit.parameters.items() if p.held],
+    }
+    named = [f"{word}: {', '.join(names)}" for word, names in groups.items() if names]
+    return found + ([_cut(f"  {'; '.join(named)}")] if named else [])
 
 
 def _precision(value: ParameterValue) -> float:
@@ -97,8 +99,11 @@ def _findings(diagnosis: Diagnosis) -> list[str]:
     lines = []
     for kind, findings in list(kinds.items())[:MOST_FINDINGS]:
         largest = max(findings, key=lambda finding: abs(finding.size))
-        others = f" and {count_of(len(findings) - 1, 'other run')}" if len(findings) > 1 else ""
-        lead, place = f"  {kind.replace('_', ' ')}: ", f" ({largest.run}{others}; {largest.done})"
+        # A finding common to several runs names them all, separated by commas.
+        runs = dict.fromkeys(r for f in (largest, *findings) for r in f.run.split(", "))
+        others = f" and {count_of(len(runs) - 1, 'other run')}" if len(runs) > 1 else ""
+        lead = f"  {kind.replace('_', ' ')}: "
+        place = f" ({next(iter(runs))}{others}; {largest.done})"
         lines.append(_cut(lead + _cut(largest.words, WIDEST - len(lead + place)) + place))
     if len(kinds) > MOST_FINDINGS:
         lines.append(f"  and {count_of(len(kinds) - MOST_FINDINGS, 'other kind')} of findings")

@@ -55,7 +55,7 @@ class Limits:
 
     Examples
     --------
-    >>> jbf.Limits(velocity_m_s=0.2, duration_s=30.0).duration_s
+    >>> jbf.Limits(velocity=0.2, duration_s=30.0).duration_s
     30.0
     """
 

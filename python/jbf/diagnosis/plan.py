@@ -73,7 +73,7 @@ class Plan(Result):
     Examples
     --------
     >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
-    >>> limits = jbf.Limits(velocity_m_s=0.2, duration_s=4.0)
+    >>> limits = jbf.Limits(velocity=0.2, duration_s=4.0)
     >>> plan = jbf.plan(model, limits=limits, minutes=0.2, noise_rms=0.2, step_s=0.05)
     >>> [run.duration_s for run in plan.runs], len(plan.words)
     ([3.95, 3.95, 3.95], 3)
@@ -133,7 +133,7 @@ def plan(
     Examples
     --------
     >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
-    >>> limits = jbf.Limits(velocity_m_s=0.2, duration_s=4.0)
+    >>> limits = jbf.Limits(velocity=0.2, duration_s=4.0)
     >>> plan = jbf.plan(model, limits=limits, minutes=0.2, noise_rms=0.2, step_s=0.05)
     >>> len(plan.runs)
     3

@@ -51,9 +51,7 @@ class NoiseSettings:
         "number of samples at rest or repeated from which they give the total noise",
         "relative standard error of 4 %",
     )
-    min_rest_samples: int = documented(
-        60, "number of samples of a rest from which its noise is used", "convention"
-    )
+    min_rest_samples: int = documented(60, "samples from which a rest gives noise", "convention")
     min_repeated_samples: int = documented(
         100,
         "number of repeated samples of a run from which their noise is used",
@@ -285,9 +283,7 @@ class HeldOutSettings:
     max_folds: int = documented(
         12, "number of folds above which groups of runs are held out together", "computing time"
     )
-    parts: int = documented(
-        10, "parts of a single run, of which every other one is held out", "convention"
-    )
+    parts: int = documented(10, "parts of a single run; every other one is held out", "convention")
     min_information: float = documented(
         1e-4,
         "share of the information on a parameter below which the remaining runs do not determine "
@@ -302,12 +298,8 @@ class HeldOutSettings:
     extrapolation_share: float = documented(
         0.05, "share of a run's samples that must be beyond all others", "no single samples"
     )
-    min_units: int = documented(
-        6, "number of independent units from which they are compared in pairs", "convention"
-    )
-    min_unit_samples: int = documented(
-        16, "number of samples from which a stroke is a unit", "convention"
-    )
+    min_units: int = documented(6, "number of units from which they are paired", "convention")
+    min_unit_samples: int = documented(16, "samples from which a stroke is a unit", "convention")
 
 
 @dataclass(frozen=True)

@@ -179,11 +179,11 @@ def test_limits_of_load_and_temperature_are_those_of_records_that_differ() -> No
 @pytest.mark.parametrize(
     ("given", "key"),
     [
-        ({"velocity_m_s": 0.0}, "velocity_m_s = 0"),
-        ({"velocity_m_s": np.nan}, "velocity_m_s = nan"),
-        ({"velocity_m_s": 1.01e6}, "velocity_m_s"),
-        ({"acceleration_m_s2": -1.0}, "acceleration_m_s2 = -1"),
-        ({"acceleration_m_s2": np.inf}, "acceleration_m_s2 = inf"),
+        ({"velocity": 0.0}, "velocity = 0"),
+        ({"velocity": np.nan}, "velocity = nan"),
+        ({"velocity": 1.01e6}, "velocity"),
+        ({"acceleration": -1.0}, "acceleration = -1"),
+        ({"acceleration": np.inf}, "acceleration = inf"),
         ({"duration_s": 0.0}, "duration_s = 0"),
         ({"duration_s": 86401.0}, "duration_s = 86401"),
         ({"load_n": (0.0, 5.0)}, "load_n = 0"),

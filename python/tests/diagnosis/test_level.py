@@ -38,8 +38,8 @@ def test_false_alarm_rate_is_shared_and_minimum_size_grows_with_samples() -> Non
     assert level.min_gain == pytest.approx(0.05**2 * 1000.0)
     # 1 N is above 5 % of 4 N and below 5 % of 40 N.
     in_newtons = replace(policy, min_effect=1.0)
-    assert Level.shared(in_newtons, 8, 1000.0, 4.0).worth == pytest.approx(1000.0 / 16.0)
-    assert Level.shared(in_newtons, 8, 1000.0, 40.0).worth == pytest.approx(2.5)
+    assert Level.shared(in_newtons, 8, 1000.0, 4.0).min_gain == pytest.approx(1000.0 / 16.0)
+    assert Level.shared(in_newtons, 8, 1000.0, 40.0).min_gain == pytest.approx(2.5)
     assert Level.shared(policy, 0, 1000.0, 4.0).chance == 0.02
 
 

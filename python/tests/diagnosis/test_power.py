@@ -110,7 +110,7 @@ def test_effect_that_the_law_explains_has_no_detectable_strength() -> None:
     assert (found.detectable_80, found.detectable_95, found.distinguishable_80, found.share_80) == (
         None,
     ) * 4
-    assert found.like == ()
+    assert found.confounded_with == ()
     assert found.hidden
 
 
@@ -131,21 +131,21 @@ def test_effects_with_the_same_signature_are_confounded() -> None:
     offset, dry = powers()["sensor_offset"], powers()["dry_asymmetry"]
     assert offset.detectable_80 is not None
     assert (offset.distinguishable_80, dry.distinguishable_80) == (None, None)
-    assert offset.like[0] == "dry_asymmetry"
-    assert dry.like[0] == "sensor_offset"
+    assert offset.confounded_with[0] == "dry_asymmetry"
+    assert dry.confounded_with[0] == "sensor_offset"
 
 
 def test_effect_with_a_unique_signature_is_distinguishable_if_detectable() -> None:
     for name in ("stribeck_asymmetry", "sensor_hysteresis", "sensor_drift"):
         found = powers()[name]
-        assert found.like == ()
+        assert found.confounded_with == ()
         assert found.distinguishable_80 == pytest.approx(found.detectable_80, rel=0.1)
 
 
 def test_distinguishable_strength_is_that_of_a_regression_on_law_and_rival() -> None:
     """Viscous friction that depends on direction; in the nearest rival all friction does."""
     found = powers()["viscous_asymmetry"]
-    assert found.like[0] == "direction_asymmetry"
+    assert found.confounded_with[0] == "direction_asymmetry"
     change = np.abs(columns()[0])
     alone = residual_norm(change) / NOISE_N
     apart = residual_norm(change, 5.0 + 20.0 * change) / NOISE_N
@@ -312,7 +312,7 @@ def test_delay_and_lag_are_confounded_if_reversals_are_uncertain(velocity_noise:
     for name, other in (names, names[::-1]):
         own = found[name]
         if velocity_noise:
-            assert other in own.like
+            assert other in own.confounded_with
             assert (
                 own.distinguishable_80 is None or own.distinguishable_80 > 1.2 * own.detectable_80
             )

@@ -154,7 +154,7 @@ def test_parameter_of_an_effect_that_moves_jumps_is_recovered_within_its_error(n
     assert found.stderr < 0.3 * value
     # Only the samples next to the moved jumps are excluded.
     bare = compare(Model(rig), runs)
-    assert 0.97 * bare.samples.count < solution.samples < bare.samples.count
+    assert 0.97 * bare.samples.count < solution.nobs < bare.samples.count
     assert compare(solution.model, runs).rms < 1.03 * truth["noise_n"]
 
 

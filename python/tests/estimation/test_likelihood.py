@@ -121,7 +121,7 @@ TARGET = np.array([3.0, 8.0, -1.0, 2.0])
 def test_regression_residual_does_not_depend_on_the_scale_of_the_columns(scale: float) -> None:
     design = DESIGN * [1.0, scale, 1.0] if scale == 1e200 else scale * DESIGN
     design[:, 2] = design[:, 0] + design[:, 1]
-    left = likelihood.residual_structure(design, TARGET)
+    left = likelihood.unexplained(design, TARGET)
     np.testing.assert_allclose(left, [0.0, 0.0, -1.0, 2.0], atol=1e-12)
     assert likelihood.unexplained_square(design, TARGET) == pytest.approx(5.0)
     span = likelihood.spanned(scale * DESIGN)

@@ -91,5 +91,5 @@ def test_interrupted_fit_returns_the_best_values_so_far(interrupting: str) -> No
         fit(Rig(), runs, law=interrupting)
     best = stopped.value.fit
     assert not best.converged
-    assert np.all(np.isfinite(list(best.values.values())))
+    assert np.all(np.isfinite(list(best.params.values())))
     assert best.rms < jbf.compare(jbf.Model(Rig(), interrupting), runs).rms

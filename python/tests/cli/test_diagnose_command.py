@@ -32,7 +32,7 @@ def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys
     assert printed.err == ""
     assert result["verdict"] == "adequate"
     assert (result["machine"], result["effects"]) == (["inertia"], [])
-    assert set(result) >= {"alternatives", "failures", "unexplained", "next_experiment"}
+    assert set(result) >= {"alternatives", "failures", "residual_structure", "next_experiment"}
     assert set(result["steps"][0]) >= {"effects", "rms", "held_out_rms", "noise_rms"}
     assert jbf.Model.load(model).effects == ("inertia",)
     assert "Diagnosis: adequate" in page.read_text()

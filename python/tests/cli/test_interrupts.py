@@ -30,7 +30,7 @@ def stopping(time_s, b_n):
         raise KeyboardInterrupt
     return b_n * np.ones(len(time_s))
 
-zero = jbf.Parameter("b", "N", lower=-9.0, upper=9.0, null=0.0, starts=(1.0,))
+zero = jbf.Parameter("b_n", "N", lower=-9.0, upper=9.0, null=0.0, starts=(1.0,))
 jbf.register_effect(stopping, parameters=[zero])
 """
 

@@ -90,13 +90,13 @@ def test_ripple_with_the_sign_of_the_velocity_is_reported_as_friction() -> None:
     assert found.share == pytest.approx(1.0 / 3.0, rel=0.1)
 
 
-@pytest.mark.parametrize("friction_n", [0.5, 2.0])
-def test_only_the_larger_of_two_ripples_is_reported(friction: float) -> None:
+@pytest.mark.parametrize("amplitude", [0.5, 2.0])
+def test_only_the_larger_of_two_ripples_is_reported(amplitude: float) -> None:
     campaign = reversing()
     force = waves(campaign, [1.0] * 5)
-    friction = waves(campaign, [friction] * 5, friction=True, seed=4)
+    friction = waves(campaign, [amplitude] * 5, friction=True, seed=4)
     (found,) = ripples_in(campaign, [a + b for a, b in zip(force, friction, strict=True)])
-    assert found.where.startswith("friction" if friction > 1.0 else "a force")
+    assert found.where.startswith("friction" if amplitude > 1.0 else "a force")
 
 
 def test_no_ripple_is_reported_in_white_noise() -> None:

@@ -24,8 +24,8 @@ Waves = Sequence[tuple[float, float]]
 
 def waves_of(x: Array, waves: Waves) -> Array:
     total = np.zeros(len(x))
-    for pitch_m, amplitude_n in waves:
-        total += amplitude_n * np.sin(2.0 * np.pi * x / pitch_m - 0.7)
+    for pitch, amplitude_n in waves:
+        total += amplitude_n * np.sin(2.0 * np.pi * x / pitch - 0.7)
     return total
 
 
@@ -71,13 +71,13 @@ def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign
     ],
 )
 def test_pitch_of_maximum_likelihood_is_that_of_the_simulated_wave(
-    pitch_m: float, along: bool
+    pitch: float, along: bool
 ) -> None:
     """A fit converges from within half a period over the path; the test requires a quarter."""
-    campaign = Campaign.prepare(Rig(), axis_runs([(pitch_m, 0.3)], along=along))
+    campaign = Campaign.prepare(Rig(), axis_runs([(pitch, 0.3)], along=along))
     found = pitches(campaign, along=along)
     path_m = np.ptp(np.concatenate([p.motion.angle_rad for p in campaign.prepared]))
-    assert abs(path_m / found[0] - path_m / pitch_m) < 0.25
+    assert abs(path_m / found[0] - path_m / pitch) < 0.25
 
 
 def test_pitches_of_waves_are_listed_in_the_order_of_their_amplitudes() -> None:
@@ -97,9 +97,9 @@ def test_pitch_is_estimated_only_if_the_path_contains_four_periods(
 
 @pytest.mark.parametrize(("samples", "found"), [(3.8, False), (4.3, True)])
 def test_pitch_is_estimated_only_if_it_spans_four_path_samples(samples: float, found: bool) -> None:
-    pitch_m = samples * 0.5e-3
-    likeliest = pitches(shuttle([(pitch_m, 1.0)]), along=False)[0]
-    assert (likeliest == pytest.approx(pitch_m, rel=2e-3)) == found
+    pitch = samples * 0.5e-3
+    likeliest = pitches(shuttle([(pitch, 1.0)]), along=False)[0]
+    assert (likeliest == pytest.approx(pitch, rel=2e-3)) == found
 
 
 def test_no_pitch_is_estimated_from_a_short_record_or_a_short_path() -> None:

@@ -309,7 +309,7 @@ def test_export_command_writes_rust_and_c_source(saved: Path) -> None:
 
 def test_export_command_without_an_output_file_is_refused(saved: Path, capsys: Capture) -> None:
     assert cli.main(["export", str(saved)]) == 2
-    assert "nothing to write" in capsys.readouterr().err
+    assert "no output is given" in capsys.readouterr().err
 
 
 def test_effect_is_exported_unless_its_parameter_is_at_an_infinite_null() -> None:

@@ -8,11 +8,11 @@ use super::registry::{signal_chain, Shelf};
 use super::{
     backlash, cogging, cogging_2, coulomb_drag, direction_asymmetry, drive_compliance,
     dry_asymmetry, dry_load_dependence, dry_temperature_dependence, dwell_stiction, film_memory,
-    gravity, inertia, load_dependence, pitch_ripple, pitch_ripple_2, position_ripple,
-    presliding, quadratic_drag, sensor_drift, sensor_hysteresis, sensor_lag, sensor_nonlinearity,
+    gravity, inertia, load_dependence, pitch_ripple, pitch_ripple_2, position_ripple, presliding,
+    quadratic_drag, running_in, sensor_drift, sensor_hysteresis, sensor_lag, sensor_nonlinearity,
     sensor_offset, shear_thinning, stribeck_asymmetry, stribeck_excess, stroke_dependence,
     thermal_thinning, time_delay, torque_proportional, viscous_asymmetry, viscous_load_dependence,
-    viscous_temperature_dependence, viscous_thinning, vogel_viscosity, warm_up, running_in,
+    viscous_temperature_dependence, viscous_thinning, vogel_viscosity, warm_up,
     zero_load_dependence,
 };
 use super::{Effect, EffectSet, Info, Resistance, Rig, Signal};

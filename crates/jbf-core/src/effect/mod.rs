@@ -28,6 +28,7 @@ pub mod pitch_ripple_2;
 pub mod position_ripple;
 pub mod presliding;
 pub mod quadratic_drag;
+pub mod running_in;
 pub mod sensor_drift;
 pub mod sensor_hysteresis;
 pub mod sensor_lag;
@@ -46,7 +47,6 @@ pub mod viscous_temperature_dependence;
 pub mod viscous_thinning;
 pub mod vogel_viscosity;
 pub mod warm_up;
-pub mod running_in;
 pub mod zero_load_dependence;
 
 mod catalogue;

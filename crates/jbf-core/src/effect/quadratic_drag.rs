@@ -21,14 +21,9 @@ impl<T: Real> Effect<T> for QuadraticDrag<T> {
         .equation("F -> F + c v |v|")
         .source("Rayleigh 1876; Cohn 1998, section 4.1")
         .limits("the same both ways; slow flow drags in proportion to speed, which gamma takes up")
-        .parameters(&[Parameter::new(
-            "c",
-            "N s^2/m^2",
-            "drag at 1 m/s",
-            [0.0, 1e7],
-            &[50.0],
-        )
-        .null(0.0)]);
+        .parameters(&[
+            Parameter::new("c", "N s^2/m^2", "drag at 1 m/s", [0.0, 1e7], &[50.0]).null(0.0),
+        ]);
     type State = ();
 
     fn new(parameters: &[T]) -> Result<Self, ParameterError> {

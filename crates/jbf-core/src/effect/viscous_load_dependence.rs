@@ -22,14 +22,9 @@ impl<T: Real> Effect<T> for ViscousLoadDependence<T> {
         .equation("F -> F + c L v, L the recorded load")
         .source("Hamon, Gautier & Garrec 2010; Wolf & Iskandar 2018")
         .limits("a straight line over load and over speed")
-        .parameters(&[Parameter::new(
-            "c",
-            "s/m",
-            "viscous slope over load",
-            [-1e4, 1e4],
-            &[0.1],
-        )
-        .null(0.0)])
+        .parameters(&[
+            Parameter::new("c", "s/m", "viscous slope over load", [-1e4, 1e4], &[0.1]).null(0.0),
+        ])
         .needs(&[Need::NoFilm, Need::Loads]);
     type State = ();
 

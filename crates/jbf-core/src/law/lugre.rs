@@ -73,8 +73,7 @@ impl<T: Real> Named<T> for LuGre<T> {
             V_S,
             stiffness("sigma_0", "stiffness of the bristles", &[1e5, 1e6, 1e4]),
             damping("sigma_1", "damping of the bristles", &[100.0]).start(Start::Damping),
-            speed("v_d", "speed at which the damping has died", &[0.1])
-                .start(Start::UsualSpeed),
+            speed("v_d", "speed at which the damping has died", &[0.1]).start(Start::UsualSpeed),
             F_V,
         ]);
 

@@ -74,8 +74,7 @@ pub(super) const F_C: Parameter =
 pub(super) const F_S: Parameter =
     force("F_s", "static (breakaway) friction", &[12.0]).start(Start::Breakaway);
 /// Viscous friction.
-pub(super) const F_V: Parameter =
-    damping("F_v", "viscous friction", &[10.0]).start(Start::Viscous);
+pub(super) const F_V: Parameter = damping("F_v", "viscous friction", &[10.0]).start(Start::Viscous);
 /// Stribeck speed.
 pub(super) const V_S: Parameter = speed(
     "v_s",

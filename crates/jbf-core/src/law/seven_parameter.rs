@@ -108,11 +108,7 @@ impl<T: Real> Named<T> for SevenParameter<T> {
         .source("Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1")
         .limits("switches between stuck and sliding; rising static friction needs tau_L > 0")
         .parameters(&[
-            stiffness(
-                "k_t",
-                "stiffness of the stuck contact",
-                &[1e5, 1e6, 1e4],
-            ),
+            stiffness("k_t", "stiffness of the stuck contact", &[1e5, 1e6, 1e4]),
             F_C,
             F_V,
             force(

@@ -25,6 +25,7 @@ mod pitch_ripple_2;
 mod position_ripple;
 mod presliding;
 mod quadratic_drag;
+mod running_in;
 mod sensor_drift;
 mod sensor_hysteresis;
 mod sensor_lag;
@@ -45,7 +46,6 @@ mod viscous_temperature_dependence;
 mod viscous_thinning;
 mod vogel_viscosity;
 mod warm_up;
-mod running_in;
 mod zero_load_dependence;
 
 /// Every effect has a closed form: a file with its name here, named above, that contains a test.

@@ -23,7 +23,7 @@ VALUES = {
     "lugre": {"F_c": 5.0, "F_s": 8.0, "v_s": 0.01, "sigma_0": 2e3, "F_v": 20.0},
     "maxwell_slip": {"F_c": 5.0, "sigma_0": 1e3, "F_v": 20.0},
     "elasto_plastic": {"F_c": 5.0, "sigma_0": 1e3, "F_v": 20.0},
-    "rate_and_state": {"F_0_n": 5.0, "a_n": 0.2, "b": 0.5, "D_c_m": 0.01, "F_v": 20.0},
+    "rate_and_state": {"F_0": 5.0, "a": 0.2, "b": 0.5, "D_c": 0.01, "F_v": 20.0},
 }
 """Parameters of each law.
 

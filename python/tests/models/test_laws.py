@@ -98,10 +98,10 @@ def velocity_step_runs() -> list[jbf.Run]:
 
 
 def test_rate_and_state_parameters_are_recovered_within_their_errors() -> None:
-    fixed = {"v_0_m_s": RATE_AND_STATE["v0"]}
+    fixed = {"v_0": RATE_AND_STATE["v0"]}
     fit = jbf.fit(jbf.Rig(), velocity_step_runs(), law="rate_and_state", fixed=fixed)
     assert fit.rms < 1.05 * 0.02, fit.report()
-    truth = {"F_0_n": "f0", "a_n": "a", "b": "b", "D_c_m": "dc", "F_v": "fv"}
+    truth = {"F_0": "f0", "a": "a", "b": "b", "D_c": "dc", "F_v": "fv"}
     for name, key in truth.items():
         parameter = fit.parameters[name]
         assert parameter.stderr is not None
@@ -114,7 +114,7 @@ def test_rate_and_state_prediction_agrees_with_a_scipy_integration() -> None:
     speed = velocity_steps(1e-4, 1e-3)
     t = np.arange(0.0, 20.0, 0.002)
     v = np.array([speed(x) for x in t])
-    names = ["F_0_n", "a_n", "b", "D_c_m", "v_0_m_s", "F_v"]
+    names = ["F_0", "a", "b", "D_c", "v_0", "F_v"]
     values = dict(zip(names, RATE_AND_STATE.values(), strict=True))
     model = jbf.Model(jbf.Rig(), "rate_and_state", parameters=values)
     difference = model.predict(jbf.Run.from_arrays(t, v)) - independent.rate_and_state(

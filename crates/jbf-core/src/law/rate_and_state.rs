@@ -136,13 +136,13 @@ impl<T: Real> Named<T> for RateAndState<T> {
         )
         .parameters(&[
             force(
-                "F_0_n",
+                "F_0",
                 "friction in steady sliding at the speed v_0, without the viscous part",
                 &[10.0],
             )
             .start(Start::Kinetic),
             Parameter::new(
-                "a_n",
+                "a",
                 "N",
                 "direct effect: immediate rise of friction per e-fold of the speed",
                 [0.0, 1e7],
@@ -158,7 +158,7 @@ impl<T: Real> Named<T> for RateAndState<T> {
             )
             .start(Start::Drag),
             Parameter::new(
-                "D_c_m",
+                "D_c",
                 "m",
                 "slip distance over which the contact renews itself",
                 [1e-12, 1e3],
@@ -166,7 +166,7 @@ impl<T: Real> Named<T> for RateAndState<T> {
             )
             .log()
             .start(Start::SlipDistance),
-            speed("v_0_m_s", "reference speed, at which F_0 holds", &[0.01])
+            speed("v_0", "reference speed, at which F_0 holds", &[0.01])
                 .start(Start::UsualSpeed)
                 .stated(),
             F_V,

@@ -61,7 +61,7 @@ class Answer:
     verdict: str
     law: str
     named: tuple[str, ...]
-    unexplained: tuple[str, ...]
+    residual_structure: tuple[str, ...]
     ratio: float
     cpu_s: float
 

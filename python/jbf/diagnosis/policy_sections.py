@@ -48,6 +48,12 @@ class Selection:
         "named although structure remains",
         "chosen on simulated campaigns with effects that are in no catalogue",
     )
+    min_estimate_sigma: float = documented(
+        2.0,
+        "standard errors by which a parameter of an effect must differ from its null for the "
+        "effect to be named",
+        "a 95 % confidence interval that excludes the null",
+    )
 
     @property
     def tie(self) -> float:

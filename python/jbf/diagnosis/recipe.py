@@ -22,7 +22,12 @@ from jbf.diagnosis.reached import Reached
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import remainder_of, select, step
 from jbf.diagnosis.selection import Names, start_model, weights
-from jbf.diagnosis.standing import best_predicting, confounders, with_final_outcomes
+from jbf.diagnosis.standing import (
+    best_predicting,
+    confounders,
+    effects_without_estimate,
+    with_final_outcomes,
+)
 from jbf.diagnosis.unseen import propose_detection_run, undetectable_effects
 from jbf.diagnosis.verdict import verdict
 from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
@@ -245,18 +250,20 @@ def _with_law(
     doubted = confounders(candidates, present, remains) if remains else ()
     machine = machine_of(candidates, present)
     named = tuple(name for name in present if name not in doubted)
-    steps = with_final_outcomes(steps, present, doubted)
     if doubted and not remainder_of(candidates, named):
         # No structure remains without the confounders: remove them.
         present, remains = named, refused
     missing = tuple(name for name in named if name not in machine)
-    asked = (*missing, OFFSET)
-    posterior = {name: w for name, w in weights(candidates, named).items() if name in asked}
-    equal = {name: tuple(w)[1:] for name, w in posterior.items()}
     kept = best_predicting(candidates, present, named)
     if kept != steps[-1].effects:
         steps.append(step(candidates, kept, ()))
     fit = finish(candidates.fitted(kept).problem, candidates.converge(kept))
+    uncertain = effects_without_estimate(fit.parameters, missing, policy)
+    doubted, missing = (*doubted, *uncertain), tuple(e for e in missing if e not in uncertain)
+    steps = with_final_outcomes(steps, present, doubted)
+    asked = (*missing, OFFSET)
+    posterior = {name: w for name, w in weights(candidates, named).items() if name in asked}
+    equal = {name: tuple(w)[1:] for name, w in posterior.items()}
     tied = {name: others for name, others in equal.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))
     strengths = () if remains else power(candidates, present)

@@ -8,7 +8,8 @@ stays in the model where it improves the predictions.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from jbf.diagnosis.candidates import Candidates
@@ -16,8 +17,11 @@ from jbf.diagnosis.constancy import disagreement
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.machine import machine_of
+from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.verdict import name_is_supported
 from jbf.estimation.likelihood import effective_share, likelihood_gain
+from jbf.models.catalogue import Parameter, find_effect
+from jbf.models.parameter_value import ParameterValue
 
 Names = tuple[str, ...]
 
@@ -53,6 +57,30 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
     return tuple(found)
 
 
+def effects_without_estimate(
+    parameters: Mapping[str, ParameterValue], effects: Names, policy: Policy
+) -> Names:
+    """Find the effects none of whose parameters is estimated: held, or not different from its null.
+
+    A parameter whose null is infinite, or that has none, must be larger than its standard error by
+    the same factor.
+    """
+
+    def estimated(name: str, page: Parameter) -> bool:
+        value = parameters.get(name)
+        if value is None or value.held or value.stderr is None:
+            return False
+        null = 0.0 if page.null is None or not math.isfinite(page.null) else page.null
+        return abs(value.value - null) > policy.selection.min_estimate_sigma * value.stderr
+
+    pages = {name: find_effect(name).parameters for name in effects}
+    return tuple(
+        name
+        for name, parts in pages.items()
+        if not any(estimated(f"{name}.{page.name}", page) for page in parts)
+    )
+
+
 def best_predicting(candidates: Candidates, present: Names, named: Names) -> Names:
     """The model with or without the confounders, whichever has the smaller held-out error."""
     if named == present:
@@ -61,7 +89,10 @@ def best_predicting(candidates: Candidates, present: Names, named: Names) -> Nam
     return present if whole < less else named
 
 
-CONFOUNDER = "not named: the runs disagree on it, or more remains than it explains"
+CONFOUNDER = (
+    "not named: the runs disagree on it, more remains than it explains, or no parameter of it is "
+    "identifiable"
+)
 REPLACED = "added first, but not needed with the effects added later"
 
 

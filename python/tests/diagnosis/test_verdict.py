@@ -9,8 +9,14 @@ from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.confirmation import Confirmation, held_out_runs_confirm
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.standing import best_predicting, confounders, with_final_outcomes
+from jbf.diagnosis.standing import (
+    best_predicting,
+    confounders,
+    effects_without_estimate,
+    with_final_outcomes,
+)
 from jbf.diagnosis.verdict import name_is_supported, verdict
+from jbf.models.parameter_value import ParameterValue
 from linear_campaigns import coulomb_candidates, linear_diagnosis, reversing_runs
 
 OFFSET, DRIFT = "sensor_offset", "sensor_drift"
@@ -163,3 +169,29 @@ def test_json_of_a_diagnosis_has_the_documented_keys_and_values() -> None:
     estimate = document["parameters"]["inertia.m_e"]
     assert abs(estimate["value"] - 0.2) < 4.0 * estimate["stderr"]
     assert {"axis", "where", "share"} <= set(document["failures"][0])
+
+
+VALUE = ParameterValue
+"""A value with its standard error."""
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [
+        ({"coulomb_drag.F_d": VALUE(1.0, 0.4)}, True),
+        ({"coulomb_drag.F_d": VALUE(1.0, 0.6)}, False),
+        ({"coulomb_drag.F_d": VALUE(1.0, held=True)}, False),
+        ({"coulomb_drag.F_d": VALUE(1.0)}, False),
+        # One of several parameters is sufficient.
+        ({"cogging.A": VALUE(1.0, 0.1), "cogging.pitch": VALUE(0.1, held=True)}, True),
+        # The null of a stiffness is infinite.
+        ({"presliding.sigma": VALUE(2e5, 1e4)}, True),
+        ({"presliding.sigma": VALUE(2e5, 3e5)}, False),
+    ],
+)
+def test_effect_is_named_only_if_a_parameter_of_it_is_estimated(
+    values: dict[str, ParameterValue], named: bool
+) -> None:
+    (effect,) = {name.partition(".")[0] for name in values}
+    unnamed = effects_without_estimate(values, (effect,), DEFAULT)
+    assert unnamed == (() if named else (effect,))

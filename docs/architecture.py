@@ -138,7 +138,7 @@ STEPS: list[tuple[str, str]] = [
     ("candidates", "score test -> rank ->\nconverge -> search peaks"),
     ("evidence, left_out", "likelihood gain less price;\nruns left out of the fit"),
     ("selection", "add the leader; take out,\nexchange; ties"),
-    ("remainder", "patterns, tones, replicates,\nbursts, constancy"),
+    ("residual_structure", "patterns, tones, replicates,\nbursts, constancy"),
     ("verdict, policy", "adequate, missing,\nambiguous, unexplained"),
     ("Diagnosis", "ledger of errors, model,\nnext experiment -> reporting"),
 ]

@@ -4,8 +4,8 @@ Input: a rig and its runs. Output: a `Diagnosis` with the verdict, the effects w
 a ledger of decreasing errors, the residual structure and the run to record next.
 
 Modules: `candidates` fits the models and `evidence` compares them. `selection` adds and reviews
-effects. `remainder` tests the residual for lack of fit. `verdict` states the verdict. `policy`
-holds every number that influences a verdict. `recipe` combines these steps.
+effects. `residual_structure` tests the residual for lack of fit. `verdict` states the verdict.
+`policy` holds every number that influences a verdict. `recipe` combines these steps.
 
 May import: `jbf.records`, `jbf.models`, `jbf.estimation`, `jbf.comparison`.
 """

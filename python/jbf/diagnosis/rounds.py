@@ -10,7 +10,7 @@ import numpy as np
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import evidence, evidence_on_common_samples, full_gain
 from jbf.diagnosis.ledger import Extrapolation, Remainder, Step, Trial
-from jbf.diagnosis.remainder import find_remainder
+from jbf.diagnosis.residual_structure import find_residual_structure
 from jbf.diagnosis.selection import (
     Follow,
     Names,
@@ -144,7 +144,7 @@ def _evidence_of_leader(candidates: Candidates, present: Names, found: Round) ->
 def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     """Structure in the residual of a model."""
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
-    return find_remainder(problem, solution, candidates.policy)
+    return find_residual_structure(problem, solution, candidates.policy)
 
 
 def _grown(candidates: Candidates, present: Names, found: Round) -> Names:

@@ -13,11 +13,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.constancy import disagreement
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.machine import machine_of
 from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.residual_structure.constancy import disagreement
 from jbf.diagnosis.verdict import name_is_supported
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.models.catalogue import Parameter, find_effect

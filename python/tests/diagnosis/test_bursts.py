@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 from jbf.diagnosis import Remainder
-from jbf.diagnosis.bursts import find_bursts
 from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.residual_structure.bursts import find_bursts
 from scipy import special
 from slides import STEP_S, Array, Mask, numbers_in, steady_slides
 

@@ -11,13 +11,13 @@ from by_hand import Friction, coulomb, four_runs
 from campaigns import campaign as simulated
 from conftest import LAW as JOURNAL_LAW
 from jbf import Rig, Run
-from jbf.diagnosis.constancy import (
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.residual_structure.constancy import (
     Disagreement,
     disagreement,
     find_disagreement,
     run_specific_step,
 )
-from jbf.diagnosis.policy import DEFAULT
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.replicates import find_replicates
+from jbf.diagnosis.residual_structure.periodic import find_replicates
 from jbf.estimation.campaign import Campaign
 from scipy import signal
 from slides import Array, Mask, slides, solution_with, white_noise

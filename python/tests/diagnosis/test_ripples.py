@@ -8,7 +8,7 @@ import pytest
 from jbf import Rig
 from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.ripples import find_ripples
+from jbf.diagnosis.residual_structure.periodic import find_ripples
 from jbf.estimation.campaign import Campaign
 from jbf.records.drive import Drive
 from scipy import stats

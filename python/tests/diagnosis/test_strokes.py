@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.strokes import find_stroke_levels
+from jbf.diagnosis.residual_structure.constancy import find_stroke_levels
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.units import stroke_of
 from scipy import signal, stats

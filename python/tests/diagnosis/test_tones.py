@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.tones import find_tones
+from jbf.diagnosis.residual_structure.periodic import find_tones
 from slides import STEP_S, Array, Mask, steady_slides, white_noise
 
 SMALLEST_SHARE = 1e-12

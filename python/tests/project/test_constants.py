@@ -30,13 +30,13 @@ NUMERICAL = {
         estimation.weighting: TUNING FREEDOM ELSEWHERE BETTER NO_WORSE SHARPER
     """,
     "text of a result": """
-        diagnosis.bursts: APART_S NAMED
-        diagnosis.constancy: NAMED TOLD
+        diagnosis.residual_structure.bursts: APART_S NAMED
+        diagnosis.residual_structure.constancy: NAMED MOST_REPORTED
         diagnosis.selection: LESS
         estimation.determined: ONE_SIDED
     """,
     "tolerance of a numerical comparison or of an iteration": """
-        diagnosis.bursts: NO_NOISE
+        diagnosis.residual_structure.bursts: NO_NOISE
         diagnosis.power: AGREES
         diagnosis.separation: NO_NOISE_N
         diagnosis.terms.shifts: SETTLED
@@ -77,7 +77,7 @@ NUMERICAL = {
     """,
     "resolution of a grid, a derivative or a number of draws": """
         diagnosis.level: DRAWS
-        diagnosis.ripples: MOST_BINS PADDING
+        diagnosis.residual_structure.periodic: MOST_BINS PADDING
         estimation.converter: HARMONICS
         estimation.exact_delay: COARSE FINE
         estimation.film_gaps: EDGE

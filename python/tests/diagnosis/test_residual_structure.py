@@ -8,7 +8,7 @@ import pytest
 from campaigns import campaign as simulated
 from jbf import Rig, diagnose
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.remainder import find_patterns, find_remainder
+from jbf.diagnosis.residual_structure import find_patterns, find_residual_structure
 from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise
@@ -43,7 +43,7 @@ def stroke_levels() -> list[Array]:
 
 def axes_of(residuals: list[Array]) -> dict[str, float]:
     """Shares of the residual structure by axis."""
-    return {r.axis: r.share for r in find_remainder(*solution_with(sines(), residuals))}
+    return {r.axis: r.share for r in find_residual_structure(*solution_with(sines(), residuals))}
 
 
 @pytest.mark.parametrize("noise", [WHITE, Noise(0.2, 0.5)])
@@ -52,7 +52,7 @@ def test_no_structure_is_reported_in_noise_that_the_noise_model_describes(
     seed: int, noise: Noise
 ) -> None:
     residuals = [noise.coloured(e, 0.02) for e in white_noise(sines(), seed)]
-    assert find_remainder(*solution_with(sines(), residuals, noise=noise)) == ()
+    assert find_residual_structure(*solution_with(sines(), residuals, noise=noise)) == ()
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_size_of_a_pattern_is_that_of_the_residual_and_not_of_the_innovations() 
     ]
     problem, solution = solution_with(sines(), residuals, noise=noise)
     assert solution.samples.rms(solution.samples.innovations(solution.residuals, noise)) < 0.6
-    where = {r.axis: r.where for r in find_remainder(problem, solution)}["direction"]
+    where = {r.axis: r.where for r in find_residual_structure(problem, solution)}["direction"]
     (size,) = numbers_in(r"record above the model by ([\d.]+) N in the direction of motion", where)
     assert size == pytest.approx(2.0, abs=0.15)
 
@@ -120,7 +120,7 @@ def test_burst_is_detected_even_if_robust_weights_reduce_it() -> None:
     residuals[0] = residuals[0] + 9.0 * inside
     robust = [np.where(inside, 0.05, 1.0), np.ones(N)]
     samples = sines().samples.weighed([np.ones(N)] * 2, robust, None)
-    found = find_remainder(*solution_with(sines(), residuals, samples=samples))
+    found = find_residual_structure(*solution_with(sines(), residuals, samples=samples))
     assert "time" in {r.axis for r in found}
 
 
@@ -131,7 +131,7 @@ def test_random_effect_in_the_model_is_not_residual_structure() -> None:
     assert "run" in axes_of(residuals)
     between = BetweenRuns(("zero",), (np.full((N, 1), 10.0),) * 2, 1.0)
     samples = replace(sines().samples, between=between)
-    (found,) = find_remainder(*solution_with(sines(), residuals, samples=samples))
+    (found,) = find_residual_structure(*solution_with(sines(), residuals, samples=samples))
     assert found.axis == "frequency"
     assert found.share == pytest.approx(0.18 / 1.18, rel=0.2)
 
@@ -146,7 +146,7 @@ def test_structure_within_the_quantisation_is_not_reported(part: float, found: b
     tone = part * step_rms * np.sqrt(2.0) * np.sin(2.0 * np.pi * 7.3 * TIME_S)
     residuals = [e + tone for e in white_noise(campaign, 1, 0.05)]
     problem, solution = solution_with(campaign, residuals)
-    reported = {r.axis for r in find_remainder(problem, solution)}
+    reported = {r.axis for r in find_residual_structure(problem, solution)}
     assert campaign.steps_rms(solution.rms) == pytest.approx(step_rms, rel=0.1)
     assert ("frequency" in reported) == found
 

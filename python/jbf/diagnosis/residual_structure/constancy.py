@@ -1,17 +1,23 @@
-"""Test whether all runs have the same parameters.
+"""Tests of constancy: the same parameters in all runs, and the same friction level in all strokes.
 
-A correct model has one set of parameters. With a confounder, each run requires its own.
-
-The test is the score test of parameter constancy (Nyblom 1989, with runs as groups). At the fit to
+A correct model has one set of parameters. With a confounder, each run requires its own. The test
+for runs is the score test of parameter constancy (Nyblom 1989, with runs as groups). At the fit to
 all runs, the statistic is the gain of one Gauss-Newton step for each run separately. It is
 chi-square distributed. Its degrees of freedom are the number of run-specific parameters less the
 number of shared parameters. Scores are in units of each run's own long-run variance. The test
 requires no additional fit.
+
+With a surface that wears, sheds debris or is relubricated, each stroke has its own level, which no
+parameter of a law describes. The test for strokes is an analysis of variance. Between strokes of a
+run it uses the ratio of recorded and predicted friction; within strokes, the difference between
+their two halves. For a correct model, and for a wrong model with equal errors in all strokes, both
+estimate the same variance, whatever the memory of the noise. Their ratio has Fisher's F
+distribution.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +29,7 @@ from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.estimation.long_run import score_square
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from jbf.estimation.units import Strokes, stroke_of
 from jbf.models.catalogue import find_effect
 from jbf.models.parameter_units import unit_of
 
@@ -31,7 +38,7 @@ Mask = npt.NDArray[np.bool_]
 
 OIL = {"U_tr_m_s", "gamma"}
 """Parameters that both depend on the oil temperature: a run that differs in one differs in both."""
-TOLD = float(np.log(20.0))
+MOST_REPORTED = float(np.log(20.0))
 """Largest change of a logarithm that is reported as a number.
 
 One Gauss-Newton step is not accurate beyond it. It concerns the text only.
@@ -85,10 +92,10 @@ def disagreement(
     aside = _of_many_peaks(problem) if effect is None else ~_of(problem, {effect})
     if samples.between is not None:
         # Parameters with known between-run variance differ beyond the first order.
-        known = set(samples.between.names)
-        if known & OIL:
-            known |= OIL
-        aside = aside | np.array([problem.names[i] in known for i in problem.open])
+        varying = set(samples.between.names)
+        if varying & OIL:
+            varying |= OIL
+        aside = aside | np.array([problem.names[i] in varying for i in problem.open])
     residuals, jacobian, noise = solution.residuals, solution.jacobian, solution.noise
     least = policy.constancy.min_sensitivity
     parts = [
@@ -105,10 +112,10 @@ def disagreement(
         if len(r) <= count:
             continue
         sigma = max(float(np.sqrt(np.mean(r**2))), 1e-150)
-        own = score_square(directions, r / sigma, step_s, samples.settings.variance)
-        gain += own
+        run_gain = score_square(directions, r / sigma, step_s, samples.settings.variance)
+        gain += run_gain
         degrees += count
-        by_run[name] = own / max(count, 1)
+        by_run[name] = run_gain / max(count, 1)
         together.append((r / sigma, j / scale / sigma))
     ranked = dict(sorted(by_run.items(), key=lambda item: -item[1]))
     if len(together) < 2:
@@ -134,8 +141,8 @@ def _of_many_peaks(problem: Problem) -> Mask:
 def _directions(j: Array, least: float) -> Array:
     """Orthonormal directions of the record in which the parameters change it."""
     directions, size, _ = np.linalg.svd(j, full_matrices=False)
-    found: Array = directions[:, size > least * max(float(size.max(initial=0.0)), 1e-300)]
-    return found
+    effective: Array = directions[:, size > least * max(float(size.max(initial=0.0)), 1e-300)]
+    return effective
 
 
 def _set_aside(r: Array, j: Array, aside: Mask, least: float) -> tuple[Array, Array]:
@@ -145,30 +152,27 @@ def _set_aside(r: Array, j: Array, aside: Mask, least: float) -> tuple[Array, Ar
     """
     if not aside.any():
         return r, j
-    taken = _directions(j[:, aside], least)
+    span = _directions(j[:, aside], least)
     rest = j[:, ~aside]
-    return r - taken @ (taken.T @ r), rest - taken @ (taken.T @ rest)
+    return r - span @ (span.T @ r), rest - span @ (span.T @ rest)
 
 
 def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
     """Report that the runs require different parameters, where they do."""
-    found = disagreement(problem, solution, policy=policy)
-    if not found.beyond_chance(policy):
+    test = disagreement(problem, solution, policy=policy)
+    if not test.beyond_chance(policy):
         return []
-    ranked = list(found.by_run)[:NAMED]
-    first, others = (
-        ranked[0],
-        [n for n in ranked[1:] if found.by_run[n] > policy.constancy.min_ratio],
-    )
+    first, *others = list(test.by_run)[:NAMED]
+    others = [name for name in others if test.by_run[name] > policy.constancy.min_ratio]
     step = run_specific_step(problem, solution, first)
     where = (
         f"the runs ask for parameters that differ: run {first} asks for "
-        f"{step} ({found.by_run[first]:.0f} times as much as by "
+        f"{step} ({test.by_run[first]:.0f} times as much as by "
         "chance); check its load, zero and temperature"
     )
     if others:
         where += f" (next: {', '.join(others)})"
-    share = min((found.gain - found.degrees) / solution.samples.count, 1.0)
+    share = min((test.gain - test.degrees) / solution.samples.count, 1.0)
     return [Remainder("parameters", where, share)]
 
 
@@ -181,8 +185,7 @@ def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
     i = samples.runs.index(run)
     r, j = samples.stacked(solution.residuals, solution.jacobian, solution.noise, [i])
     size = np.linalg.norm(j, axis=0)
-    asked = (size > 0.0) & ~_of_many_peaks(problem)
-    size = np.where(asked, size, np.inf)
+    size = np.where((size > 0.0) & ~_of_many_peaks(problem), size, np.inf)
     gain = np.abs(j.T @ r) / size
     best = int(np.argmax(gain))
     step = float(j[:, best] @ r) / float(size[best]) ** 2
@@ -191,9 +194,68 @@ def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
     unit = unit_of(name, page, problem.law, problem.campaign.rig.quantities)
     more = "higher" if step > 0.0 else "lower"
     if problem.log[place]:
-        part = float(np.expm1(np.clip(step, -TOLD, TOLD)))
-        if abs(step) > TOLD:
+        part = float(np.expm1(np.clip(step, -MOST_REPORTED, MOST_REPORTED)))
+        if abs(step) > MOST_REPORTED:
             # One step gives no more information about a value so far away.
             return f"{name} many times as {'large' if step > 0.0 else 'small'}"
         return f"{name} {100.0 * abs(part):.3g} % {more}"
     return f"{name} {abs(step):.2g}{'' if unit == '-' else f' {unit}'} {more}"
+
+
+def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
+    """Report that the level of the friction differs between strokes, where it does."""
+    friction = problem.predict(solution.values)
+    counted = solution.samples.counted
+    residuals = solution.samples.without_deviations(solution.residuals, solution.noise)
+    between = within = friction_square = 0.0
+    degrees = 0
+    least = policy.strokes.min_samples
+    for p, f, r, c in zip(problem.campaign.prepared, friction, residuals, counted, strict=True):
+        halves = np.array(list(_halves(stroke_of(p), f, r, c, least))).reshape(-1, 2, 2)
+        if len(halves) < policy.strokes.min_strokes:
+            continue
+        weight, product = halves[..., 0], halves[..., 1]
+        level = product / weight
+        stroke_weight = np.sum(weight, axis=1)
+        deviation = np.sum(product, axis=1) / stroke_weight - np.sum(product) / np.sum(weight)
+        between += float(np.sum(stroke_weight * deviation**2))
+        difference = level[:, 1] - level[:, 0]
+        difference_weight = np.prod(weight, axis=1) / stroke_weight
+        difference -= np.average(difference, weights=difference_weight)
+        within += float(np.sum(difference_weight * difference**2))
+        degrees += len(halves) - 1
+        friction_square += float(np.sum(weight))
+    square = sum(float(r[c] @ r[c]) for r, c in zip(residuals, counted, strict=True))
+    if not degrees or within <= 0.0 or square <= 0.0:
+        return []
+    ratio, share = between / within, (between - within) / square
+    if share < policy.patterns.min_share:
+        return []
+    if special.fdtrc(degrees, degrees, ratio) > policy.constancy.chance:
+        return []
+    size = 100.0 * float(np.sqrt(share * square / friction_square))
+    where = (
+        f"friction as high in no stroke as in the next: by {size:.2g} % from stroke to stroke "
+        f"({ratio:.0f} times as much as within one)"
+    )
+    return [Remainder("stroke", where, min(share, 1.0))]
+
+
+def _halves(
+    stroke: Strokes, friction: Array, residual: Array, counted: Mask, least: int
+) -> Iterator[list[list[float]]]:
+    """Sums for the two halves of each stroke.
+
+    Strokes with fewer than `least` samples a half are skipped. Each half has the sum of squares of
+    the friction, N^2, and the sum of its products with the residual.
+    """
+    for k in range(int(np.max(stroke, initial=-1)) + 1):
+        rows = np.flatnonzero((stroke == k) & counted)
+        if len(rows) < 2 * least:
+            continue
+        halves = np.array_split(rows, 2)
+        sums = [
+            [float(friction[h] @ friction[h]), float(friction[h] @ residual[h])] for h in halves
+        ]
+        if min(sums[0][0], sums[1][0]) > 0.0:
+            yield sums

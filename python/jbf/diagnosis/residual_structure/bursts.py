@@ -45,17 +45,17 @@ def find_bursts(
     The size of a burst is reported from the residuals (record minus prediction). Without bursts the
     list is empty.
     """
-    every = samples.flat(innovations)
-    if not len(every):
+    flat = samples.flat(innovations)
+    if not len(flat):
         return []
     # The median is robust: bursts do not hide behind the variance that they cause.
     # Without any noise, half of the innovations are zero.
-    sigma = max(float(np.median(np.abs(every))) / 0.6745, NO_NOISE * float(np.max(np.abs(every))))
+    sizes = np.abs(flat)
+    sigma = max(float(np.median(sizes)) / 0.6745, NO_NOISE * float(np.max(sizes)))
     if sigma == 0.0:
         return []
-    far = np.abs(every) > policy.bursts.min_sigma * sigma
-    square = float(every @ every)
-    share = float(np.sum(every[far] ** 2)) / max(square, 1e-300)
+    large = flat[sizes > policy.bursts.min_sigma * sigma]
+    share = float(np.sum(large**2)) / max(float(flat @ flat), 1e-300)
     if share < policy.bursts.min_share:
         return []
     if _lasting_chance(innovations, samples, sigma, policy) > policy.bursts.chance:

@@ -1,7 +1,8 @@
 """Tests for residual structure (lack of fit) that no effect of the catalogue explains.
 
-The tests cover patterns along an axis, tones, bursts, errors that repeat with the motion, strokes
-with different levels, and runs that disagree on the parameters.
+This module tests patterns along an axis and combines all tests. `periodic` tests for tones, ripples
+over the travel, and errors that repeat with the motion. `bursts` tests isolated instants.
+`constancy` tests whether all runs have the same parameters, and all strokes the same level.
 
 All tests use innovations, the residual less its prediction by the noise's autocorrelation, so that
 coloured noise is not taken for structure. A pattern must be both significant and large enough to be
@@ -17,14 +18,11 @@ import numpy.typing as npt
 
 from jbf.comparison.axes import all_axes, force_axis
 from jbf.comparison.patterns import Failure, pattern_along
-from jbf.diagnosis.bursts import find_bursts
-from jbf.diagnosis.constancy import find_disagreement
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
-from jbf.diagnosis.replicates import find_replicates
-from jbf.diagnosis.ripples import find_ripples
-from jbf.diagnosis.strokes import find_stroke_levels
-from jbf.diagnosis.tones import find_tones
+from jbf.diagnosis.residual_structure.bursts import find_bursts
+from jbf.diagnosis.residual_structure.constancy import find_disagreement, find_stroke_levels
+from jbf.diagnosis.residual_structure.periodic import find_replicates, find_ripples, find_tones
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import transition_speed
@@ -32,29 +30,29 @@ from jbf.models.catalogue import transition_speed
 Array = npt.NDArray[np.float64]
 
 
-def find_remainder(
+def find_residual_structure(
     problem: Problem, solution: Solution, policy: Policy = DEFAULT
 ) -> tuple[Remainder, ...]:
     """Find the structure in the residuals of a solution, largest share first."""
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
-    left = samples.without_deviations(solution.residuals, solution.noise)
-    patterns = find_patterns(problem, solution, innovations, left, policy)
-    found = [Remainder(f.axis, f.where, f.share) for f in patterns]
-    found += find_tones(prepared, samples, innovations, left, policy)
-    found += find_ripples(problem.campaign, samples, innovations, left, policy)
-    found += find_replicates(prepared, solution, policy)
+    residuals = samples.without_deviations(solution.residuals, solution.noise)
+    patterns = find_patterns(problem, solution, innovations, residuals, policy)
+    structure = [Remainder(f.axis, f.where, f.share) for f in patterns]
+    structure += find_tones(prepared, samples, innovations, residuals, policy)
+    structure += find_ripples(problem.campaign, samples, innovations, residuals, policy)
+    structure += find_replicates(prepared, solution, policy)
     plain = samples.plain_innovations(solution.residuals, solution.noise)
-    found += find_bursts(prepared, samples.with_known_motion(), plain, left, policy)
-    found += find_disagreement(problem, solution, policy)
-    found += find_stroke_levels(problem, solution, policy)
+    structure += find_bursts(prepared, samples.with_known_motion(), plain, residuals, policy)
+    structure += find_disagreement(problem, solution, policy)
+    structure += find_stroke_levels(problem, solution, policy)
     # Coarse quantisation biases mean readings along any axis and in each run.
-    steps_n = problem.campaign.steps_rms(solution.rms)
-    found = [r for r in found if np.sqrt(r.share) * solution.rms > steps_n]
+    steps_rms = problem.campaign.steps_rms(solution.rms)
+    structure = [r for r in structure if np.sqrt(r.share) * solution.rms > steps_rms]
     if samples.motion is not None:
         least = policy.least_share(problem.campaign.motion_share)
-        found = [r for r in found if r.share >= least]
-    return tuple(sorted(found, key=lambda r: -r.share))
+        structure = [r for r in structure if r.share >= least]
+    return tuple(sorted(structure, key=lambda r: -r.share))
 
 
 def find_patterns(
@@ -75,11 +73,11 @@ def find_patterns(
     unit = problem.campaign.rig.quantities.force
     force = force_axis(*_likeliest_forces(problem, solution), unit)
     share, sigma = policy.patterns.min_share, policy.patterns.min_sigma
-    found = (
+    patterns = (
         pattern_along(axis, solution.samples, innovations, size, share, sigma, residuals)
         for axis in (*all_axes(problem.campaign, u_tr), force)
     )
-    return [failure for failure in found if failure is not None]
+    return [pattern for pattern in patterns if pattern is not None]
 
 
 def _likeliest_forces(problem: Problem, solution: Solution) -> tuple[list[Array], float]:

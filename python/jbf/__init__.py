@@ -25,7 +25,7 @@ if _TYPE_CHECKING:
     from jbf.diagnosis import Diagnosis, Experiment, Limits, Policy, diagnose, diagnose_many
     from jbf.diagnosis.check import Check, check
     from jbf.diagnosis.plan import Plan, plan
-    from jbf.diagnosis.planned import PlannedPower, planned_power
+    from jbf.diagnosis.power.planned_runs import PlannedPower, planned_power
     from jbf.estimation.bootstrap import Bootstrap, bootstrap
     from jbf.estimation.fit import Fit, fit
     from jbf.estimation.trajectory_fit import TrajectoryFit, fit_trajectories
@@ -93,8 +93,8 @@ _LATER = {
     "Plan": "jbf.diagnosis.plan",
     "plan": "jbf.diagnosis.plan",
     "Policy": "jbf.diagnosis",
-    "PlannedPower": "jbf.diagnosis.planned",
-    "planned_power": "jbf.diagnosis.planned",
+    "PlannedPower": "jbf.diagnosis.power.planned_runs",
+    "planned_power": "jbf.diagnosis.power.planned_runs",
     "Fit": "jbf.estimation.fit",
     "fit": "jbf.estimation.fit",
     "TrajectoryFit": "jbf.estimation.trajectory_fit",

@@ -88,7 +88,7 @@ def noise_of(option: str | None, model: Model) -> float:
 
 def run(options: PowerOptions) -> int:
     """Run the command."""
-    from jbf.diagnosis.planned import planned_power
+    from jbf.diagnosis.power.planned_runs import planned_power
 
     wanted = {"--json": options.json}
     outputs.check(wanted, outputs.inputs_in(options.rig, options.runs, options.effects_from))

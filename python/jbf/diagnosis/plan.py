@@ -21,10 +21,10 @@ import numpy.typing as npt
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.excitations import USUAL_RATE_RAD_S, Limits, excitations
-from jbf.diagnosis.planned import PlannedPower, as_recorded, planned_power
 from jbf.diagnosis.policy import DEFAULT, Policy
+from jbf.diagnosis.power.planned_runs import PlannedPower, as_recorded, planned_power
+from jbf.diagnosis.power.strength import Strength, strength_of
 from jbf.diagnosis.separation import MOST_SAMPLES, SIMULATED, run_from_motion
-from jbf.diagnosis.strength import Strength, strength_of
 from jbf.errors import InputError
 from jbf.estimation.likelihood import effective_share
 from jbf.models.catalogue import find_effect

@@ -13,8 +13,8 @@ from jbf.plot.style import BEFORE, INK, MEASURED, MODEL, NOISE, OTHER, dress, on
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from jbf.diagnosis.planned import PlannedPower
     from jbf.diagnosis.power import Power
+    from jbf.diagnosis.power.planned_runs import PlannedPower
     from jbf.diagnosis.result import Diagnosis
 
 MOST = 8

@@ -11,7 +11,7 @@ from jbf.comparison.comparison import Comparison
 from jbf.comparison.model_comparison import ModelComparison
 from jbf.diagnosis.check import Check
 from jbf.diagnosis.plan import Plan
-from jbf.diagnosis.planned import PlannedPower
+from jbf.diagnosis.power.planned_runs import PlannedPower
 from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.fit import Fit
 from jbf.estimation.trajectory_fit import TrajectoryFit

@@ -8,8 +8,8 @@ from textwrap import wrap
 from jbf.diagnosis.decoys import rate_below
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.plan import Plan
-from jbf.diagnosis.planned import PlannedPower
 from jbf.diagnosis.power import Power
+from jbf.diagnosis.power.planned_runs import PlannedPower
 from jbf.models.model import Model
 from jbf.records.counts import count_of
 from jbf.reporting.paragraphs import columns, hanging

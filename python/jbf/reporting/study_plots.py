@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from jbf.diagnosis.check import Check
     from jbf.diagnosis.plan import Plan
-    from jbf.diagnosis.planned import PlannedPower
+    from jbf.diagnosis.power.planned_runs import PlannedPower
 
 
 def plot_planned_power(planned: PlannedPower, axes: Sequence[Axes] | None = None) -> list[Axes]:

@@ -10,7 +10,7 @@ from jbf.comparison.model_comparison import ModelComparison
 from jbf.control.run import Result as LoopRun
 from jbf.diagnosis.check import Check
 from jbf.diagnosis.plan import Plan
-from jbf.diagnosis.planned import PlannedPower
+from jbf.diagnosis.power.planned_runs import PlannedPower
 from jbf.errors import InputError
 from jbf.estimation.bootstrap import Bootstrap
 from jbf.estimation.fit import Fit

@@ -16,8 +16,8 @@ from jbf.diagnosis.excitations import Excitation, excitations
 from jbf.diagnosis.experiment import propose
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power import power
+from jbf.diagnosis.power.strength import strength_of
 from jbf.diagnosis.separation import MOST_SAMPLES, Rival, filled_limits, motions, run_from_motion
-from jbf.diagnosis.strength import strength_of
 from jbf.diagnosis.unseen import (
     mean_detection_probability,
     propose_detection_run,

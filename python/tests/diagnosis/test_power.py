@@ -8,7 +8,11 @@ import pytest
 from by_hand import Array, Friction, coulomb, one_way
 from golden import golden
 from jbf import Run
-from jbf.diagnosis.alone import (
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import evidence, price_of
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.power.detection_limits import non_centrality, power
+from jbf.diagnosis.power.distinction import (
     NEVER,
     Change,
     bounded_square,
@@ -17,11 +21,7 @@ from jbf.diagnosis.alone import (
     distinction_probability,
     distinguishable_size,
 )
-from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import evidence, price_of
-from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.power import non_centrality, power
-from jbf.diagnosis.strength import RunsAtHand, strength_of
+from jbf.diagnosis.power.strength import PresentRuns, strength_of
 from linear_campaigns import coulomb_candidates, coulomb_run
 from scipy import optimize, stats
 
@@ -272,14 +272,14 @@ def swings(velocity_noise: float = 0.0) -> Candidates:
 
 
 def test_part_of_a_change_beyond_a_rival_is_a_regression_residual() -> None:
-    at_hand = RunsAtHand(swings(), ())
+    at_hand = PresentRuns(swings(), ())
     random = np.random.default_rng(5)
     changes = [0.02 * random.standard_normal((len(f), 2)) for f in at_hand.now]
     mixed = [c @ np.array([[0.6], [0.8]]) for c in changes]
-    own = Change(mixed, None, at_hand.shown(mixed))
+    own = Change(mixed, None, at_hand.unexplained(mixed))
     first = [c[:, :1] for c in changes]
-    rival = Change(first, None, at_hand.shown(first))
-    design, target = at_hand.shown(first)[:, 0], at_hand.shown(mixed)[:, 0]
+    rival = Change(first, None, at_hand.unexplained(first))
+    design, target = at_hand.unexplained(first)[:, 0], at_hand.unexplained(mixed)[:, 0]
     residual = target - design * float(design @ target) / float(design @ design)
     assert distinguishable_size(own, rival, at_hand) == pytest.approx(
         np.sqrt(bounded_square(residual)), rel=1e-6
@@ -289,18 +289,19 @@ def test_part_of_a_change_beyond_a_rival_is_a_regression_residual() -> None:
 
 def test_effects_are_compared_only_at_samples_that_have_weight_in_both() -> None:
     """A rival without weight in the second half is compared only in the first half."""
-    at_hand = RunsAtHand(swings(), ())
+    at_hand = PresentRuns(swings(), ())
     lengths = [len(f) for f in at_hand.now]
     random = np.random.default_rng(5)
     everywhere = [random.standard_normal((n, 1)) for n in lengths]
     first_half = [(np.arange(n) < n // 2).astype(float) for n in lengths]
-    own = Change(everywhere, None, at_hand.shown(everywhere))
+    own = Change(everywhere, None, at_hand.unexplained(everywhere))
     weighted = [c * s[:, None] for c, s in zip(everywhere, first_half, strict=True)]
-    rival = Change(weighted, first_half, at_hand.shown(weighted))
+    rival = Change(weighted, first_half, at_hand.unexplained(weighted))
     assert distinguishable_size(own, rival, at_hand) < 1e-4
     assert distinguishable_size(rival, own, at_hand) < 1e-4
     assert (
-        distinguishable_size(own, Change(weighted, None, at_hand.shown(weighted)), at_hand) > 10.0
+        distinguishable_size(own, Change(weighted, None, at_hand.unexplained(weighted)), at_hand)
+        > 10.0
     )
 
 

@@ -5,7 +5,7 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from jbf import effects
 from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
+from jbf.diagnosis.power.strength import PresentRuns, Strength, strength_of
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.noise import estimate_noise
 from linear_campaigns import coulomb_candidates, coulomb_run
@@ -17,8 +17,8 @@ def candidates() -> Candidates:
 
 
 @pytest.fixture(scope="module")
-def at_hand(candidates: Candidates) -> RunsAtHand:
-    return RunsAtHand(candidates, ())
+def at_hand(candidates: Candidates) -> PresentRuns:
+    return PresentRuns(candidates, ())
 
 
 def model_of(candidates: Candidates, effect: str) -> Strength:
@@ -69,7 +69,7 @@ def test_all_coefficients_of_an_effect_grow_with_its_strength(candidates: Candid
 
 
 def test_change_by_a_linear_effect_is_strength_times_its_column(
-    candidates: Candidates, at_hand: RunsAtHand
+    candidates: Candidates, at_hand: PresentRuns
 ) -> None:
     offset, mass = (model_of(candidates, name) for name in ("sensor_offset", "inertia"))
     prepared = candidates.campaign.prepared
@@ -83,7 +83,7 @@ def test_change_by_a_linear_effect_is_strength_times_its_column(
 
 
 def test_part_of_a_change_beyond_the_law_is_a_regression_residual(
-    candidates: Candidates, at_hand: RunsAtHand
+    candidates: Candidates, at_hand: PresentRuns
 ) -> None:
     changes = [np.sin(3.0 * np.arange(len(f))) + 0.3 * np.sign(f) + 0.02 * f for f in at_hand.now]
     v = np.concatenate([p.motion.velocity for p in candidates.campaign.prepared])
@@ -93,7 +93,7 @@ def test_part_of_a_change_beyond_the_law_is_a_regression_residual(
     sigma = at_hand.base.rms / np.sqrt(effective_share(at_hand.solution))
     expected = (y - x @ np.linalg.lstsq(x, y, rcond=None)[0]) / sigma
     tolerance = 1e-3 * float(np.max(np.abs(expected)))
-    assert at_hand.shown(changes)[:, 0] == pytest.approx(expected, abs=tolerance)
+    assert at_hand.unexplained(changes)[:, 0] == pytest.approx(expected, abs=tolerance)
     assert sigma == pytest.approx(0.1, rel=0.15)
 
 
@@ -101,7 +101,7 @@ def test_weight_of_samples_next_to_jumps_is_reduced_if_an_effect_moves_the_jumps
     t = np.arange(0.0, 12.0, 0.02)
     v = 0.1 * np.sin(1.1 * t)
     tried = coulomb_candidates([coulomb_run(t, v, seed=1)])
-    at_hand, model = RunsAtHand(tried, ()), model_of(tried, "time_delay")
+    at_hand, model = PresentRuns(tried, ()), model_of(tried, "time_delay")
     shares = at_hand.shares(model, 1.0)
     assert shares is not None
     (share,), (change,) = shares, at_hand.change(model, 1.0)
@@ -112,23 +112,23 @@ def test_weight_of_samples_next_to_jumps_is_reduced_if_an_effect_moves_the_jumps
     assert change == pytest.approx(difference * share)
 
 
-def test_gain_of_a_fast_change_in_white_noise_counts_in_full(at_hand: RunsAtHand) -> None:
+def test_gain_of_a_fast_change_in_white_noise_counts_in_full(at_hand: PresentRuns) -> None:
     """Because the long-run variance is estimated, a gain may by chance count in part."""
     count = sum(int(np.count_nonzero(w > 0.0)) for w in at_hand.samples.weight)
-    fast = at_hand.counts(np.where(np.arange(count) % 2, 1.0, -1.0))
-    slow = at_hand.counts(np.sin(2.0 * np.pi * np.arange(count) / count))
+    fast = at_hand.discounts(np.where(np.arange(count) % 2, 1.0, -1.0))
+    slow = at_hand.discounts(np.sin(2.0 * np.pi * np.arange(count) / count))
     for counts in (fast, slow):
         assert all(0.0 < c <= 1.0 for c in counts)
     assert np.mean(fast) > 0.9
 
 
-def waves(at_hand: RunsAtHand, size: float, rate: float) -> list[Array]:
+def waves(at_hand: PresentRuns, size: float, rate: float) -> list[Array]:
     return [size * np.sin(rate * np.arange(len(f)) + i) for i, f in enumerate(at_hand.now)]
 
 
 @pytest.mark.parametrize(("size", "rate"), [(0.05, 0.03), (0.08, 0.3), (0.2, 3.0)])
 def test_share_of_a_change_not_absorbed_by_noise_is_a_likelihood_ratio(
-    candidates: Candidates, at_hand: RunsAtHand, size: float, rate: float
+    candidates: Candidates, at_hand: PresentRuns, size: float, rate: float
 ) -> None:
     """Loss of likelihood with the re-estimated noise, relative to that with the previous noise."""
     signs = [np.sign(f) for f in at_hand.now]
@@ -150,6 +150,8 @@ def test_share_of_a_change_not_absorbed_by_noise_is_a_likelihood_ratio(
     )
 
 
-def test_smooth_change_is_absorbed_by_coloured_noise_unlike_a_fast_one(at_hand: RunsAtHand) -> None:
+def test_smooth_change_is_absorbed_by_coloured_noise_unlike_a_fast_one(
+    at_hand: PresentRuns,
+) -> None:
     assert at_hand.share_after_noise_refit(waves(at_hand, 0.2, 0.01)) < 0.2
     assert at_hand.share_after_noise_refit(waves(at_hand, 0.2, 3.0)) == 1.0

@@ -16,14 +16,14 @@ POLICY = {"diagnosis.policy_sections", "diagnosis.policy_residual", "estimation.
 
 NUMERICAL = {
     "reported next to the verdict or used after it: power, proposals, checks, final fit": """
-        diagnosis.alone: NEVER MOST
+        diagnosis.power.distinction: NEVER MOST FURTHER
         diagnosis.check: SURE
         diagnosis.decoys: DRAWS SURE
         diagnosis.excitations: RATES_RAD_S SHARES STOP_SHARES REST_S USUAL_RATE_RAD_S
         diagnosis.plan: ENOUGH MORE
-        diagnosis.power: LEVELS NEARLY_ALL BEYOND FURTHER
+        diagnosis.power.detection_limits: LEVELS NEARLY_ALL BEYOND
         diagnosis.separation: MOST_SAMPLES LEAST_SAMPLES
-        diagnosis.strength: DRAWS
+        diagnosis.power.strength: DRAWS
         estimation.curvature: BENT
         estimation.exact_delay: LEAST_STEPS CLIPPED BLURRED
         estimation.trajectory_fit: REST_SHARE
@@ -37,7 +37,7 @@ NUMERICAL = {
     """,
     "tolerance of a numerical comparison or of an iteration": """
         diagnosis.residual_structure.bursts: NO_NOISE
-        diagnosis.power: AGREES
+        diagnosis.power.detection_limits: AGREES
         diagnosis.separation: NO_NOISE_N
         diagnosis.terms.shifts: SETTLED
         estimation.determined: AT_BOUND
@@ -54,7 +54,7 @@ NUMERICAL = {
     """,
     "limits computing time or memory; an exceeded budget is reported": """
         diagnosis.candidates: RANKING_EVALUATIONS
-        diagnosis.power: LOOKS LOOKS_ALONE
+        diagnosis.power.detection_limits: MOST_STRENGTHS MOST_ITERATIONS
         diagnosis.side_by_side: FEW
         diagnosis.terms.proposal: EVALUATIONS
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
@@ -89,7 +89,7 @@ NUMERICAL = {
         estimation.refine: STEP INTENSITY_STEP
     """,
     "range of a search, wider than any plausible result": """
-        diagnosis.power: POWERS
+        diagnosis.power.detection_limits: EXPONENTS
         estimation.converter: MOST_NOISE
         estimation.exact_delay: REACH LEAST_REACH_STEPS
         estimation.peaks: REACH

@@ -13,8 +13,8 @@ from jbf.diagnosis.check import Answer, Check
 from jbf.diagnosis.decoys import rate_below
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.plan import Plan
-from jbf.diagnosis.planned import PlannedPower
 from jbf.diagnosis.power import Power
+from jbf.diagnosis.power.planned_runs import PlannedPower
 from jbf.diagnosis.which_law import LawTried
 from jbf.estimation.noise import Noise
 from jbf.records.findings.finding import Finding

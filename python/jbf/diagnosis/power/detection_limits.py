@@ -1,14 +1,4 @@
-"""Power: strength from which an effect is detectable in runs like these.
-
-An effect of given strength changes the friction. The law's own parameters can reproduce a part of
-this change. The sum of squares of the other part, in units of the noise variance, is the
-non-centrality of the likelihood ratio (Wald 1943). The power of the test is the probability that
-the likelihood ratio exceeds the threshold. The part that another effect can also reproduce does not
-help to distinguish the two.
-
-The change is evaluated at each strength and not extrapolated from the null; the rest of the model
-is linearised.
-"""
+"""Detection limits of effects in the present runs."""
 
 from __future__ import annotations
 
@@ -21,7 +11,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import optimize
 
-from jbf.diagnosis.alone import (
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.power.distinction import (
     Change,
     bounded_square,
     detection_probability,
@@ -29,10 +21,8 @@ from jbf.diagnosis.alone import (
     distinction_probability,
     distinguishable_size,
 )
-from jbf.diagnosis.candidates import Candidates
-from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.power.strength import PresentRuns, Strength, strength_of
 from jbf.diagnosis.side_by_side import parallel_fits, side_by_side
-from jbf.diagnosis.strength import RunsAtHand, Strength, strength_of
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_added
 
@@ -41,9 +31,9 @@ Names = tuple[str, ...]
 
 LEVELS = (0.80, 0.95)
 """Detection probabilities for which a strength is computed. It enters no verdict."""
-LOOKS = 14
+MOST_STRENGTHS = 14
 """Largest number of strengths evaluated for each. It limits the effort only."""
-POWERS = (1.0, 8.0)
+EXPONENTS = (1.0, 8.0)
 """Range of the exponents with which the non-centrality may grow with strength.
 
 It bounds a search only.
@@ -64,16 +54,10 @@ BEYOND = 1.2
 It avoids a strength at which the colour of the noise just reaches its threshold. It enters no
 verdict.
 """
-LOOKS_ALONE = 3
+MOST_ITERATIONS = 3
 """Iterations of the distinguishable strength for effects that move jumps.
 
 It limits the effort only.
-"""
-FURTHER = 2.0
-"""Factor on the detectable strength at which a rival is also evaluated.
-
-The shape of its change is different there where it is not proportional to the strength. It enters
-no verdict.
 """
 
 
@@ -133,21 +117,23 @@ def power(
     names
         Effects to evaluate; by default all that were tried.
     """
-    asked = set(candidates.names if names is None else names) - set(present)
-    runs = RunsAtHand(candidates, present)
+    wanted = set(candidates.names if names is None else names) - set(present)
+    runs = PresentRuns(candidates, present)
     models = {
         name: model
         for name in candidates.names
         if name not in present and can_be_added(name, present)
         if (model := strength_of(candidates, present, name)) is not None
     }
-    found = side_by_side(
+    limits = side_by_side(
         lambda model: _Detectable.of(candidates, runs, model),
         list(models.values()),
         parallel_fits(candidates.campaign, candidates.law, candidates.names),
     )
-    seen = dict(zip(models, found, strict=True))
-    return tuple(_power(candidates, runs, models, seen, name) for name in models if name in asked)
+    detectable = dict(zip(models, limits, strict=True))
+    return tuple(
+        _power(candidates, runs, models, detectable, name) for name in models if name in wanted
+    )
 
 
 @dataclass(frozen=True)
@@ -169,33 +155,37 @@ class _Detectable:
     share: float
 
     @classmethod
-    def of(cls, candidates: Candidates, runs: RunsAtHand, model: Strength) -> _Detectable:
-        price = price_of(candidates, _parameters(runs.base, model))
-        counts = runs.counts(runs.shown(runs.change(model, 1.0))[:, 0])
+    def of(cls, candidates: Candidates, runs: PresentRuns, model: Strength) -> _Detectable:
         parameters = _parameters(runs.base, model)
-        least = [non_centrality(price, parameters, p, counts) for p in LEVELS]
-        found = _required_multiples(runs, model, least)
-        if np.isfinite(found[1]):
-            left = runs.share_after_noise_refit(runs.change(model, BEYOND * found[1]))
-            if left < NEARLY_ALL:
-                near = (found[0] if np.isfinite(found[0]) else 1.0) / float(np.sqrt(left))
-                found = _required_multiples(runs, model, [wanted / left for wanted in least], near)
-        at = found[0] if np.isfinite(found[0]) else 1.0
-        share = runs.samples.rms(runs.change(model, at)) / max(runs.friction, 1e-300)
-        return cls(tuple(found), _change(runs, model, at), share)
+        price = price_of(candidates, parameters)
+        discounts = runs.discounts(runs.unexplained(runs.change(model, 1.0))[:, 0])
+        least = [non_centrality(price, parameters, p, discounts) for p in LEVELS]
+        times = _required_multiples(runs, model, least)
+        if np.isfinite(times[1]):
+            share = runs.share_after_noise_refit(runs.change(model, BEYOND * times[1]))
+            if share < NEARLY_ALL:
+                near = _finite_or_one(times[0]) / float(np.sqrt(share))
+                times = _required_multiples(runs, model, [wanted / share for wanted in least], near)
+        at = _finite_or_one(times[0])
+        size = runs.samples.rms(runs.change(model, at)) / max(runs.friction, 1e-300)
+        return cls(tuple(times), Change.of(runs, model, at), size)
+
+
+def _finite_or_one(times: float) -> float:
+    return times if np.isfinite(times) else 1.0
 
 
 def _required_multiples(
-    runs: RunsAtHand, model: Strength, least: list[float], near: float = 1.0
+    runs: PresentRuns, model: Strength, least: list[float], near: float = 1.0
 ) -> list[float]:
     """Multiples of the usual strength that give each of the required non-centralities."""
-    found, times, last = [], near, least[0]
+    multiples, times, last = [], near, least[0]
     for wanted in least:
         # The non-centrality is nearly proportional to the square of the strength.
         times = _times(runs, model, wanted, times * float(np.sqrt(wanted / last)))
-        found.append(times)
+        multiples.append(times)
         times, last = (times, wanted) if np.isfinite(times) else (near, least[0])
-    return found
+    return multiples
 
 
 def _parameters(base: Solution, model: Strength) -> int:
@@ -204,7 +194,7 @@ def _parameters(base: Solution, model: Strength) -> int:
 
 @lru_cache(maxsize=64)
 def non_centrality(
-    price: float, parameters: int, chance: float, counts: tuple[float, ...] = (1.0,)
+    price: float, parameters: int, chance: float, discounts: tuple[float, ...] = (1.0,)
 ) -> float:
     """Non-centrality at which a chi-square variable exceeds a threshold with given probability.
 
@@ -216,10 +206,10 @@ def non_centrality(
         Degrees of freedom.
     chance
         The probability.
-    counts
+    discounts
         Factors on the gain, 0 to 1, each equally likely.
     """
-    prices = price / np.array(counts)
+    prices = price / np.array(discounts)
 
     def surplus(root: float) -> float:
         return float(np.mean(detection_probability(prices, parameters, root**2))) - chance
@@ -228,119 +218,111 @@ def non_centrality(
     return float(optimize.brentq(surplus, 1e-3, top)) ** 2
 
 
-def _times(runs: RunsAtHand, model: Strength, wanted: float, times: float) -> float:
+def _times(runs: PresentRuns, model: Strength, wanted: float, times: float) -> float:
     """Multiple of the usual strength that gives a required non-centrality; nan where none does.
 
     The search assumes a power law, at first of exponent two and then as observed between successive
     strengths. Where the non-centrality rises abruptly (a lag within a sample has no effect) the
     search bisects between too small and sufficient strengths.
     """
-    little, enough = 0.0, np.inf
-    power, before = 2.0, None
-    for _ in range(LOOKS):
-        told = max(bounded_square(runs.shown(runs.change(model, times))), 1e-300)
-        if before is not None and told != before[1] and times != before[0]:
+    too_small, sufficient = 0.0, np.inf
+    exponent, before = 2.0, None
+    for _ in range(MOST_STRENGTHS):
+        reached = max(bounded_square(runs.unexplained(runs.change(model, times))), 1e-300)
+        if before is not None and reached != before[1] and times != before[0]:
             # Exponent observed between the last two strengths.
-            grown = np.log(told / before[1]) / np.log(times / before[0])
-            power = float(np.clip(grown, *POWERS))
-        before = (times, told)
-        further = float(np.clip((wanted / told) ** (1.0 / power), 1e-3, 30.0))
+            growth = np.log(reached / before[1]) / np.log(times / before[0])
+            exponent = float(np.clip(growth, *EXPONENTS))
+        before = (times, reached)
+        further = float(np.clip((wanted / reached) ** (1.0 / exponent), 1e-3, 30.0))
         if abs(np.log(further)) < AGREES:
             return times * further
         # At a bound the strength cannot increase.
         if np.array_equal(model.values(times * further), model.values(times)):
             return times if further < 1.0 else np.nan
         if further > 1.0:
-            little = max(little, times)
+            too_small = max(too_small, times)
         else:
-            enough = min(enough, times)
-        if enough < little * (1.0 + AGREES):
-            return enough
+            sufficient = min(sufficient, times)
+        if sufficient < too_small * (1.0 + AGREES):
+            return sufficient
         times *= further
-        if not little < times < enough:
-            times = float(np.sqrt(little * enough))
-    if np.isfinite(enough):
-        return enough
-    return times if told > 0.5 * wanted else np.nan
-
-
-def _change(runs: RunsAtHand, model: Strength, times: float) -> Change:
-    """Change by an effect at one strength and at `FURTHER` times it, and its derivatives."""
-    problem, values = model.problem.thinned, model.values(times)
-    shares, now = runs.shares(model, times), runs.change(model, times)
-    own = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
-    _, slopes = problem.linearise(values, by=own)
-    if shares is not None:
-        slopes = [j * s[:, None] for j, s in zip(slopes, shares, strict=True)]
-    further = runs.change(model, FURTHER * times)
-    ways = [np.column_stack(parts) for parts in zip(now, further, slopes, strict=True)]
-    return Change(ways, shares, runs.shown(ways))
+        if not too_small < times < sufficient:
+            times = float(np.sqrt(too_small * sufficient))
+    if np.isfinite(sufficient):
+        return sufficient
+    return times if reached > 0.5 * wanted else np.nan
 
 
 def _power(
     candidates: Candidates,
-    runs: RunsAtHand,
+    runs: PresentRuns,
     models: dict[str, Strength],
-    seen: dict[str, _Detectable],
+    detectable: dict[str, _Detectable],
     name: str,
 ) -> Power:
     """Power for one effect, relative to the changes of all other effects."""
-    model, own = models[name], seen[name]
+    model, effect = models[name], detectable[name]
 
     def strength(times: float) -> float | None:
         return float(model.values(times)[model.which]) if np.isfinite(times) else None
 
-    most, confounded = np.inf, []
-    if np.isfinite(own.times[0]):
+    factor, confounded = np.inf, []
+    if np.isfinite(effect.times[0]):
         parameters, tie = _parameters(runs.base, model), candidates.policy.selection.tie
         price = price_of(candidates, parameters)
         rivals: dict[str, tuple[float, float]] = {}
-        for other, rival in seen.items():
+        for other, rival in detectable.items():
             if other != name:
                 dearer = price - price_of(candidates, _parameters(runs.base, models[other]))
                 least = max(tie + dearer, 0.25 * tie)
-                rivals[other] = (distinguishable_size(own.change, rival.change, runs), least)
-        told = {other: distinction_probability(*rival) for other, rival in rivals.items()}
+                rivals[other] = (distinguishable_size(effect.change, rival.change, runs), least)
+        chances = {other: distinction_probability(*rival) for other, rival in rivals.items()}
         confounded = sorted(
-            (o for o, chance in told.items() if chance < LEVELS[0]), key=told.__getitem__
+            (o for o, chance in chances.items() if chance < LEVELS[0]), key=chances.__getitem__
         )
-        found = (price, parameters, non_centrality(price, parameters, LEVELS[0]))
-        most = distinction_factor(*found, rivals, LEVELS[0])
-        for _ in range(LOOKS_ALONE):
-            if not 1.0 + AGREES < most < np.inf:
+        threshold = (price, parameters, non_centrality(price, parameters, LEVELS[0]))
+        factor = distinction_factor(*threshold, rivals, LEVELS[0])
+        for _ in range(MOST_ITERATIONS):
+            if not 1.0 + AGREES < factor < np.inf:
                 break
-            before = most
-            costs = {rival: rivals[rival][1] for rival in confounded}
-            rivals |= _further(runs, models, seen, name, most, costs)
-            most = distinction_factor(*found, rivals, LEVELS[0])
-            if abs(np.log(most / before)) < AGREES:
+            before = factor
+            least_gains = {rival: rivals[rival][1] for rival in confounded}
+            rivals |= _rivals_at(runs, models, detectable, name, factor, least_gains)
+            factor = distinction_factor(*threshold, rivals, LEVELS[0])
+            if abs(np.log(factor / before)) < AGREES:
                 break
     return Power(
         effect=name,
         parameter=model.page.name,
         unit=model.page.unit,
-        detectable_80=strength(own.times[0]),
-        detectable_95=strength(own.times[1]),
-        always=_weakest(model, own.times[0]),
-        share_80=own.share if np.isfinite(own.times[0]) else None,
-        distinguishable_80=strength(own.times[0] * most) if np.isfinite(most) else None,
+        detectable_80=strength(effect.times[0]),
+        detectable_95=strength(effect.times[1]),
+        always=_weakest(model, effect.times[0]),
+        share_80=effect.share if np.isfinite(effect.times[0]) else None,
+        distinguishable_80=strength(effect.times[0] * factor) if np.isfinite(factor) else None,
         confounded_with=tuple(confounded),
-        hidden=not own.times[0] <= 1.0,
+        hidden=not effect.times[0] <= 1.0,
     )
 
 
-def _further(
-    runs: RunsAtHand,
+def _rivals_at(
+    runs: PresentRuns,
     models: dict[str, Strength],
-    seen: dict[str, _Detectable],
+    detectable: dict[str, _Detectable],
     name: str,
-    times: float,
+    factor: float,
     rivals: dict[str, float],
 ) -> dict[str, tuple[float, float]]:
-    """Re-evaluate rivals at a larger strength of an effect.
+    """Compare rivals again at a multiple of the detectable strength of an effect.
 
     Only pairs are considered in which one effect moves jumps, so that changes are not proportional
     to the strength.
+
+    Parameters
+    ----------
+    rivals
+        Required difference of the gains, by rival.
 
     Returns
     -------
@@ -348,16 +330,15 @@ def _further(
         For each rival, the unexplained part per unit of strength and the required difference of the
         gains.
     """
-    own, again = seen[name], {}
-    there = _change(runs, models[name], times * own.times[0])
+    effect, compared = detectable[name], {}
+    change = Change.of(runs, models[name], factor * effect.times[0])
     for other, least in rivals.items():
-        rival = seen[other]
-        if own.change.shares is None and rival.change.shares is None:
+        rival = detectable[other]
+        if effect.change.shares is None and rival.change.shares is None:
             continue
-        at = rival.times[0] if np.isfinite(rival.times[0]) else 1.0
-        left = distinguishable_size(there, _change(runs, models[other], times * at), runs)
-        again[other] = (left / times, least)
-    return again
+        rival_change = Change.of(runs, models[other], factor * _finite_or_one(rival.times[0]))
+        compared[other] = (distinguishable_size(change, rival_change, runs) / factor, least)
+    return compared
 
 
 def _weakest(model: Strength, times: float) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT, Policy
-from jbf.diagnosis.power import Power, power
+from jbf.diagnosis.power.detection_limits import Power, power
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.samples import Samples
@@ -96,11 +96,11 @@ def _as_read(motion: ImposedMotion) -> ImposedMotion:
     For samples next to a reversal the side is unknown. If it were known exactly, these samples
     would show the smallest backlash or delay.
     """
-    way = np.sign(motion.velocity)
-    turns = np.flatnonzero(way[1:] != way[:-1])
-    known = motion.sign_known.copy()
-    known[turns] = known[turns + 1] = False
-    return replace(motion, sign_known=known)
+    direction = np.sign(motion.velocity)
+    reversals = np.flatnonzero(direction[1:] != direction[:-1])
+    sign_known = motion.sign_known.copy()
+    sign_known[reversals] = sign_known[reversals + 1] = False
+    return replace(motion, sign_known=sign_known)
 
 
 @one_blas_thread
@@ -147,19 +147,14 @@ def planned_power(
     """
     of_kind(model, Model, "model", "give a jbf.Model")
     noise_rms = number(noise_rms, "noise_rms")
-    if not (np.isfinite(noise_rms) and noise_rms > 0.0):
-        raise InputError(
-            key="noise_rms",
-            problem=f"{noise_rms:g} is not above zero",
-            mend="give its standard deviation",
-        )
-    if noise_rms > MOST:
-        problem = f"{noise_rms:g} is beyond what any machine does"
+    if not 0.0 < noise_rms <= MOST:
+        problem = "is beyond what any machine does" if noise_rms > 0.0 else "is not above zero"
+        problem = f"{noise_rms:g} {problem}"
         raise InputError(key="noise_rms", problem=problem, mend="give its standard deviation")
     planned = list_of_runs(runs)
     if not planned:
         raise InputError(problem="no run was given", mend="give at least one motion to play")
     candidates = as_recorded(model, planned, noise_rms, policy)
-    found = power(candidates, model.effects)
+    limits = power(candidates, model.effects)
     names = tuple(run.name for run in planned)
-    return PlannedPower(model, noise_rms, found, candidates.not_tried, names, candidates.level)
+    return PlannedPower(model, noise_rms, limits, candidates.not_tried, names, candidates.level)

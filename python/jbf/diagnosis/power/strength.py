@@ -1,7 +1,6 @@
 """Change of the friction of the present runs by an effect of given strength.
 
-The change is also computed apart from what the rest of the model can reproduce, in units of the
-noise.
+Its unexplained part is the part that the rest of the model cannot reproduce, in units of the noise.
 """
 
 from __future__ import annotations
@@ -61,22 +60,21 @@ class Strength:
         for i in self.sizes:
             null, page = pages[i].null, pages[i]
             assert null is not None
-            far = not np.isfinite(null)
-            there = values[i] / times if far else null + times * (values[i] - null)
-            values[i] = np.clip(there, page.lower, page.upper)
+            infinite = not np.isfinite(null)
+            value = values[i] / times if infinite else null + times * (values[i] - null)
+            values[i] = np.clip(value, page.lower, page.upper)
         return np.asarray(values)
 
 
-class RunsAtHand:
+class PresentRuns:
     """The present runs under the model without the effect, for the unexplained part of a change."""
 
     def __init__(self, candidates: Candidates, present: Names) -> None:
         self.base = candidates.converge(present)
-        whole = candidates.fitted(present).problem
-        self.problem = whole.thinned
-        samples = self.problem.campaign.samples
-        if self.problem is whole:
-            samples = self.base.samples
+        problem = candidates.fitted(present).problem
+        self.problem = problem.thinned
+        thinned = self.problem is not problem
+        samples = self.problem.campaign.samples if thinned else self.base.samples
         solution = self.problem.solution(self.base.values, samples, self.base.noise)
         self.samples, self.noise = samples, solution.noise
         self.solution = solution
@@ -87,8 +85,8 @@ class RunsAtHand:
         self.scale = np.sqrt(more / max(level, 1e-300))
         self.now = self.problem.predict(self.base.values)
         size = np.linalg.norm(self.slopes, axis=0)
-        moved = self.slopes[:, size > 0.0] / size[size > 0.0]
-        self.tangent: Array = np.asarray(np.linalg.qr(moved)[0])
+        normalised = self.slopes[:, size > 0.0] / size[size > 0.0]
+        self.tangent: Array = np.asarray(np.linalg.qr(normalised)[0])
         self.friction = self.samples.rms(self.now)
         # Cache of the last result of each effect: strength, change, and sample weights.
         self._last: dict[str, tuple[float, list[Array], list[Array] | None]] = {}
@@ -114,16 +112,16 @@ class RunsAtHand:
         problem = model.problem.thinned
         values = model.values(times)
         gaps = [a - b for a, b in zip(problem.predict(values), self.now, strict=True)]
-        own = common_samples(problem.samples_at(values), self.samples)
-        if own is self.samples:
+        samples = common_samples(problem.samples_at(values), self.samples)
+        if samples is self.samples:
             return gaps, None
         shares = [
             np.divide(a, b, out=np.zeros_like(a), where=b > 0.0)
-            for a, b in zip(own.weight, self.samples.weight, strict=True)
+            for a, b in zip(samples.weight, self.samples.weight, strict=True)
         ]
         return [gap * share for gap, share in zip(gaps, shares, strict=True)], shares
 
-    def shown(self, changes: Sequence[Array]) -> Array:
+    def unexplained(self, changes: Sequence[Array]) -> Array:
         """The part of friction changes that the model cannot reproduce, in units of the noise.
 
         Parameters
@@ -133,9 +131,9 @@ class RunsAtHand:
         """
         columns = [c if c.ndim == 2 else c[:, None] for c in changes]
         empty = [np.zeros(len(c)) for c in columns]
-        _, seen = self.samples.stacked(empty, columns, self.noise)
-        left: Array = self.scale * (seen - self.tangent @ (self.tangent.T @ seen))
-        return left
+        _, white = self.samples.stacked(empty, columns, self.noise)
+        part: Array = self.scale * (white - self.tangent @ (self.tangent.T @ white))
+        return part
 
     def share_after_noise_refit(self, changes: Sequence[Array]) -> float:
         """Share of the gain of a change that remains after the noise model is refitted, 0 to 1.
@@ -143,55 +141,58 @@ class RunsAtHand:
         A refitted noise model takes a smooth change for coloured noise.
         """
         empty = [np.zeros((len(c), 0)) for c in changes]
-        seen, _ = self.samples.stacked(changes, empty, self.noise)
-        own, _ = self.samples.stacked(self.solution.residuals, empty, self.noise)
-        step, *_ = np.linalg.lstsq(self.slopes, seen, rcond=1e-10)
-        left = seen - self.slopes @ step
-        square = float(left @ left)
+        change, _ = self.samples.stacked(changes, empty, self.noise)
+        residual, _ = self.samples.stacked(self.solution.residuals, empty, self.noise)
+        step, *_ = np.linalg.lstsq(self.slopes, change, rcond=1e-10)
+        unexplained = change - self.slopes @ step
+        square = float(unexplained @ unexplained)
         if square <= 0.0:
             return 1.0
         # Remove the component of the change that these residuals contain by chance.
-        chance = float(own @ left) / square
-        way = [c - j @ step for c, j in zip(changes, self.solution.jacobian, strict=True)]
-        noise = [r - chance * w for r, w in zip(self.solution.residuals, way, strict=True)]
-        there = [r + w for r, w in zip(noise, way, strict=True)]
-        masked = [r * c for r, c in zip(there, self.samples.counted, strict=True)]
+        chance = float(residual @ unexplained) / square
+        parts = [c - j @ step for c, j in zip(changes, self.solution.jacobian, strict=True)]
+        noise = [r - chance * c for r, c in zip(self.solution.residuals, parts, strict=True)]
+        changed = [r + c for r, c in zip(noise, parts, strict=True)]
+        masked = [r * c for r, c in zip(changed, self.samples.counted, strict=True)]
         samples, most = self.samples, self.problem.campaign.most_noise_n
         settings = samples.settings.noise
-        again = estimate_noise(masked, samples.steps_s, samples.counted, most, settings)
-        before = self.samples.cost(noise, self.noise)
-        gains = [
-            self.samples.cost(there, description) - before for description in (self.noise, again)
-        ]
-        return float(np.clip(gains[1] / max(gains[0], 1e-300), 0.02, 1.0))
+        refitted = estimate_noise(masked, samples.steps_s, samples.counted, most, settings)
+        before = samples.cost(noise, self.noise)
+        gain, remaining = (
+            samples.cost(changed, model) - before for model in (self.noise, refitted)
+        )
+        return float(np.clip(remaining / max(gain, 1e-300), 0.02, 1.0))
 
-    def counts(self, change: Array) -> tuple[float, ...]:
+    def discounts(self, change: Array) -> tuple[float, ...]:
         """Possible discount factors of a gain in this direction in white noise.
 
         The long-run variance is itself an estimate, limited below by that of white noise.
         """
         counts = [int(np.count_nonzero(w > 0.0)) for w in self.samples.weight]
         ends = np.cumsum(counts)[:-1]
-        ways = np.split(change, ends)
+        changes = np.split(change, ends)
         random, settings = np.random.default_rng(DRAWS), self.samples.settings.variance
         return tuple(
-            1.0 / sure_inflation(ways, np.split(noise, ends), self.samples.steps_s, settings)
+            1.0 / sure_inflation(changes, np.split(noise, ends), self.samples.steps_s, settings)
             for noise in random.standard_normal((DRAWS, len(change)))
         )
 
 
-def strength_of(candidates: Candidates, present: Names, name: str) -> Strength | None:
-    """Return the model as a function of an effect's strength; None for an effect without a null."""
+def at_usual_strength(candidates: Candidates, present: Names, name: str) -> tuple[Problem, Array]:
+    """Return a model with one additional effect, and its values at the usual strength."""
     candidates.converge(present)
     base = candidates.fitted(present).named_values()
     problem = candidates.fitted((*present, name)).problem
-    usual = next(iter(problem.starts({**base, **problem.fixed})))
+    return problem, next(iter(problem.starts({**base, **problem.fixed})))
+
+
+def strength_of(candidates: Candidates, present: Names, name: str) -> Strength | None:
+    """Return the model as a function of an effect's strength; None for an effect without a null."""
+    problem, usual = at_usual_strength(candidates, present, name)
+    pages = list(problem.parameters.values())
     sizes = tuple(
         i
         for i, (full, page) in enumerate(problem.parameters.items())
         if full.startswith(f"{name}.") and page.null is not None and full not in problem.fixed
     )
-    if not sizes:
-        return None
-    pages = list(problem.parameters.values())
-    return Strength(name, problem, usual, sizes[0], pages[sizes[0]], sizes)
+    return Strength(name, problem, usual, sizes[0], pages[sizes[0]], sizes) if sizes else None

@@ -2,9 +2,8 @@
 
 The unexplained part of an effect is the change of the record that a rival's parameters cannot
 reproduce. Its sum of squares, in units of the noise variance, is the expected difference between
-the two gains. The difference of the gains is
-normally distributed with a variance of four times its mean. An effect is identified alone where it
-is detected and no rival comes close to its gain.
+the two gains. The difference of the gains is normally distributed with a variance of four times its
+mean. An effect is distinguishable where it is detected and no rival comes close to its gain.
 
 Where one of the two effects moves jumps, the samples next to these jumps do not distinguish them.
 Both effects are then compared on the samples that both use.
@@ -20,12 +19,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy import optimize, special
 
-from jbf.diagnosis.strength import RunsAtHand
+from jbf.diagnosis.power.strength import PresentRuns, Strength
 from jbf.estimation.likelihood import spanned
 
 Array = npt.NDArray[np.float64]
 
-EVERY = slice(None)
+ALL_COLUMNS = slice(None)
 NEVER = 30.0
 """Multiple of the detectable strength from which two effects count as indistinguishable.
 
@@ -37,15 +36,21 @@ MOST = 9.0
 A single larger change is no evidence of a law. It is an outlier, or the uncertain instant of a
 reversal. It enters no verdict.
 """
+FURTHER = 2.0
+"""Factor on the detectable strength at which a rival is also evaluated.
+
+The shape of its change is different there where it is not proportional to the strength. It enters
+no verdict.
+"""
 
 
-def bounded_square(left: Array) -> float:
+def bounded_square(change: Array) -> float:
     """Sum of squares of the unexplained part of a change, in units of the noise variance.
 
     The contribution of each sample is limited to `MOST`.
     """
     # Limit before squaring: with almost no noise the square would overflow.
-    return float(np.sum(np.minimum(np.abs(left), np.sqrt(MOST)) ** 2))
+    return float(np.sum(np.minimum(np.abs(change), np.sqrt(MOST)) ** 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,62 +59,79 @@ class Change:
 
     Attributes
     ----------
-    ways
-        Change in N, one (n, 2 + k) array per run. The columns are the change, the change at a
-        larger strength, and the derivative with respect to each parameter. Samples next to jumps
-        that the effect moves are scaled by their weights.
+    columns
+        Change in N, one (n, 2 + k) array per run. The columns are the change, the change at
+        `FURTHER` times the strength, and the derivative with respect to each parameter. Samples
+        next to jumps that the effect moves are scaled by their weights.
     shares
         Weights of the samples, one (n,) array per run; None where the effect does not change them.
-    shown
-        The part of `ways` that the rest of the model cannot reproduce, in units of the noise.
+    unexplained
+        The part of `columns` that the rest of the model cannot reproduce, in units of the noise.
     """
 
-    ways: list[Array]
+    columns: list[Array]
     shares: list[Array] | None
-    shown: Array
+    unexplained: Array
+
+    @classmethod
+    def of(cls, runs: PresentRuns, model: Strength, times: float) -> Change:
+        """Compute the change by an effect at a multiple of its usual strength."""
+        problem, values = model.problem.thinned, model.values(times)
+        shares, change = runs.shares(model, times), runs.change(model, times)
+        by = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
+        _, slopes = problem.linearise(values, by=by)
+        if shares is not None:
+            slopes = [j * s[:, None] for j, s in zip(slopes, shares, strict=True)]
+        further = runs.change(model, FURTHER * times)
+        columns = [np.column_stack(parts) for parts in zip(change, further, slopes, strict=True)]
+        return cls(columns, shares, runs.unexplained(columns))
 
     @cached_property
     def span(self) -> Array:
-        """Orthonormal columns that span `shown`."""
-        return spanned(self.shown)
+        """Orthonormal columns that span `unexplained`."""
+        return spanned(self.unexplained)
 
-    def on_shared_samples(self, other: Change, runs: RunsAtHand, columns: slice = EVERY) -> Array:
-        """`shown` on the samples that another effect also uses, for selected columns."""
+    def on_shared_samples(
+        self, other: Change, runs: PresentRuns, columns: slice = ALL_COLUMNS
+    ) -> Array:
+        """`unexplained` on the samples that another effect also uses, for selected columns."""
         if other.shares is None:
-            return self.shown[:, columns]
-        own = [np.ones(len(s)) for s in other.shares] if self.shares is None else self.shares
-        less = [
+            return self.unexplained[:, columns]
+        shares = [np.ones(len(s)) for s in other.shares] if self.shares is None else self.shares
+        ratios = [
             np.divide(np.minimum(a, b), a, out=np.zeros_like(a), where=a > 0.0)
-            for a, b in zip(own, other.shares, strict=True)
+            for a, b in zip(shares, other.shares, strict=True)
         ]
-        return runs.shown(
-            [w[:, columns] * s[:, None] for w, s in zip(self.ways, less, strict=True)]
+        return runs.unexplained(
+            [c[:, columns] * s[:, None] for c, s in zip(self.columns, ratios, strict=True)]
         )
 
 
-def distinguishable_size(own: Change, rival: Change, runs: RunsAtHand) -> float:
+def distinguishable_size(effect: Change, rival: Change, runs: PresentRuns) -> float:
     """Size of the part of an effect that a rival cannot reproduce, in units of the noise."""
-    change = own.on_shared_samples(rival, runs, slice(1))[:, 0]
-    span = rival.span if own.shares is None else spanned(rival.on_shared_samples(own, runs))
+    change = effect.on_shared_samples(rival, runs, slice(1))[:, 0]
+    span = rival.span if effect.shares is None else spanned(rival.on_shared_samples(effect, runs))
     return float(np.sqrt(bounded_square(change - span @ (span.T @ change))))
 
 
-def distinction_probability(left: float, least: float) -> float:
+def distinction_probability(size: float, least: float) -> float:
     """Probability that the gain of an effect exceeds that of a rival by more than `least`.
 
     Parameters
     ----------
-    left
+    size
         Size of the part of the effect that the rival cannot reproduce, in units of the noise.
     least
         Required difference of the gains.
     """
-    if left <= 0.0:
+    if size <= 0.0:
         return 0.0
-    return float(special.ndtr((left**2 - least) / (2.0 * left)))
+    return float(special.ndtr((size**2 - least) / (2.0 * size)))
 
 
-def detection_probability(price: float | Array, parameters: int, non_centrality: float) -> Array:
+def detection_probability(
+    price: float | Array, parameters: int, non_centrality: float | Array
+) -> Array:
     """Probability that a noncentral chi-square variable exceeds each of the given thresholds."""
     return np.asarray(1.0 - special.chndtr(price, parameters, non_centrality), dtype=np.float64)
 
@@ -125,6 +147,8 @@ def distinction_factor(
 
     Parameters
     ----------
+    price, parameters
+        Threshold for the gain of the effect, and its number of parameters.
     non_centrality
         Non-centrality at the present strength; it grows with the square of the strength.
     rivals
@@ -141,12 +165,12 @@ def distinction_factor(
 
     def surplus(times: float) -> float:
         # Close rivals leave the same part unexplained: only the closest one matters.
-        told = min(
-            (distinction_probability(times * left, least) for left, least in rivals.values()),
+        distinguished = min(
+            (distinction_probability(times * size, least) for size, least in rivals.values()),
             default=1.0,
         )
-        found = float(detection_probability(price, parameters, times**2 * non_centrality))
-        return found * told - chance
+        detected = float(detection_probability(price, parameters, times**2 * non_centrality))
+        return detected * distinguished - chance
 
     if surplus(1.0) >= 0.0:
         return 1.0

@@ -8,8 +8,7 @@ from typing import Any
 
 import jbf
 import numpy as np
-from jbf.diagnosis.excitations import Limits, excitations
-from jbf.diagnosis.separation import run_from_motion
+from jbf.diagnosis.experiment_design.excitations import Limits, excitations, run_from_motion
 from jbf.estimation.campaign import Campaign as Prepared
 from motion_errors import held_out
 from plan import Task

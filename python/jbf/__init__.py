@@ -24,7 +24,7 @@ if _TYPE_CHECKING:
     from jbf.comparison.model_comparison import ModelComparison
     from jbf.diagnosis import Diagnosis, Experiment, Limits, Policy, diagnose, diagnose_many
     from jbf.diagnosis.check import Check, check
-    from jbf.diagnosis.plan import Plan, plan
+    from jbf.diagnosis.experiment_design.plan import Plan, plan
     from jbf.diagnosis.power.planned_runs import PlannedPower, planned_power
     from jbf.estimation.bootstrap import Bootstrap, bootstrap
     from jbf.estimation.fit import Fit, fit
@@ -90,8 +90,8 @@ _LATER = {
     "diagnose_many": "jbf.diagnosis",
     "Check": "jbf.diagnosis.check",
     "check": "jbf.diagnosis.check",
-    "Plan": "jbf.diagnosis.plan",
-    "plan": "jbf.diagnosis.plan",
+    "Plan": "jbf.diagnosis.experiment_design.plan",
+    "plan": "jbf.diagnosis.experiment_design.plan",
     "Policy": "jbf.diagnosis",
     "PlannedPower": "jbf.diagnosis.power.planned_runs",
     "planned_power": "jbf.diagnosis.power.planned_runs",

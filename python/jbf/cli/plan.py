@@ -77,7 +77,7 @@ def add(commands: Commands) -> None:
 
 def run(options: PlanOptions) -> int:
     """Run the command."""
-    from jbf.diagnosis.plan import plan
+    from jbf.diagnosis.experiment_design.plan import plan
 
     wanted = {"--json": options.json}
     outputs.check(wanted, outputs.inputs_in(options.rig, options.effects_from))

@@ -10,8 +10,8 @@ effects. `residual_structure` tests the residual for lack of fit. `verdict` stat
 May import: `jbf.records`, `jbf.models`, `jbf.estimation`, `jbf.comparison`.
 """
 
-from jbf.diagnosis.excitations import Limits
-from jbf.diagnosis.experiment import Experiment
+from jbf.diagnosis.experiment_design.excitations import Limits
+from jbf.diagnosis.experiment_design.next_run import Experiment
 from jbf.diagnosis.ledger import Remainder, Step, Trial
 from jbf.diagnosis.many import diagnose_many
 from jbf.diagnosis.policy import Policy

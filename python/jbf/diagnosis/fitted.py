@@ -11,8 +11,9 @@ import numpy.typing as npt
 from jbf.diagnosis.level import Directions
 from jbf.estimation.approach import Approach
 from jbf.estimation.left_out import HeldOutPart
-from jbf.estimation.problem import Problem
+from jbf.estimation.problem import Problem, bounded
 from jbf.estimation.solution import Solution
+from jbf.models.driven import Driven
 
 Array = npt.NDArray[np.float64]
 State = Literal["posed", "looked", "ranked", "converged"]
@@ -73,3 +74,9 @@ class Fitted:
     def named_values(self) -> dict[str, float]:
         """Parameter values by name."""
         return dict(zip(self.problem.names, self.current_solution().values.tolist(), strict=True))
+
+    def predict(self, motion: Driven) -> tuple[Array, Array]:
+        """Friction under a motion, and its derivatives with respect to the search variables."""
+        problem, values = self.problem, self.current_solution().values
+        ((friction, slopes),) = problem.chain.jacobian(values, [motion], problem.open)
+        return friction, bounded(slopes, np.where(problem.log, values, 1.0)[problem.open])

@@ -8,8 +8,13 @@ from dataclasses import replace
 
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
-from jbf.diagnosis.excitations import Limits
-from jbf.diagnosis.experiment import Experiment, propose
+from jbf.diagnosis.experiment_design.excitations import Limits
+from jbf.diagnosis.experiment_design.next_run import (
+    Experiment,
+    propose,
+    propose_detection_run,
+    undetectable_effects,
+)
 from jbf.diagnosis.limitations import limitations
 from jbf.diagnosis.machine import OFFSET, machine_of
 from jbf.diagnosis.motion_uncertainty import (
@@ -28,7 +33,6 @@ from jbf.diagnosis.standing import (
     effects_without_estimate,
     with_final_outcomes,
 )
-from jbf.diagnosis.unseen import propose_detection_run, undetectable_effects
 from jbf.diagnosis.verdict import verdict
 from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished

@@ -7,7 +7,7 @@ from typing import Any
 
 from jbf.comparison.comparison import Comparison
 from jbf.comparison.patterns import Failure
-from jbf.diagnosis.experiment import Experiment
+from jbf.diagnosis.experiment_design.next_run import Experiment
 from jbf.diagnosis.ledger import Remainder, Step
 from jbf.diagnosis.level import Level
 from jbf.diagnosis.policy import DEFAULT, Policy

@@ -6,7 +6,7 @@ from jbf.comparison.comparison import Comparison
 from jbf.comparison.model_comparison import ModelComparison
 from jbf.control.run import Result as LoopRun
 from jbf.diagnosis.check import Check
-from jbf.diagnosis.plan import Plan
+from jbf.diagnosis.experiment_design.plan import Plan
 from jbf.diagnosis.power.planned_runs import PlannedPower
 from jbf.diagnosis.result import Diagnosis
 from jbf.estimation.bootstrap import Bootstrap

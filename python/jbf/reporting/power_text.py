@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from textwrap import wrap
 
 from jbf.diagnosis.decoys import rate_below
+from jbf.diagnosis.experiment_design.plan import Plan
 from jbf.diagnosis.level import Level
-from jbf.diagnosis.plan import Plan
 from jbf.diagnosis.power import Power
 from jbf.diagnosis.power.planned_runs import PlannedPower
 from jbf.models.model import Model

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from jbf.diagnosis.check import Check
-    from jbf.diagnosis.plan import Plan
+    from jbf.diagnosis.experiment_design.plan import Plan
     from jbf.diagnosis.power.planned_runs import PlannedPower
 
 

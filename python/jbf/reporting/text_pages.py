@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from jbf.comparison.model_comparison import ModelComparison
 from jbf.control.run import Result as LoopRun
 from jbf.diagnosis.check import Check
-from jbf.diagnosis.plan import Plan
+from jbf.diagnosis.experiment_design.plan import Plan
 from jbf.diagnosis.power.planned_runs import PlannedPower
 from jbf.errors import InputError
 from jbf.estimation.bootstrap import Bootstrap

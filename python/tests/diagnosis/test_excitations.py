@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from by_hand import Array
 from jbf import InputError, Rig
-from jbf.diagnosis.excitations import Excitation, Limits, excitations
+from jbf.diagnosis.experiment_design.excitations import Excitation, Limits, excitations
 from jbf.estimation.campaign import Campaign
 from linear_campaigns import coulomb_run
 

@@ -12,17 +12,24 @@ from jbf import Limits, Rig, effects
 from jbf.diagnosis import Experiment, Policy
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
-from jbf.diagnosis.excitations import Excitation, excitations
-from jbf.diagnosis.experiment import propose
-from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.power import power
-from jbf.diagnosis.power.strength import strength_of
-from jbf.diagnosis.separation import MOST_SAMPLES, Rival, filled_limits, motions, run_from_motion
-from jbf.diagnosis.unseen import (
+from jbf.diagnosis.experiment_design.excitations import (
+    MOST_SAMPLES,
+    Excitation,
+    excitations,
+    run_from_motion,
+)
+from jbf.diagnosis.experiment_design.next_run import (
+    Rival,
+    filled_limits,
     mean_detection_probability,
+    motions,
+    propose,
     propose_detection_run,
     undetectable_effects,
 )
+from jbf.diagnosis.policy import DEFAULT
+from jbf.diagnosis.power import power
+from jbf.diagnosis.power.strength import strength_of
 from jbf.estimation.campaign import Campaign
 from linear_campaigns import coulomb_candidates, coulomb_run
 from rigsim.motions import Motion, polyline, sine, sweep
@@ -81,7 +88,7 @@ def test_proposed_run_maximises_the_smallest_separation_between_rivals(pairs: in
     rivals = {effects: rival(tried, effects) for group in groups for effects in group}
     least = []
     for excitation, run, motion in motions(tried, limits, step_s):
-        at = {effects: rival.at(motion) for effects, rival in rivals.items()}
+        at = {effects: rival.predict(motion) for effects, rival in rivals.items()}
         separations = [
             residual_square_after_fit(rivals[fitted], at[fitted], at[truth][0], step_s)
             for group in groups
@@ -235,7 +242,7 @@ def test_proposed_run_has_the_largest_expected_number_of_detected_effects() -> N
     ranks = []
     for excitation, run, motion in motions(tried, limits, step_s):
         changed = [m.problem.chain.predict(m.values(1.0), [motion])[0] for m in models]
-        shown = [residual_square_after_fit(base, base.at(motion), f, step_s) for f in changed]
+        shown = [residual_square_after_fit(base, base.predict(motion), f, step_s) for f in changed]
         found = sum(
             mean_detection_probability(e, p, DEFAULT.experiments.strengths)
             for e, p in zip(shown, prices, strict=True)
@@ -340,14 +347,14 @@ def test_noise_and_information_of_a_fitted_model_are_those_of_a_regression(law: 
     r, j = law.solution.stacked()
     assert law.noise_rms == pytest.approx(0.1, rel=0.05)
     assert law.noise_rms**2 * (len(r) - j.shape[1]) == pytest.approx(float(r @ r))
-    assert law.known.T @ law.known == pytest.approx(j.T @ j)
+    assert law.root_information.T @ law.root_information == pytest.approx(j.T @ j)
 
 
 def test_predicted_friction_and_slopes_in_a_motion_are_those_of_the_law(law: Rival) -> None:
     """The search variable of dry friction is its logarithm, that of viscous friction its value."""
     t = STEP_S * np.arange(200.0)
     v = 0.1 + 0.05 * np.sin(t)
-    friction, slopes = law.at(Campaign.prepare(Rig(), [coulomb_run(t, v, seed=0)]).motions[0])
+    friction, slopes = law.predict(Campaign.prepare(Rig(), [coulomb_run(t, v, seed=0)]).motions[0])
     known = dict(zip(law.problem.names, law.solution.values.tolist(), strict=True))
     assert friction == pytest.approx(known["F_c"] + known["F_v"] * v, rel=1e-3)
     column = {law.problem.names[i]: slopes[:, k] for k, i in enumerate(law.problem.open)}
@@ -360,14 +367,14 @@ def test_separation_is_the_residual_after_a_fit_to_all_runs(law: Rival, directio
     """Minimum of |gap - X s|^2 + |K s|^2 over a common step s, by the normal equations."""
     t = STEP_S * np.arange(400.0)
     v = 0.1 + 0.05 * np.sin(t)
-    own = law.at(Campaign.prepare(Rig(), [coulomb_run(t, v, seed=0)]).motions[0])
+    own = law.predict(Campaign.prepare(Rig(), [coulomb_run(t, v, seed=0)]).motions[0])
     gap = {"dry": 0.3 + 0.0 * t, "viscous": 3.0 * v, "new": 0.3 * np.sin(7.0 * t)}[direction]
-    information = own[1].T @ own[1] + law.known.T @ law.known
+    information = own[1].T @ own[1] + law.root_information.T @ law.root_information
     explained = own[1].T @ gap
     left = float(gap @ gap - explained @ np.linalg.pinv(information) @ explained)
-    separation = law.separation(own, (own[0] + gap, own[1]), STEP_S)
+    separation = law.separation(own, own[0] + gap, STEP_S)
     assert separation == pytest.approx(left / law.noise_rms**2, rel=1e-6)
     # The old runs constrain the step: part of the gap remains even along the slopes of the law.
     # law.
     assert 0.1 * float(gap @ gap) < left < float(gap @ gap)
-    assert law.separation(own, own, STEP_S) == pytest.approx(0.0, abs=1e-9)
+    assert law.separation(own, own[0], STEP_S) == pytest.approx(0.0, abs=1e-9)

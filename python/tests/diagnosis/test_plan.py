@@ -11,13 +11,12 @@ from by_hand import LAW, Array
 from jbf import InputError, Limits, Model, Rig, Run, plan, planned_power
 from jbf.cli import main
 from jbf.diagnosis.evidence import price_of
-from jbf.diagnosis.excitations import excitations
-from jbf.diagnosis.plan import LEAST_RUNS, MOST_RUNS, Plan
+from jbf.diagnosis.experiment_design.excitations import excitations, run_from_motion
+from jbf.diagnosis.experiment_design.plan import LEAST_RUNS, MOST_RUNS, Plan
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power.detection_limits import non_centrality
 from jbf.diagnosis.power.planned_runs import as_recorded
 from jbf.diagnosis.power.strength import strength_of
-from jbf.diagnosis.separation import run_from_motion
 from jbf.models.chain import core_motion, imposed
 from jbf.records.drive import Drive
 from jbf.records.run_files import read_runs

@@ -19,10 +19,11 @@ NUMERICAL = {
         diagnosis.power.distinction: NEVER MOST FURTHER
         diagnosis.check: SURE
         diagnosis.decoys: DRAWS SURE
-        diagnosis.excitations: RATES_RAD_S SHARES STOP_SHARES REST_S USUAL_RATE_RAD_S
-        diagnosis.plan: ENOUGH MORE
+        diagnosis.experiment_design.excitations: MOST_SAMPLES RATES_RAD_S SHARES STOP_SHARES REST_S
+        diagnosis.experiment_design.excitations: USUAL_RATE_RAD_S
+        diagnosis.experiment_design.plan: ENOUGH MORE
         diagnosis.power.detection_limits: LEVELS NEARLY_ALL BEYOND
-        diagnosis.separation: MOST_SAMPLES LEAST_SAMPLES
+        diagnosis.experiment_design.next_run: LEAST_SAMPLES
         diagnosis.power.strength: DRAWS
         estimation.curvature: BENT
         estimation.exact_delay: LEAST_STEPS CLIPPED BLURRED
@@ -38,7 +39,7 @@ NUMERICAL = {
     "tolerance of a numerical comparison or of an iteration": """
         diagnosis.residual_structure.bursts: NO_NOISE
         diagnosis.power.detection_limits: AGREES
-        diagnosis.separation: NO_NOISE_N
+        diagnosis.experiment_design.next_run: NO_NOISE
         diagnosis.terms.shifts: SETTLED
         estimation.determined: AT_BOUND
         estimation.joint_lateness: RANK
@@ -71,8 +72,8 @@ NUMERICAL = {
         estimation.work: STEPS_A_SAMPLE ANY_STEPS
     """,
     "rejects impossible input": """
-        diagnosis.excitations: MOST LONGEST_S
-        diagnosis.plan: LEAST_RUNS MOST_RUNS
+        diagnosis.experiment_design.excitations: MOST LONGEST_S
+        diagnosis.experiment_design.plan: LEAST_RUNS MOST_RUNS
         estimation.bootstrap: LEAST_REPEATS MOST_REPEATS
     """,
     "resolution of a grid, a derivative or a number of draws": """

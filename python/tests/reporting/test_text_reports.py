@@ -11,8 +11,8 @@ from golden import golden
 from jbf import Bootstrap, Model, ParameterValue, Rig, TrajectoryFit
 from jbf.diagnosis.check import Answer, Check
 from jbf.diagnosis.decoys import rate_below
+from jbf.diagnosis.experiment_design.plan import Plan
 from jbf.diagnosis.level import Level
-from jbf.diagnosis.plan import Plan
 from jbf.diagnosis.power import Power
 from jbf.diagnosis.power.planned_runs import PlannedPower
 from jbf.diagnosis.which_law import LawTried

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +11,21 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
+from jbf.models.catalogue import find_effect
+from jbf.models.chain import core_load_n, core_motion
+from jbf.models.driven import Driven
+from jbf.models.own_effects import ALWAYS
+from jbf.records.motion.known import known_motion
+from jbf.records.rig import Rig
+from jbf.records.run import Run
+from jbf.records.run_requirements import run_on
 
 Array = npt.NDArray[np.float64]
 
+COLUMNS = {*ALWAYS, "angle_rad", "position_m"}
+"""Columns of a proposed run."""
+MOST_SAMPLES = 6000
+"""Largest number of samples of a proposed run. It enters no verdict."""
 RATES_RAD_S = (0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 """Rates of the sines, rad/s. It enters no verdict."""
 SHARES = (1.0, 0.3, 0.1, 0.02)
@@ -99,8 +111,8 @@ class Limits:
         """Return the limits with None replaced by the values of the runs."""
         motions = [p.motion for p in campaign.prepared]
         top = self.velocity or max(float(np.max(np.abs(m.velocity))) for m in motions)
-        seen = max(float(np.quantile(np.abs(m.acceleration), 0.999)) for m in motions)
-        sharp = self.acceleration or max(seen, USUAL_RATE_RAD_S * top)
+        recorded = max(float(np.quantile(np.abs(m.acceleration), 0.999)) for m in motions)
+        acceleration = self.acceleration or max(recorded, USUAL_RATE_RAD_S * top)
         loads = [p.run.load_n for p in campaign.prepared if p.run.load_n is not None]
         load = self.load_n
         if load is None and campaign.has_loads and loads:
@@ -110,7 +122,7 @@ class Limits:
         least_k = campaign.settings.conditions.min_temperature_difference_k
         if celsius is None and (campaign.temperatures_k or 0.0) >= least_k:
             celsius = campaign.temperature_range_c
-        return Limits(top, sharp, self.duration_s, load, celsius)
+        return Limits(top, acceleration, self.duration_s, load, celsius)
 
 
 @dataclass(frozen=True)
@@ -138,26 +150,26 @@ class Excitation:
 def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Iterator[Excitation]:
     """Generate motions within complete limits; each begins at rest."""
     loads = (None,) if limits.load_n is None else tuple(dict.fromkeys(limits.load_n))
-    warmths = (
+    temperatures = (
         (None,) if limits.temperature_c is None else tuple(dict.fromkeys(limits.temperature_c))
     )
-    top, sharp = limits.velocity, limits.acceleration
+    top, acceleration = limits.velocity, limits.acceleration
     assert top is not None
-    assert sharp is not None
+    assert acceleration is not None
     time = np.arange(0.0, limits.duration_s, step_s)
-    for words, velocity in _motions(time, top, sharp, speed_unit):
-        if np.max(np.abs(np.diff(velocity)), initial=0.0) > 1.01 * sharp * step_s:
+    for words, velocity in _motions(time, top, acceleration, speed_unit):
+        if np.max(np.abs(np.diff(velocity)), initial=0.0) > 1.01 * acceleration * step_s:
             continue
-        for load, celsius in itertools.product(loads, warmths):
+        for load, celsius in itertools.product(loads, temperatures):
             under = "" if load is None else f" under {load:.4g} N"
             at = "" if celsius is None else f", the machine at {celsius:.3g} C all the time,"
             yield Excitation(words + under + at, velocity, load, celsius)
 
 
-def _motions(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[str, Array]]:
+def _motions(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tuple[str, Array]]:
     duration = float(t[-1]) if len(t) else 0.0
     # The start lasts until its acceleration is within half of the limit.
-    start = np.clip(t * 0.5 * sharp / top, 0.0, 1.0)
+    start = np.clip(t * 0.5 * acceleration / top, 0.0, 1.0)
     for share in SHARES:
         for w in RATES_RAD_S:
             if w * duration > 4.0 * np.pi:
@@ -169,8 +181,8 @@ def _motions(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[st
     for share in (1.0, 0.3):
         yield f"a run at a constant {share * top:.3g} {unit}", share * top * start
     for share in STOP_SHARES:
-        yield _stops(share * top, unit), _stop_and_go(t, share * top, sharp)[0]
-    yield from _mixed(t, top, sharp, unit)
+        yield _stops(share * top, unit), _stop_and_go(t, share * top, acceleration)[0]
+    yield from _mixed(t, top, acceleration, unit)
 
 
 def _sine(speed: float, w: float, unit: str) -> str:
@@ -181,38 +193,70 @@ def _stops(speed: float, unit: str) -> str:
     return f"stop and go to {speed:.3g} {unit}, both ways, with rests of {REST_S:g} s"
 
 
-def _stop_and_go(t: Array, speed: float, sharp: float) -> tuple[Array, float]:
+def _stop_and_go(t: Array, speed: float, acceleration: float) -> tuple[Array, float]:
     """Velocity of a stop-and-go motion, and the duration of one forward and backward stroke, s."""
-    ramp = max(1.0, 1.05 * speed / sharp)
+    ramp = max(1.0, 1.05 * speed / acceleration)
     cycle = 2.0 * ramp + 3.0 + REST_S
     phase = np.mod(t, cycle)
     height = np.clip(np.minimum(phase - REST_S, cycle - phase) / ramp, 0.0, 1.0)
-    way = np.where(np.mod(t, 2.0 * cycle) < cycle, 1.0, -1.0)
-    return speed * height * way, 2.0 * cycle
+    direction = np.where(np.mod(t, 2.0 * cycle) < cycle, 1.0, -1.0)
+    return speed * height * direction, 2.0 * cycle
 
 
-def _mixed(t: Array, top: float, sharp: float, unit: str) -> Iterator[tuple[str, Array]]:
+def _mixed(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tuple[str, Array]]:
     """Combined motions: stop and go, a fast sine, and a short and fast sine in sequence.
 
     Each part ends at rest, where the next part begins.
     """
     duration = float(t[-1]) if len(t) else 0.0
     # The highest rates that the acceleration limit allows.
-    quick = {s: max((w for w in RATES_RAD_S if s * top * w <= sharp), default=0.0) for s in SHARES}
+    rates = {
+        s: max((w for w in RATES_RAD_S if s * top * w <= acceleration), default=0.0) for s in SHARES
+    }
     for share in STOP_SHARES:
-        first, after_s = _stop_and_go(t, share * top, sharp)
+        first, after_s = _stop_and_go(t, share * top, acceleration)
         for short in SHARES[1:]:
             # If the full amplitude is within the acceleration limit, so are smaller amplitudes.
-            if not quick[1.0]:
+            if not rates[1.0]:
                 continue
             # Half of the remaining time, in whole half-waves.
-            left_s = 0.5 * (duration - after_s)
-            waves = np.floor(left_s * quick[1.0] / np.pi)
+            half_s = 0.5 * (duration - after_s)
+            waves = np.floor(half_s * rates[1.0] / np.pi)
             if waves < 2.0:
                 continue
-            then_s = after_s + waves * np.pi / quick[1.0]
-            velocity = np.where(t < after_s, first, top * np.sin(quick[1.0] * (t - after_s)))
-            last = short * top * np.sin(quick[short] * (t - then_s))
-            sines = (_sine(top, quick[1.0], unit), _sine(short * top, quick[short], unit))
+            then_s = after_s + waves * np.pi / rates[1.0]
+            velocity = np.where(t < after_s, first, top * np.sin(rates[1.0] * (t - after_s)))
+            last = short * top * np.sin(rates[short] * (t - then_s))
+            sines = (_sine(top, rates[1.0], unit), _sine(short * top, rates[short], unit))
             parts = (_stops(share * top, unit), *sines)
             yield ", then ".join(parts), np.where(t < then_s, velocity, last)
+
+
+def runs_to_play(
+    rig: Rig, limits: Limits, step_s: float, *, linear: bool
+) -> Iterator[tuple[Excitation, Run, Driven]]:
+    """Generate every motion within complete limits, as a run to play and as input of a model."""
+    for excitation in excitations(limits, step_s, rig.quantities.speed):
+        run = run_from_motion(rig, excitation, step_s, linear=linear)
+        yield excitation, run, core_motion(rig, run, known_motion(run, rig.radius_m))
+
+
+def run_from_motion(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:
+    """Convert a motion to a run to play, with the position of a slide or the angle of a shaft."""
+    velocity = excitation.velocity
+    time = np.arange(len(velocity)) * step_s
+    path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * step_s)))
+    bearing = rig.bearing
+    radius = 1.0 if bearing is None else bearing.radius_m
+    place = {"position_m": path} if linear else {"angle_rad": path / radius}
+    load_n = excitation.load_n or core_load_n(rig)
+    load = None if load_n is None else np.full(len(time), load_n)
+    temperature = excitation.temperature_c
+    celsius = None if temperature is None else np.full(len(time), temperature)
+    run = Run.from_arrays(time, velocity, load_n=load, temperature_c=celsius, name="next", **place)
+    return run_on(rig, run)
+
+
+def missing_columns(effects: Iterable[str]) -> set[str]:
+    """Columns that effects require and a proposed run lacks."""
+    return {column for name in effects for column in find_effect(name).columns} - COLUMNS

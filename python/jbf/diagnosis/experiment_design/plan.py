@@ -20,18 +20,21 @@ import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.evidence import price_of
-from jbf.diagnosis.excitations import USUAL_RATE_RAD_S, Limits, excitations
+from jbf.diagnosis.experiment_design.excitations import (
+    MOST_SAMPLES,
+    USUAL_RATE_RAD_S,
+    Limits,
+    missing_columns,
+    runs_to_play,
+)
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power.planned_runs import PlannedPower, as_recorded, planned_power
 from jbf.diagnosis.power.strength import Strength, strength_of
-from jbf.diagnosis.separation import MOST_SAMPLES, SIMULATED, run_from_motion
 from jbf.errors import InputError
 from jbf.estimation.likelihood import effective_share
-from jbf.models.catalogue import find_effect
-from jbf.models.chain import core_motion
+from jbf.models.driven import Driven
 from jbf.models.model import Model
 from jbf.records.arguments import of_kind
-from jbf.records.motion.known import known_motion
 from jbf.records.run import Run
 from jbf.records.toml_file import number
 from jbf.results import Result
@@ -165,19 +168,18 @@ def plan(
     step_s = max(step_s, limits.duration_s / MOST_SAMPLES)
     rig = model.rig
     linear = rig.bearing is None and (rig.drive is None or rig.drive.motion == "linear")
-    motions = [
-        (e, run_from_motion(rig, e, step_s, linear=linear))
-        for e in excitations(limits, step_s, rig.quantities.speed)
-    ]
+    motions = list(runs_to_play(rig, limits, step_s, linear=linear))
     # A few of the motions, slow and fast, at each load and temperature, determine the effects.
     few = motions[:: max(len(motions) // 7, 1)]
-    named = [replace(run, name=f"{i}") for i, (_, run) in enumerate(few)]
+    named = [replace(run, name=f"{i}") for i, (_, run, _) in enumerate(few)]
     candidates = as_recorded(model, named, noise_rms, policy)
     effects = _effects(candidates, model)
-    told = [_motion_information(candidates, model, effects, run, noise_rms) for _, run in motions]
-    own = len(candidates.fitted(model.effects).problem.open)
-    prices = np.array([price_of(candidates, max(len(e.problem.open) - own, 1)) for e in effects])
-    chosen = _chosen(told, own, prices, count)
+    information = [
+        _motion_information(candidates, model, effects, motion, noise_rms) for *_, motion in motions
+    ]
+    free = len(candidates.fitted(model.effects).problem.open)
+    prices = np.array([price_of(candidates, max(len(e.problem.open) - free, 1)) for e in effects])
+    chosen = _chosen(information, free, prices, count)
     runs = tuple(replace(motions[k][1], name=f"{i:02d}") for i, k in enumerate(chosen, 1))
     words = tuple(motions[k][0].words for k in chosen)
     return Plan(runs, words, planned_power(model, runs, noise_rms=noise_rms, policy=policy))
@@ -185,70 +187,71 @@ def plan(
 
 def _effects(candidates: Candidates, model: Model) -> list[Strength]:
     """Effects that motions could show."""
-    found = []
-    for name in candidates.names:
-        if name in model.effects or set(find_effect(name).columns) - SIMULATED:
-            continue
-        strength = strength_of(candidates, model.effects, name)
-        if strength is not None:
-            found.append(strength)
-    return found
+    return [
+        strength
+        for name in candidates.names
+        if name not in model.effects and not missing_columns([name])
+        if (strength := strength_of(candidates, model.effects, name)) is not None
+    ]
 
 
 def _motion_information(
-    candidates: Candidates, model: Model, effects: Sequence[Strength], run: Run, noise_rms: float
+    candidates: Candidates,
+    model: Model,
+    effects: Sequence[Strength],
+    motion: Driven,
+    noise_rms: float,
 ) -> Array:
     """Information of a motion about the p parameters and the e effects, shape (p + e, p + e)."""
     fitted = candidates.fitted(model.effects)
-    problem, values = fitted.problem, fitted.current_solution().values
-    motion = core_motion(model.rig, run, known_motion(run, model.rig.radius_m))
-    ((friction, slopes),) = problem.chain.jacobian(values, [motion], problem.open)
-    scale = np.where(problem.log, values, 1.0)[problem.open]
+    friction, slopes = fitted.predict(motion)
     changes = [e.problem.chain.predict(e.values(1.0), [motion])[0] - friction for e in effects]
-    rows = np.column_stack([slopes * scale, *changes])
+    rows = np.column_stack([slopes, *changes])
     # In an autocorrelated residual a sample carries less information.
     rows *= np.sqrt(effective_share(fitted.current_solution())) / noise_rms
-    told: Array = rows.T @ rows
-    return told
+    product: Array = rows.T @ rows
+    return product
 
 
-def _chosen(told: Sequence[Array], own: int, prices: Array, count: int) -> list[int]:
+def _chosen(information: Sequence[Array], free: int, prices: Array, count: int) -> list[int]:
     """Choose motions one by one to maximise their joint criterion."""
     chosen: list[int] = []
-    whole = np.zeros_like(told[0])
+    total = np.zeros_like(information[0])
     for _ in range(count):
-        worth = [
-            _design_criterion(whole + one, own, prices)
-            + _criterion_without_best([*chosen, k], told, own, prices)
-            for k, one in enumerate(told)
+        criteria = [
+            _design_criterion(total + one, free, prices)
+            + _criterion_without_best([*chosen, k], information, free, prices)
+            for k, one in enumerate(information)
         ]
-        best = int(np.argmax(worth))
+        best = int(np.argmax(criteria))
         chosen.append(best)
-        whole = whole + told[best]
+        total = total + information[best]
     return chosen
 
 
 def _criterion_without_best(
-    chosen: Sequence[int], told: Sequence[Array], own: int, prices: Array
+    chosen: Sequence[int], information: Sequence[Array], free: int, prices: Array
 ) -> float:
     """Criterion of motions without the most informative one."""
-    whole = np.sum([told[k] for k in chosen], axis=0)
-    return min(_design_criterion(whole - told[k], own, prices) for k in set(chosen))
+    total = np.sum([information[k] for k in chosen], axis=0)
+    return min(_design_criterion(total - information[k], free, prices) for k in set(chosen))
 
 
-def _design_criterion(told: Array, own: int, prices: Array) -> float:
+def _design_criterion(information: Array, free: int, prices: Array) -> float:
     """Design criterion: sum of log information of each effect in multiples of its threshold.
 
-    The information excludes the part shared with the law and with the most similar effect.
+    The information excludes the part shared with the law, whose parameters are the first `free`
+    ones, and with the most similar effect.
     """
-    known = np.linalg.pinv(told[:own, :own], rcond=1e-10, hermitian=True)
-    left = told[own:, own:] - told[own:, :own] @ known @ told[:own, own:]
-    size = np.maximum(np.diag(left), 0.0)
-    shared = left**2 / np.maximum(size, 1e-300)[None, :]
+    of_law, of_effects = information[:free, :free], information[free:, free:]
+    covariance = np.linalg.pinv(of_law, rcond=1e-10, hermitian=True)
+    apart = of_effects - information[free:, :free] @ covariance @ information[:free, free:]
+    size = np.maximum(np.diag(apart), 0.0)
+    shared = apart**2 / np.maximum(size, 1e-300)[None, :]
     np.fill_diagonal(shared, 0.0)
-    alone = np.maximum(size - np.max(shared, axis=1, initial=0.0), 0.0)
-    times = alone / prices
+    unshared = np.maximum(size - np.max(shared, axis=1, initial=0.0), 0.0)
+    multiples = unshared / prices
     return float(
-        np.sum(np.log1p(np.minimum(times, ENOUGH)))
-        + MORE * np.sum(np.log(np.maximum(times, ENOUGH)))
+        np.sum(np.log1p(np.minimum(multiples, ENOUGH)))
+        + MORE * np.sum(np.log(np.maximum(multiples, ENOUGH)))
     )

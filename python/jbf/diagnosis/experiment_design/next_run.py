@@ -1,0 +1,296 @@
+"""Proposal of the next run.
+
+One kind of proposal discriminates between models with equal fits. The other shows effects that are
+not detectable in the present runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.experiment_design.excitations import (
+    MOST_SAMPLES,
+    Excitation,
+    Limits,
+    missing_columns,
+    runs_to_play,
+)
+from jbf.diagnosis.fitted import Fitted
+from jbf.diagnosis.power.detection_limits import Power
+from jbf.diagnosis.power.distinction import detection_probability
+from jbf.diagnosis.power.strength import at_usual_strength
+from jbf.estimation.likelihood import unexplained_square
+from jbf.models.catalogue import find_effect
+from jbf.models.driven import Driven
+from jbf.records.run import PathLike, Run
+
+Array = npt.NDArray[np.float64]
+Names = tuple[str, ...]
+
+LEAST_SAMPLES = 200
+"""Smallest number of samples of a proposed run. It enters no verdict."""
+NO_NOISE = 1e-100
+"""Positive lower limit of the noise that avoids a division by zero.
+
+It is a numerical tolerance.
+"""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A run to record next.
+
+    Attributes
+    ----------
+    words
+        What to record and why, in one sentence.
+    run
+        The motion to play: time, speed, angle or position, load; without friction.
+    separation_n
+        RMS difference between the rival models in this run after a new fit, N.
+    separation_sigma
+        `separation_n` in units of the noise.
+    evidence
+        Expected value of twice the log-likelihood ratio between the rival models.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(0.0, 4.0, 0.02)
+    >>> v = 0.1 * np.sin(3.0 * t)
+    >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
+    >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
+    >>> diagnosis = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
+    >>> diagnosis.experiment.run.duration_s > 10.0
+    True
+    """
+
+    words: str
+    run: Run
+    separation_n: float
+    separation_sigma: float
+    evidence: float
+
+    def write_csv(self, path: PathLike) -> None:
+        """Write the motion to play."""
+        self.run.write_csv(path)
+
+
+class Rival:
+    """A fitted model and the information of the present runs about its parameters."""
+
+    def __init__(self, fitted: Fitted) -> None:
+        self.problem, self.solution = fitted.problem, fitted.current_solution()
+        self.predict = fitted.predict
+        r, j = self.solution.stacked()
+        self.noise_rms = float(np.sqrt(r @ r / max(len(r) - j.shape[1], 1)))
+        self.root_information: Array = np.asarray(np.linalg.qr(j, mode="r"), dtype=np.float64)
+
+    def separation(self, prediction: tuple[Array, Array], truth: Array, step_s: float) -> float:
+        """Misfit to the friction of another model after refitting, in noise variances.
+
+        The refit uses the new motion and the old runs (T-optimality, Atkinson & Fedorov 1975; here
+        to first order). The part that the parameters can reproduce is not evidence.
+
+        Parameters
+        ----------
+        prediction
+            Friction of this model under the new motion and its derivatives, from `predict`.
+        truth
+            Friction of the other model.
+        """
+        noise = self.solution.noise
+        gap = noise.innovations(truth - prediction[0], step_s)
+        slopes = noise.innovations(prediction[1], step_s)
+        design = np.concatenate([slopes, self.root_information])
+        target = np.concatenate([gap, np.zeros(len(self.root_information))])
+        return unexplained_square(design, target) / max(self.noise_rms, NO_NOISE) ** 2
+
+
+def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits, float]:
+    """Complete the limits, and choose the sampling interval of a proposed run, s."""
+    filled = (limits or Limits()).filled(candidates.campaign)
+    step_s = float(np.median([p.step_s for p in candidates.campaign.prepared]))
+    most_s = filled.duration_s / LEAST_SAMPLES
+    return filled, max(min(step_s, most_s), filled.duration_s / MOST_SAMPLES)
+
+
+def motions(
+    candidates: Candidates, limits: Limits, step_s: float
+) -> Iterator[tuple[Excitation, Run, Driven]]:
+    """Generate every motion that the rig can make, with the path that the recorded runs have."""
+    linear = any(p.run.position_m is not None for p in candidates.campaign.prepared)
+    return runs_to_play(candidates.campaign.rig, limits, step_s, linear=linear)
+
+
+Rank = tuple[float, ...]
+
+
+def _best_motion(
+    candidates: Candidates, limits: Limits, step_s: float, rank: Callable[[Driven], Rank]
+) -> tuple[Rank, Excitation, Run, Driven] | None:
+    """The motion with the largest rank, the first of equal ones; None where all ranks are zero."""
+    best: tuple[Rank, Excitation, Run, Driven] | None = None
+    for excitation, run, motion in motions(candidates, limits, step_s):
+        value = rank(motion)
+        if value > ((0.0,) * len(value) if best is None else best[0]):
+            best = value, excitation, run, motion
+    return best
+
+
+def propose(
+    candidates: Candidates, rivals: Sequence[Sequence[Names]], limits: Limits | None = None
+) -> Experiment | str:
+    """Propose the run that best discriminates between rival models, or return the reason for none.
+
+    Parameters
+    ----------
+    candidates
+        The fits of the present runs.
+    rivals
+        Groups of models, each a tuple of effects; all models of a group fit equally well.
+    limits
+        Limits of the rig.
+    """
+    every = [effects for group in rivals for effects in group]
+    missing = missing_columns(name for effects in every for name in effects)
+    if missing:
+        return f"no run can be proposed: nobody knows what {', '.join(sorted(missing))} would be"
+    limits, step_s = filled_limits(candidates, limits)
+    models = {}
+    for effects in every:
+        candidates.converge(effects)
+        models[effects] = Rival(candidates.fitted(effects))
+
+    def least_separation(motion: Driven) -> Rank:
+        predictions = {effects: model.predict(motion) for effects, model in models.items()}
+        # The least separated pair determines whether the run discriminates between the models.
+        least = min(
+            models[b].separation(predictions[b], predictions[a][0], step_s)
+            for group in rivals
+            for a in group
+            for b in group
+            if a != b
+        )
+        return (least,)
+
+    best = _best_motion(candidates, limits, step_s, least_separation)
+    names = _names(rivals)
+    if best is None or best[0][0] < candidates.policy.experiments.min_evidence:
+        return (
+            f"{names} predict the same friction in every motion within the limits, once each is "
+            "fitted: no such run would part them"
+        )
+    (evidence,), excitation, run, _ = best
+    sigma = float(np.sqrt(evidence / len(run)))
+    noise_rms = max(model.noise_rms for model in models.values())
+    unit = candidates.campaign.rig.quantities.force
+    words = (
+        f"record {excitation.words} for {limits.duration_s:g} s: there {names} differ by "
+        f"{sigma * noise_rms:.2g} {unit} RMS after a new fit, {sigma:.2g} times the noise"
+    )
+    return Experiment(words, run, sigma * noise_rms, sigma, evidence)
+
+
+def _names(rivals: Sequence[Sequence[Names]]) -> str:
+    groups = []
+    for group in rivals:
+        shared = set.intersection(*(set(effects) for effects in group))
+        differing = [" + ".join(e for e in effects if e not in shared) for effects in group]
+        groups.append(" and ".join(name or "nothing more" for name in differing))
+    return "; ".join(groups)
+
+
+def undetectable_effects(candidates: Candidates, present: Names, powers: Iterable[Power]) -> Names:
+    """Candidates that are not detectable in these runs at their usual strength.
+
+    The law's own parameters can absorb them, the noise covers them, or they show only in samples
+    that are not counted.
+    """
+    hidden = {p.effect for p in powers if p.hidden}
+    return tuple(
+        name
+        for name in candidates.names
+        if name in hidden
+        and not missing_columns([name])
+        # Without a transmitted load such an effect has no influence, whatever the motion.
+        and ("transmitted" not in find_effect(name).needs or _changes(candidates, present, name))
+    )
+
+
+def _changes(candidates: Candidates, present: Names, name: str) -> bool:
+    """Whether an effect at its usual strength changes any prediction of these runs."""
+    without = candidates.fitted(present).problem.predict(candidates.converge(present).values)
+    richer, values = at_usual_strength(candidates, present, name)
+    with_it = richer.predict(values)
+    return any(bool(np.any(a != b)) for a, b in zip(with_it, without, strict=True))
+
+
+def propose_detection_run(
+    candidates: Candidates, present: Names, hidden: Sequence[str], limits: Limits | None = None
+) -> Experiment | str:
+    """Propose the run that would show most of the effects not detectable in the present runs."""
+    limits, step_s = filled_limits(candidates, limits)
+    candidates.converge(present)
+    base = Rival(candidates.fitted(present))
+    richer = {name: at_usual_strength(candidates, present, name) for name in hidden}
+    prices = {
+        name: price_of(candidates, len(problem.open) - base.solution.free)
+        for name, (problem, _) in richer.items()
+    }
+    settings = candidates.policy.experiments
+
+    def evidence_in(motion: Driven) -> dict[str, float]:
+        prediction = base.predict(motion)
+        return {
+            name: base.separation(prediction, problem.chain.predict(values, [motion])[0], step_s)
+            for name, (problem, values) in richer.items()
+        }
+
+    def expected_detections(motion: Driven) -> Rank:
+        evidence = evidence_in(motion)
+        chances = (
+            mean_detection_probability(evidence[name], prices[name], settings.strengths)
+            for name in hidden
+        )
+        return round(sum(chances), 2), float(sum(np.log1p(e) for e in evidence.values()))
+
+    listed = ", ".join(hidden)
+    best = _best_motion(candidates, limits, step_s, expected_detections)
+    evidence = {} if best is None else evidence_in(best[3])
+    clear = {name: e for name, e in evidence.items() if e > 2.0 * settings.min_evidence}
+    if best is None or not clear:
+        return (
+            f"these runs could not show {listed} at a usual strength, nor could any motion within "
+            "the limits"
+        )
+    _, excitation, run, _ = best
+    which = "them" if len(clear) == len(hidden) else ", ".join(clear)
+    words = (
+        f"these runs could not show {listed} at a usual strength: record {excitation.words} for "
+        f"{limits.duration_s:g} s, which would show {which}"
+    )
+    mean = float(np.exp(np.mean(np.log(list(clear.values())))))
+    sigma = float(np.sqrt(mean / len(run)))
+    return Experiment(words, run, sigma * base.noise_rms, sigma, mean)
+
+
+def mean_detection_probability(evidence: float, price: float, strengths: Sequence[float]) -> float:
+    """Probability of detecting an effect of uncertain strength.
+
+    Parameters
+    ----------
+    evidence
+        Non-centrality at the usual strength.
+    price
+        Threshold for the gain.
+    strengths
+        Multiples of the usual strength, equally likely.
+    """
+    return float(np.mean(detection_probability(price, 1, np.array(strengths) ** 2 * evidence)))

@@ -5,7 +5,8 @@ a ledger of decreasing errors, the residual structure and the run to record next
 
 Modules: `candidates` fits the models and `evidence` compares them. `selection` adds and reviews
 effects. `residual_structure` tests the residual for lack of fit. `verdict` states the verdict.
-`policy` holds every number that influences a verdict. `recipe` combines these steps.
+`policy` holds every number that influences a verdict. `recipe` combines these steps. `power`
+computes the detection limits of the runs, and `experiment_design` proposes further runs.
 
 May import: `jbf.records`, `jbf.models`, `jbf.estimation`, `jbf.comparison`.
 """

@@ -14,11 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.confirmation import Confirmation
-from jbf.diagnosis.fitted import Fitted
+from jbf.diagnosis.fit_state import Fitted, Reached
 from jbf.diagnosis.level import Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
-from jbf.diagnosis.reached import Reached
-from jbf.diagnosis.side_by_side import parallel_fits, side_by_side
 from jbf.estimation.approach import Approach, approach
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.determined import idle_effects
@@ -34,6 +32,7 @@ from jbf.estimation.left_out import (
 )
 from jbf.estimation.likelihood import effective_share, likelihood_gain
 from jbf.estimation.minimum import search_peaks, settle
+from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import effects as catalogue
@@ -255,7 +254,7 @@ class Candidates:
         near: Solution,
     ) -> None:
         """Process every set of effects in parallel and report progress."""
-        done = side_by_side(work, sets, parallel_fits(self.campaign, self.law, self.names))
+        done = in_parallel(work, sets, fits_at_once(self.campaign, self.law, self.names))
         for i, effects in enumerate(sets):
             added = ", ".join(name for name in effects if name not in near.effects)
             self.tell(f"{doing} {added}", i, len(sets))

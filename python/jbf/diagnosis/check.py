@@ -60,8 +60,8 @@ class Answer:
     @property
     def false(self) -> bool:
         """True where a named effect was not hidden and neither was any of its alternatives."""
-        could = [{name, *self.alternatives.get(name, ())} for name in self.effects]
-        return any(not names & set(self.hidden) for names in could)
+        groups = [{name, *self.alternatives.get(name, ())} for name in self.effects]
+        return any(not names & set(self.hidden) for names in groups)
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict, the input of `answer_of`."""
@@ -74,12 +74,11 @@ class Answer:
         }
 
 
-def answer_of(told: Mapping[str, Any]) -> Answer:
+def answer_of(table: Mapping[str, Any]) -> Answer:
     """Restore the result from the output of `Answer.to_dict`."""
-    others = {k: tuple(v) for k, v in told["alternatives"].items()}
-    return Answer(
-        tuple(told["hidden"]), int(told["draw"]), told["verdict"], tuple(told["effects"]), others
-    )
+    others = {k: tuple(v) for k, v in table["alternatives"].items()}
+    hidden, effects = tuple(table["hidden"]), tuple(table["effects"])
+    return Answer(hidden, int(table["draw"]), table["verdict"], effects, others)
 
 
 @dataclass(frozen=True)
@@ -103,12 +102,13 @@ class Rate:
     high: float
 
     @classmethod
-    def of(cls, what: str, told: Sequence[bool]) -> Rate:
+    def of(cls, what: str, outcomes: Sequence[bool]) -> Rate:
         """Compute the rate of true values in a sequence of outcomes."""
         from scipy import stats  # most of a second to import
 
-        found = stats.binomtest(sum(told), len(told)).proportion_ci(SURE, method="exact")
-        return cls(what, sum(told), len(told), float(found.low), float(found.high))
+        count, campaigns = sum(outcomes), len(outcomes)
+        interval = stats.binomtest(count, campaigns).proportion_ci(SURE, method="exact")
+        return cls(what, count, campaigns, float(interval.low), float(interval.high))
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
@@ -134,8 +134,8 @@ class Check(Result):
     >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
     >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
     >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
-    >>> found = jbf.check(model, [run], campaigns=1)
-    >>> [answer.verdict for answer in found.answers]
+    >>> study = jbf.check(model, [run], campaigns=1)
+    >>> [answer.verdict for answer in study.answers]
     ['adequate']
     """
 
@@ -145,21 +145,21 @@ class Check(Result):
     @property
     def rates(self) -> tuple[Rate, ...]:
         """Rates of each outcome, those without hidden effects first."""
-        found: list[Rate] = []
+        rates: list[Rate] = []
         for hidden in sorted({a.hidden for a in self.answers}, key=len):
-            own = [a for a in self.answers if a.hidden == hidden]
-            said = f"{' + '.join(hidden) or 'nothing'} hidden"
-            told = {
-                "a false name": [a.false for a in own],
-                "unexplained": [a.verdict == "unexplained" for a in own],
-            }
+            answers = [a for a in self.answers if a.hidden == hidden]
             if hidden:
-                named = [set(hidden) <= set(a.effects) for a in own]
-                told = {"named": named, "named, and nothing else": [a.right for a in own]} | told
+                outcomes = {
+                    "named": [set(hidden) <= set(a.effects) for a in answers],
+                    "named, and nothing else": [a.right for a in answers],
+                }
             else:
-                told = {"adequate": [a.verdict == "adequate" for a in own]} | told
-            found += [Rate.of(f"{said}: {what}", those) for what, those in told.items()]
-        return tuple(found)
+                outcomes = {"adequate": [a.verdict == "adequate" for a in answers]}
+            outcomes["a false name"] = [a.false for a in answers]
+            outcomes["unexplained"] = [a.verdict == "unexplained" for a in answers]
+            condition = f"{' + '.join(hidden) or 'nothing'} hidden"
+            rates += [Rate.of(f"{condition}: {what}", those) for what, those in outcomes.items()]
+        return tuple(rates)
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
@@ -239,8 +239,8 @@ def check(
     >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
     >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
     >>> model = jbf.Model(jbf.Rig(), "coulomb", parameters={"F_c": 5.0, "F_v": 20.0})
-    >>> found = jbf.check(model, [run], campaigns=1)
-    >>> found.rates[0].campaigns
+    >>> study = jbf.check(model, [run], campaigns=1)
+    >>> study.rates[0].campaigns
     1
     """
     of_kind(model, Model, "model", "give a jbf.Model")
@@ -249,19 +249,19 @@ def check(
         raise InputError(problem=f"{campaigns} campaigns tell no rate", mend="ask for one or more")
     every = tuple(list_of_runs(runs))
     answers = list(done)
-    known = {(a.hidden, a.draw) for a in answers}
+    finished = {(a.hidden, a.draw) for a in answers}
     hidden = dict.fromkeys([(), tuple(model.effects)])
     tasks = [
         _Task(model, every, effects, draw, policy)
         for draw in range(campaigns)
         for effects in hidden
-        if (effects, draw) not in known
+        if (effects, draw) not in finished
     ]
     total = len(tasks) + len(answers)
-    for found in _answered(tasks, executor):
-        answers.append(found)
+    for answer in _answered(tasks, executor):
+        answers.append(answer)
         if keep is not None:
-            keep(found)
+            keep(answer)
         if progress is not None:
             progress("diagnosing campaigns like this one", len(answers), total)
     answers.sort(key=lambda a: (len(a.hidden), a.draw))
@@ -290,10 +290,10 @@ def _answer(task: _Task) -> Answer:
     """Simulate and diagnose one campaign."""
     try:
         again = recorded_by(task.model, task.runs, task.hidden, task.draw)
-        found = diagnose(
+        diagnosis = diagnose(
             task.model.rig, again, law=task.model.law, clock=task.model.clock, policy=task.policy
         )
     except JbfError:
         return Answer(task.hidden, task.draw, "failed", (), {})
-    named = (*found.machine, *found.effects)
-    return Answer(task.hidden, task.draw, found.verdict, named, found.alternatives)
+    named = (*diagnosis.machine, *diagnosis.effects)
+    return Answer(task.hidden, task.draw, diagnosis.verdict, named, diagnosis.alternatives)

@@ -1,11 +1,19 @@
-"""Parts of a diagnosis: the candidates tried, the gain of each step, and the residual structure."""
+"""Ledger of a diagnosis: the steps, the candidates tried at each, and the residual structure."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 Outcome = Literal["added", "ties", "rejected", "negligible", "no gain", "confounder", "replaced"]
+Names = tuple[str, ...]
+
+CONFOUNDER = (
+    "not named: the runs disagree on it, more structure remains than it explains, or its parameters "
+    "are not identifiable"
+)
+REPLACED = "added first, but not needed with the effects added later"
 
 
 @dataclass(frozen=True)
@@ -114,3 +122,16 @@ class Remainder:
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
         return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}
+
+
+def with_final_outcomes(steps: Sequence[Step], present: Names, doubted: Names) -> list[Step]:
+    """Update the outcome of each addition in all steps of the ledger."""
+
+    def final_outcome(trial: Trial) -> Trial:
+        if trial.outcome == "added" and trial.effect in doubted:
+            return replace(trial, outcome="confounder", reason=CONFOUNDER)
+        if trial.outcome == "added" and trial.effect not in present:
+            return replace(trial, outcome="replaced", reason=REPLACED)
+        return trial
+
+    return [replace(step, trials=tuple(final_outcome(t) for t in step.trials)) for step in steps]

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from jbf.comparison.comparison import Comparison, compare_prepared
 from jbf.diagnosis.candidates import Candidates, Progress
+from jbf.diagnosis.drive import OFFSET, machine_of, with_errors_of_motion
 from jbf.diagnosis.experiment_design.excitations import Limits
 from jbf.diagnosis.experiment_design.next_run import (
     Experiment,
@@ -15,26 +16,21 @@ from jbf.diagnosis.experiment_design.next_run import (
     propose_detection_run,
     undetectable_effects,
 )
-from jbf.diagnosis.limitations import limitations
-from jbf.diagnosis.machine import OFFSET, machine_of
-from jbf.diagnosis.motion_uncertainty import (
-    comparable,
-    with_errors_of_motion,
-)
+from jbf.diagnosis.fit_state import Reached
+from jbf.diagnosis.ledger import with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.power import power
-from jbf.diagnosis.reached import Reached
 from jbf.diagnosis.result import Diagnosis
 from jbf.diagnosis.rounds import remainder_of, select, step
 from jbf.diagnosis.selection import Names, start_model, weights
-from jbf.diagnosis.standing import (
+from jbf.diagnosis.verdict import (
     best_predicting,
     confounders,
     effects_without_estimate,
-    with_final_outcomes,
+    limitations,
+    verdict,
 )
-from jbf.diagnosis.verdict import verdict
-from jbf.diagnosis.which_law import LawTried, simpler_law, which_law
+from jbf.diagnosis.which_law import LawTried, comparable, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
@@ -242,7 +238,7 @@ def _with_law(
     campaign = settled_campaign(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     candidates.reached = reached
-    certain = with_errors_of_motion(candidates)
+    certain = with_errors_of_motion(candidates, start_model(candidates))
     if certain is not None:
         candidates = candidates.of(certain)
     selected = select(candidates)

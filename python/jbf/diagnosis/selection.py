@@ -16,6 +16,7 @@ import numpy as np
 from scipy import special
 
 from jbf.diagnosis.candidates import Candidates, many_peaks
+from jbf.diagnosis.drive import OFFSET, TERMS, machine_of
 from jbf.diagnosis.evidence import (
     evidence,
     evidence_on_common_samples,
@@ -24,7 +25,6 @@ from jbf.diagnosis.evidence import (
     swap_cost,
 )
 from jbf.diagnosis.ledger import Outcome, Trial
-from jbf.diagnosis.machine import OFFSET, TERMS, machine_of
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.likelihood import effective_share, likelihood_gain, next_step_gain
 from jbf.estimation.solution import Solution

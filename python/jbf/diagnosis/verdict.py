@@ -1,12 +1,37 @@
-"""Rules of the verdict as pure functions of numbers, which can be tested as a table."""
+"""Verdict of a diagnosis: its rules, the effects that are named, and the limits of its conclusions.
+
+`verdict` and `name_is_supported` are pure functions of numbers. An effect is judged by its own
+evidence. Bursts, tones or a nonlinear force sensor do not affect its name, unless its evidence is
+weak and they are larger. The parameters of a confounder differ between runs, because the mechanism
+that it replaces differs. A confounder is not named, but it stays in the model where it improves the
+predictions.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
-from jbf.diagnosis.policy import Policy
+import numpy as np
 
+from jbf.diagnosis.candidates import Candidates
+from jbf.diagnosis.drive import machine_of
+from jbf.diagnosis.evidence import price_of
+from jbf.diagnosis.ledger import Remainder
+from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.residual_structure.constancy import disagreement
+from jbf.estimation.campaign import Campaign
+from jbf.estimation.likelihood import effective_share, likelihood_gain
+from jbf.estimation.scales import scales
+from jbf.models.catalogue import Parameter, find_effect
+from jbf.models.parameter_value import ParameterValue
+
+Names = tuple[str, ...]
 Verdict = Literal["adequate", "missing", "ambiguous", "unexplained"]
+
+LEVEL, STIFFNESS = "F_c", "sigma_0"
+"""Parameters of a bristle whose ratio is the presliding displacement."""
 
 
 def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
@@ -44,3 +69,110 @@ def name_is_supported(gain: float, disagreement: float | None, policy: Policy) -
         the runs agree.
     """
     return disagreement is None or gain > policy.selection.confounder_ratio * disagreement
+
+
+def confounders(candidates: Candidates, present: Names, remains: Sequence[Remainder] = ()) -> Names:
+    """Find the effects that are not named because they may imitate something else.
+
+    The first kind are effects on whose parameters the runs disagree. The second kind are effects of
+    weak evidence that explain less than the largest residual structure; they may imitate a part of
+    it.
+
+    Parameters
+    ----------
+    remains
+        Residual structure of the model with the present effects.
+    """
+    full, problem = candidates.converge(present), candidates.fitted(present).problem
+    share, policy = effective_share(full), candidates.policy
+    largest = max((r.share for r in remains), default=0.0)
+    doubted = []
+    machine = machine_of(candidates, present)
+    for name in present:
+        if name in machine:
+            continue
+        rest = candidates.converge(tuple(e for e in present if e != name))
+        gain = likelihood_gain(full, rest) * share
+        test = disagreement(problem, full, name, policy)
+        beyond = test.gain - test.degrees if test.beyond_chance(policy) else None
+        explained = 1.0 - (full.rms / rest.rms) ** 2
+        weak = gain - price_of(candidates, full.free - rest.free) <= policy.selection.weak_evidence
+        if (weak and explained < largest) or not name_is_supported(gain, beyond, policy):
+            doubted.append(name)
+    return tuple(doubted)
+
+
+def effects_without_estimate(
+    parameters: Mapping[str, ParameterValue], effects: Names, policy: Policy
+) -> Names:
+    """Find the effects none of whose parameters is estimated: held, or not different from its null.
+
+    A parameter whose null is infinite, or that has none, must be larger than its standard error by
+    the same factor.
+    """
+
+    def estimated(name: str, page: Parameter) -> bool:
+        value = parameters.get(name)
+        if value is None or value.held or value.stderr is None:
+            return False
+        null = 0.0 if page.null is None or not math.isfinite(page.null) else page.null
+        return abs(value.value - null) > policy.selection.min_estimate_sigma * value.stderr
+
+    pages = {name: find_effect(name).parameters for name in effects}
+    return tuple(
+        name
+        for name, parts in pages.items()
+        if not any(estimated(f"{name}.{page.name}", page) for page in parts)
+    )
+
+
+def best_predicting(candidates: Candidates, present: Names, named: Names) -> Names:
+    """The model with or without the confounders, whichever has the smaller held-out error."""
+    if named == present:
+        return present
+    error, error_named = (candidates.held_out_rms(names) for names in (present, named))
+    return present if error < error_named else named
+
+
+def limitations(
+    campaign: Campaign, parameters: Mapping[str, float], policy: Policy
+) -> tuple[str, ...]:
+    """Describe each conclusion that the motions do not support, whatever model is fitted.
+
+    Parameters
+    ----------
+    parameters
+        Fitted values by name; those of a bristle give the presliding displacement.
+    """
+    quantities = campaign.rig.quantities
+    speed = campaign.samples.flat([p.motion.velocity for p in campaign.prepared])
+    if not len(speed):
+        return ()
+    sentences = []
+    forward = float(np.mean(speed > 0.0))
+    if min(forward, 1.0 - forward) < policy.limitations.min_reverse_share:
+        sentences.append(
+            "the motion has one direction: Coulomb friction and a constant load or offset have "
+            "the same effect"
+        )
+    slow, fast = (float(q) for q in np.quantile(np.abs(speed), [0.05, 0.95]))
+    span = f"{slow:.2g} to {fast:.2g} {quantities.speed}"
+    if fast < policy.limitations.min_speed_ratio * slow:
+        sentences.append(
+            f"the speed hardly changes ({span}): Coulomb and viscous friction have the same effect"
+        )
+    elif fast < policy.limitations.wide_speed_ratio * slow:
+        sentences.append(
+            f"the speeds cover less than a decade ({span}): friction at other speeds is an "
+            "extrapolation"
+        )
+    level, stiffness = (parameters.get(name) for name in (LEVEL, STIFFNESS))
+    if level is not None and stiffness:
+        bristle, stroke = level / stiffness, scales(campaign).stroke_m
+        unit = quantities.length
+        if stroke < policy.limitations.min_sliding * bristle:
+            sentences.append(
+                f"the strokes ({stroke:.2g} {unit}) are hardly longer than the presliding "
+                f"displacement ({bristle:.2g} {unit}): the Coulomb level is an extrapolation"
+            )
+    return tuple(sentences)

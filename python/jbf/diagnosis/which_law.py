@@ -16,8 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates, Progress
-from jbf.diagnosis.machine import TERMS
+from jbf.diagnosis.drive import TERMS, with_errors_of_motion
 from jbf.diagnosis.policy import Policy
+from jbf.diagnosis.selection import start_model
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.film_rate import check_film
@@ -33,6 +34,8 @@ from jbf.records.rig import Rig
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
+SIMPLEST = "coulomb"
+"""The law with the fewest parameters."""
 ON_REQUEST = frozenset({"rate_and_state"})
 """Laws that are used only if they are named.
 
@@ -118,6 +121,18 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
             continue
         found.append(name)
     return found, refused
+
+
+def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
+    """Return the campaign with motion errors estimated by the simplest law, for comparing laws."""
+    if campaign.rig.drive is None:
+        return campaign
+    separate = replace(campaign, work=campaign.work.part(1.0))
+    candidates = Candidates(separate, SIMPLEST, clock, policy)
+    try:
+        return with_errors_of_motion(candidates, start_model(candidates)) or campaign
+    except Unfinished:
+        return campaign
 
 
 def which_law(

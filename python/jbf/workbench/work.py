@@ -18,7 +18,7 @@ from typing import Any, Literal
 from jbf.comparison.compare import compare
 from jbf.comparison.comparison import Comparison
 from jbf.diagnosis import diagnose
-from jbf.diagnosis.one_round import one_round
+from jbf.diagnosis.manual_round import manual_round
 from jbf.errors import JbfError, Stopped
 from jbf.estimation.fit import Fit
 from jbf.models.model import Model
@@ -149,7 +149,7 @@ def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
                     }
                 )
 
-        found = one_round(
+        found = manual_round(
             order.rig,
             order.runs,
             order.effects,

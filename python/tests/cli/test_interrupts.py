@@ -13,7 +13,7 @@ from by_hand import coulomb, four_runs
 from input_checks import Capture
 from jbf import Rig
 from jbf.cli import main
-from jbf.diagnosis.one_round import one_round
+from jbf.diagnosis.manual_round import manual_round
 from jbf.errors import Stopped
 
 RUNS = four_runs(lambda t, v, a: coulomb(t, v, a) + 2.0 * a, noise_rms=0.1)
@@ -89,7 +89,7 @@ def test_diagnosis_interrupted_while_trying_effects_returns_the_fitted_base_law(
 @pytest.mark.extended
 def test_interrupted_round_of_candidates_returns_the_model_with_its_effects() -> None:
     with pytest.raises(Stopped) as stopped:
-        one_round(Rig(), RUNS, ["inertia"], law="coulomb", progress=stop_at_candidates)
+        manual_round(Rig(), RUNS, ["inertia"], law="coulomb", progress=stop_at_candidates)
     assert stopped.value.fit.model.effects == ("inertia",)
 
 

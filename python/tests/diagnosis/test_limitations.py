@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from jbf import Policy, Rig, Run
-from jbf.diagnosis.limitations import limitations
+from jbf.diagnosis.verdict import limitations
 from jbf.estimation.campaign import Campaign
 
 TIME_S = 0.01 * np.arange(1200)

@@ -7,15 +7,15 @@ import pytest
 from by_hand import Array
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.confirmation import Confirmation, held_out_runs_confirm
-from jbf.diagnosis.ledger import Remainder, Step, Trial
+from jbf.diagnosis.ledger import Remainder, Step, Trial, with_final_outcomes
 from jbf.diagnosis.policy import DEFAULT
-from jbf.diagnosis.standing import (
+from jbf.diagnosis.verdict import (
     best_predicting,
     confounders,
     effects_without_estimate,
-    with_final_outcomes,
+    name_is_supported,
+    verdict,
 )
-from jbf.diagnosis.verdict import name_is_supported, verdict
 from jbf.models.parameter_value import ParameterValue
 from linear_campaigns import coulomb_candidates, linear_diagnosis, reversing_runs
 

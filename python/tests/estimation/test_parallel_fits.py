@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from by_hand import coulomb, four_runs
 from jbf import Rig
-from jbf.diagnosis.side_by_side import FEW, parallel_fits, side_by_side
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.parallel_fits import MOST_AT_ONCE, fits_at_once, in_parallel
 
 
 @pytest.mark.parametrize("at_once", [1, 2, 4])
@@ -19,12 +19,12 @@ def test_parallel_results_are_in_the_order_of_the_arguments(at_once: int) -> Non
         time.sleep(0.002 * (5 - k))
         return k * k
 
-    assert list(side_by_side(work, range(5), at_once)) == [0, 1, 4, 9, 16]
+    assert list(in_parallel(work, range(5), at_once)) == [0, 1, 4, 9, 16]
 
 
 def test_two_tasks_run_at_the_same_time_if_two_are_allowed() -> None:
     both = threading.Barrier(2, timeout=20.0)
-    assert len(list(side_by_side(lambda _: both.wait(), range(2), 2))) == 2
+    assert len(list(in_parallel(lambda _: both.wait(), range(2), 2))) == 2
 
 
 @pytest.mark.parametrize("at_once", [1, 3])
@@ -39,7 +39,7 @@ def test_first_exception_cancels_the_remaining_tasks(at_once: int) -> None:
         return k
 
     with pytest.raises(KeyboardInterrupt):
-        list(side_by_side(work, range(200), at_once))
+        list(in_parallel(work, range(200), at_once))
     assert len(started) < 200
 
 
@@ -60,11 +60,11 @@ def test_number_of_parallel_fits_is_that_of_threads_and_one_for_python_effects(
 ) -> None:
     """Effects in Python may have a state and are therefore fitted one at a time."""
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1))
-    for threads, expected in (("64", FEW), ("2", 2), ("1", 1)):
+    for threads, expected in (("64", MOST_AT_ONCE), ("2", 2), ("1", 1)):
         monkeypatch.setenv("RAYON_NUM_THREADS", threads)
-        assert parallel_fits(campaign, "coulomb", ["sensor_offset"]) == expected
+        assert fits_at_once(campaign, "coulomb", ["sensor_offset"]) == expected
     monkeypatch.setenv("RAYON_NUM_THREADS", "4")
-    assert parallel_fits(campaign, "coulomb", ["own_drag"]) == 1
+    assert fits_at_once(campaign, "coulomb", ["own_drag"]) == 1
 
 
 def test_parallel_fits_have_the_same_values_as_sequential_fits() -> None:
@@ -74,5 +74,5 @@ def test_parallel_fits_have_the_same_values_as_sequential_fits() -> None:
     def fitted(effect: str) -> dict[str, float]:
         return jbf.fit(Rig(), runs, [effect], law="coulomb").params
 
-    one_by_one, parallel = (list(side_by_side(fitted, effects, n)) for n in (1, 4))
+    one_by_one, parallel = (list(in_parallel(fitted, effects, n)) for n in (1, 4))
     assert one_by_one == parallel

@@ -56,13 +56,13 @@ NUMERICAL = {
     "limits computing time or memory; an exceeded budget is reported": """
         diagnosis.candidates: RANKING_EVALUATIONS
         diagnosis.power.detection_limits: MOST_STRENGTHS MOST_ITERATIONS
-        diagnosis.side_by_side: FEW
         diagnosis.terms.proposal: EVALUATIONS
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
         diagnosis.terms.shifts: EVALUATIONS STEPS
         estimation.approach: TRIAL_EVALUATIONS FOLLOWED MANY LIKELY LOOKED
         estimation.left_out: EVALUATIONS
         estimation.minimum: MAX_EVALUATIONS FOLLOWED_IN_A_FIT NESTED_EVALUATIONS
+        estimation.parallel_fits: MOST_AT_ONCE
         estimation.peaks: CLIMBED
         estimation.problem: SLOPES_COST
         estimation.refine: ROUNDS EVALUATIONS

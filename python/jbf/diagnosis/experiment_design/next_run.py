@@ -21,7 +21,7 @@ from jbf.diagnosis.experiment_design.excitations import (
     missing_columns,
     runs_to_play,
 )
-from jbf.diagnosis.fitted import Fitted
+from jbf.diagnosis.fit_state import Fitted
 from jbf.diagnosis.power.detection_limits import Power
 from jbf.diagnosis.power.distinction import detection_probability
 from jbf.diagnosis.power.strength import at_usual_strength

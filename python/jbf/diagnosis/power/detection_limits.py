@@ -22,7 +22,7 @@ from jbf.diagnosis.power.distinction import (
     distinguishable_size,
 )
 from jbf.diagnosis.power.strength import PresentRuns, Strength, strength_of
-from jbf.diagnosis.side_by_side import parallel_fits, side_by_side
+from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_added
 
@@ -125,10 +125,10 @@ def power(
         if name not in present and can_be_added(name, present)
         if (model := strength_of(candidates, present, name)) is not None
     }
-    limits = side_by_side(
+    limits = in_parallel(
         lambda model: _Detectable.of(candidates, runs, model),
         list(models.values()),
-        parallel_fits(candidates.campaign, candidates.law, candidates.names),
+        fits_at_once(candidates.campaign, candidates.law, candidates.names),
     )
     detectable = dict(zip(models, limits, strict=True))
     return tuple(

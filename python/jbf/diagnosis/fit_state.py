@@ -1,19 +1,24 @@
-"""A candidate model of a diagnosis and the state of its fit."""
+"""State of a diagnosis: the fit of each candidate model, and the model of the last round."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.level import Directions
 from jbf.estimation.approach import Approach
+from jbf.estimation.fit import Fit, finish
 from jbf.estimation.left_out import HeldOutPart
 from jbf.estimation.problem import Problem, bounded
 from jbf.estimation.solution import Solution
 from jbf.models.driven import Driven
+
+if TYPE_CHECKING:
+    from jbf.diagnosis.candidates import Candidates
 
 Array = npt.NDArray[np.float64]
 State = Literal["posed", "looked", "ranked", "converged"]
@@ -80,3 +85,26 @@ class Fitted:
         problem, values = self.problem, self.current_solution().values
         ((friction, slopes),) = problem.chain.jacobian(values, [motion], problem.open)
         return friction, bounded(slopes, np.where(problem.log, values, 1.0)[problem.open])
+
+
+@dataclass
+class Reached:
+    """The model from which the last round began, the result of an interrupted diagnosis.
+
+    Attributes
+    ----------
+    candidates, present
+        The candidates that include its fit, and its effects; None before the law alone was fitted.
+    """
+
+    candidates: Candidates | None = None
+    present: tuple[str, ...] = ()
+
+    def fit(self) -> Fit | None:
+        """That model with its standard errors; None where no model has been fitted yet."""
+        if self.candidates is None:
+            return None
+        # The remaining work is small and final: lift the limit on computing steps.
+        self.candidates.campaign.work.renew(math.inf)
+        problem = self.candidates.fitted(self.present).problem
+        return finish(problem, self.candidates.converge(self.present))

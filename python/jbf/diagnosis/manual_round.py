@@ -1,4 +1,4 @@
-"""One manual round: a model with named effects, and the gain of each other effect.
+"""Manual round: a model with effects that the user chose, and the gain of each other effect.
 
 `diagnose` decides automatically; this function leaves the choice to the user.
 """
@@ -26,8 +26,8 @@ from jbf.threads import one_blas_thread
 
 
 @dataclass(frozen=True)
-class OneRound:
-    """Result of one manual round.
+class ManualRound:
+    """Result of a manual round.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class OneRound:
 
 
 @one_blas_thread
-def one_round(
+def manual_round(
     rig: Rig,
     runs: Sequence[Run],
     effects: Sequence[str] = (),
@@ -58,7 +58,7 @@ def one_round(
     policy: Policy = DEFAULT,
     progress: Progress | None = None,
     fitted_as: Callable[[Fit, Comparison], None] | None = None,
-) -> OneRound:
+) -> ManualRound:
     """Fit a law with named effects, and try every other effect in addition to them.
 
     Parameters
@@ -107,4 +107,4 @@ def one_round(
     ledger = replace(
         step(candidates, chosen, trials), rms=comparison.rms, noise_rms=comparison.noise_rms
     )
-    return OneRound(fitted, ledger, comparison, strengths)
+    return ManualRound(fitted, ledger, comparison, strengths)

@@ -4,16 +4,16 @@ from typing import Any
 
 import pytest
 from jbf import Fit, InputError, Rig, diagnose, fit
-from jbf.diagnosis.one_round import OneRound, one_round
-from jbf.diagnosis.reached import Reached
+from jbf.diagnosis.fit_state import Reached
+from jbf.diagnosis.manual_round import ManualRound, manual_round
 from jbf.errors import Stopped
 from linear_campaigns import coulomb_candidates, linear_diagnosis, linear_runs
 from shared import shared
 
 
 @shared
-def _round(*effects: str) -> OneRound:
-    return one_round(Rig(), linear_runs("mass"), effects, law="coulomb")
+def _round(*effects: str) -> ManualRound:
+    return manual_round(Rig(), linear_runs("mass"), effects, law="coulomb")
 
 
 def test_round_without_effects_has_the_trials_of_the_first_diagnosis_step() -> None:
@@ -38,7 +38,7 @@ def test_round_with_an_effect_has_the_fit_and_does_not_try_the_effect_again() ->
 
 def test_unknown_effect_of_a_round_is_rejected_by_name() -> None:
     with pytest.raises(InputError, match="inertia_leek"):
-        one_round(Rig(), linear_runs("mass"), ["inertia_leek"], law="coulomb")
+        manual_round(Rig(), linear_runs("mass"), ["inertia_leek"], law="coulomb")
 
 
 def test_fit_of_an_interrupted_round_is_reported_before_its_trials() -> None:
@@ -50,7 +50,7 @@ def test_fit_of_an_interrupted_round_is_reported_before_its_trials() -> None:
 
     options: Any = {"progress": interrupt, "fitted_as": lambda fitted, _: fits.append(fitted)}
     with pytest.raises(Stopped) as stopped:
-        one_round(Rig(), linear_runs("mass"), ["inertia"], law="coulomb", **options)
+        manual_round(Rig(), linear_runs("mass"), ["inertia"], law="coulomb", **options)
     assert stopped.value.fit is fits[0]
     assert stopped.value.fit.model.effects == ("inertia",)
 

@@ -20,41 +20,41 @@ from jbf.models.own_laws import OwnLaw
 T = TypeVar("T")
 R = TypeVar("R")
 
-FEW = 4
+MOST_AT_ONCE = 4
 """Largest number of parallel fits; with more, the interpreter lock is the bottleneck.
 
 It limits the effort only.
 """
 
 
-def parallel_fits(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
+def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
     """Number of parallel fits for a campaign.
 
     One fit at a time is used where the matrices of long records fill the memory. User-defined
     functions are not run in parallel either, since they may have an internal state.
     """
-    own = isinstance(find_law(law), OwnLaw)
-    own = own or any(isinstance(find_effect(name), OwnEffect) for name in effects)
-    if own or campaign.samples.count > MOST_SEARCHED:
+    user_defined = isinstance(find_law(law), OwnLaw)
+    user_defined = user_defined or any(isinstance(find_effect(n), OwnEffect) for n in effects)
+    if user_defined or campaign.samples.count > MOST_SEARCHED:
         return 1
-    threads = os.environ.get("RAYON_NUM_THREADS", "")
-    asked = int(threads) if threads.isdecimal() else 0
-    return min(asked or os.cpu_count() or 1, FEW)
+    variable = os.environ.get("RAYON_NUM_THREADS", "")
+    threads = int(variable) if variable.isdecimal() else 0
+    return min(threads or os.cpu_count() or 1, MOST_AT_ONCE)
 
 
-def side_by_side(work: Callable[[T], R], things: Sequence[T], at_once: int) -> Iterator[R]:
-    """Apply `work` to each of `things` in parallel and yield the results in order.
+def in_parallel(work: Callable[[T], R], items: Sequence[T], at_once: int) -> Iterator[R]:
+    """Apply `work` to each of `items` in parallel and yield the results in order.
 
     The first exception, or a caller that stops iterating, cancels the remaining tasks.
     """
-    if at_once <= 1 or len(things) < 2:
-        yield from map(work, things)
+    if at_once <= 1 or len(items) < 2:
+        yield from map(work, items)
         return
     with ThreadPoolExecutor(at_once) as threads:
-        answers = [threads.submit(work, thing) for thing in things]
+        futures = [threads.submit(work, item) for item in items]
         try:
-            for answer in answers:
-                yield answer.result()
+            for future in futures:
+                yield future.result()
         finally:
-            for answer in answers:
-                answer.cancel()
+            for future in futures:
+                future.cancel()

@@ -10,8 +10,8 @@ Outcome = Literal["added", "ties", "rejected", "negligible", "no gain", "confoun
 Names = tuple[str, ...]
 
 CONFOUNDER = (
-    "not named: the runs disagree on it, more structure remains than it explains, or its parameters "
-    "are not identifiable"
+    "not named: the runs disagree on it, more structure remains than it explains, or none of its "
+    "parameters is identifiable"
 )
 REPLACED = "added first, but not needed with the effects added later"
 

@@ -1,7 +1,7 @@
 """Draw the architecture diagrams: `.venv/bin/python docs/architecture.py`.
 
-`docs/images/rooms.png` shows the packages of `python/jbf` from top to bottom, with the number of
-imports between them; `docs/images/way_of_data.png` shows the data flow of a diagnosis.
+`docs/images/packages.png` shows the packages of `python/jbf` from top to bottom, with the number of
+imports between them; `docs/images/data_flow.png` shows the data flow of a diagnosis.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE, IMAGES = ROOT / "python" / "jbf", ROOT / "docs" / "images"
-INK, NOTE, ROOM, CORE, ARROW = "#222222", "#555555", "#e8f0f7", "#f6e7dc", "#7a8fa3"
+INK, NOTE, BOX, CORE, ARROW = "#222222", "#555555", "#e8f0f7", "#f6e7dc", "#7a8fa3"
 
-FLOORS: list[list[tuple[str, str]]] = [
+LAYERS: list[list[tuple[str, str]]] = [
     [("cli", "arguments in, files out")],
     [("workbench", "files and clicks in;\na page in the browser out")],
     [("reporting", "results in; words, tables,\npictures, pages, JSON out")],
@@ -36,7 +36,7 @@ FLOORS: list[list[tuple[str, str]]] = [
     [
         ("", ""),  # placeholder: `importing` does not belong below the packages above
         ("models", "law + effects + parameters in;\nprediction out"),
-        ("importing", "strangers' files, a map in;\nruns, rig, ledger out"),
+        ("importing", "foreign files, a map in;\nruns, rig, ledger out"),
     ],
     [("records", "files in; runs, rig,\nimposed motion out")],
     [("_core", "crates/jbf-py, jbf-predict, jbf-batch, jbf-core: the physics, once, in Rust")],
@@ -45,10 +45,10 @@ FLOORS: list[list[tuple[str, str]]] = [
 
 def imports() -> Counter[tuple[str, str]]:
     """Count the imports from each package to each other package."""
-    rooms = {name for floor in FLOORS for name, _ in floor if name}
-    found: Counter[tuple[str, str]] = Counter()
+    packages = {name for layer in LAYERS for name, _ in layer if name}
+    counts: Counter[tuple[str, str]] = Counter()
     for path in PACKAGE.rglob("*.py"):
-        room = path.relative_to(PACKAGE).parts[0]
+        package = path.relative_to(PACKAGE).parts[0]
         for node in ast.walk(ast.parse(path.read_text())):
             if not isinstance(node, ast.ImportFrom) or not node.module:
                 continue
@@ -56,15 +56,15 @@ def imports() -> Counter[tuple[str, str]]:
             if node.module == "jbf":
                 names = [a.name for a in node.names]
             for name in names:
-                if room in rooms and name in rooms and name != room:
-                    found[room, name] += 1
-    return found
+                if package in packages and name in packages and name != package:
+                    counts[package, name] += 1
+    return counts
 
 
 def box(ax: Axes, x: float, y: float, size: tuple[float, float], title: str, words: str) -> None:
     """Draw a package: its name, its input and its output."""
     width, height = size
-    colour = CORE if title == "_core" else ROOM
+    colour = CORE if title == "_core" else BOX
     corner = (x - width / 2, y - height / 2)
     style = "round,pad=0.02,rounding_size=0.06"
     ax.add_patch(FancyBboxPatch(corner, width, height, boxstyle=style, fc=colour, ec=INK, lw=1.0))
@@ -93,28 +93,28 @@ def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], bend: float 
     )
 
 
-def rooms() -> Figure:
+def packages() -> Figure:
     """Draw the packages from top to bottom; each imports only those below it."""
     counts = imports()
-    figure, ax = canvas(9.4, 1.12 * len(FLOORS) + 0.24)
+    figure, ax = canvas(9.4, 1.12 * len(LAYERS) + 0.24)
     places: dict[str, tuple[float, float]] = {}
-    order = [name for floor in FLOORS for name, _ in floor]
-    for k, floor in enumerate(FLOORS):
-        for i, (name, words) in enumerate(floor):
+    order = [name for layer in LAYERS for name, _ in layer]
+    for k, layer in enumerate(LAYERS):
+        for i, (name, words) in enumerate(layer):
             if not name:
                 continue
-            x, y = 4.3 + 2.8 * (i - (len(floor) - 1) / 2), 1.12 * (len(FLOORS) - k) - 0.36
+            x, y = 4.3 + 2.8 * (i - (len(layer) - 1) / 2), 1.12 * (len(LAYERS) - k) - 0.36
             places[name] = (x, y)
             box(ax, x, y, (5.2, 0.62) if name == "_core" else (2.5, 0.74), name, words)
             below = [f"{n} {counts[name, n]}" for n in order if counts[name, n]]
-            if below and len(floor) == 1:
-                said = textwrap.fill(", ".join(below), 46)
+            if below and len(layer) == 1:
+                text = textwrap.fill(", ".join(below), 46)
                 note = ax.text(
-                    x + 1.4, y, f"imports\n{said}", va="center", fontsize=7.5, color=NOTE
+                    x + 1.4, y, f"imports\n{text}", va="center", fontsize=7.5, color=NOTE
                 )
                 note.set_bbox({"fc": "white", "ec": "none", "pad": 1.0})  # over an arrow
                 note.set_zorder(3)
-    for a, b in pairwise(FLOORS):
+    for a, b in pairwise(LAYERS):
         for name, _ in a:
             for other, _ in b:
                 if name and other and counts[name, other]:
@@ -134,9 +134,9 @@ STEPS: list[tuple[str, str]] = [
         "Problem, minimum",
         "law + effects: residuals and\nderivatives from the core;\nleast squares of innovations",
     ),
-    ("Comparison", "noise floor;\nwhere the bare law fails"),
+    ("Comparison", "noise layer;\nwhere the base law fails"),
     ("candidates", "score test -> rank ->\nconverge -> search peaks"),
-    ("evidence, left_out", "likelihood gain less price;\nruns left out of the fit"),
+    ("evidence, left_out", "likelihood gain minus threshold;\nruns left out of the fit"),
     ("selection", "add the leader; take out,\nexchange; ties"),
     ("residual_structure", "patterns, tones, replicates,\nbursts, constancy"),
     ("verdict, policy", "adequate, missing,\nambiguous, unexplained"),
@@ -144,7 +144,7 @@ STEPS: list[tuple[str, str]] = [
 ]
 
 
-def way_of_data() -> Figure:
+def data_flow() -> Figure:
     """Draw the steps of a diagnosis in order, along the top and back along the bottom."""
     figure, ax = canvas(11.0, 3.9)
     places = []
@@ -169,7 +169,7 @@ def way_of_data() -> Figure:
 
 def main() -> int:
     """Draw both diagrams."""
-    for name, figure in (("rooms", rooms()), ("way_of_data", way_of_data())):
+    for name, figure in (("packages", packages()), ("data_flow", data_flow())):
         figure.savefig(IMAGES / f"{name}.png", dpi=110)
         print(f"docs/images/{name}.png")
     return 0

@@ -1,8 +1,8 @@
-"""Do the tests bite? Mutants drawn by lot in a copy of the tree, one at a time.
+"""Share of random mutants that the tests detect, one mutant at a time in a copy of the tree.
 
-    python benches/mutation --room NAME --sample N --seed S --out F.jsonl [--reach REACH.json]
+    python benches/mutation --package NAME --sample N --seed S --out F.jsonl [--reach REACH.json]
 
-`--room` names a package of `python/jbf`. Sites are drawn at random, with one of cosmic-ray's
+`--package` names a package of `python/jbf`. Sites are drawn at random, with one of cosmic-ray's
 operators at each. The tests that reach the line (`reach.py`; without it, those that import the
 module) run, the quickest first, until one fails. Each mutant is a line of the record; a mutant in
 the record is not tried again (`--again` repeats its survivors). In contrast to `faults.py`, the
@@ -29,14 +29,16 @@ from tree_copy import TreeCopy  # noqa: E402
 from trial import Bench, Trial  # noqa: E402
 
 ROOT = HERE.parents[1]
-ROOMS = ("records", "estimation", "comparison", "diagnosis", "reporting", "control")
+PACKAGES = ("records", "estimation", "comparison", "diagnosis", "reporting", "control")
 
 
 def arguments(given: list[str] | None) -> argparse.Namespace:
     """Parse the command line."""
     parser = argparse.ArgumentParser(prog="mutation", description=__doc__.split("\n", 1)[0])
-    parser.add_argument("--room", action="append", default=[], help=f"of {', '.join(ROOMS)} (all)")
-    parser.add_argument("--sample", type=int, default=12, help="mutants of each room")
+    parser.add_argument(
+        "--package", action="append", default=[], help=f"one of {', '.join(PACKAGES)} (all)"
+    )
+    parser.add_argument("--sample", type=int, default=12, help="mutants of each package")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, help="the record, a line of JSON each")
     parser.add_argument(
@@ -47,26 +49,28 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--tests", nargs="+", default=[], help="these, whatever reaches the line")
     parser.add_argument("--least", type=float, default=0.0, help="fail below this share")
     parser.add_argument("--root", type=Path, default=ROOT, help=argparse.SUPPRESS)
-    parser.add_argument("--package", default="python/jbf", help=argparse.SUPPRESS)
+    parser.add_argument("--sources", default="python/jbf", help=argparse.SUPPRESS)
     return parser.parse_args(given)
 
 
-def tried_in(asked: argparse.Namespace, room: str, bench: Bench, done: list[Trial]) -> list[Trial]:
+def tried_in(
+    asked: argparse.Namespace, package: str, bench: Bench, done: list[Trial]
+) -> list[Trial]:
     """Test the sample of one package; mutants in the record are taken from it."""
     reach = Reach.read(asked.reach) if asked.reach.is_file() else by_imports(asked.root)
-    known = {t.name: t for t in done if (t.room, t.seed) == (room, asked.seed)}
-    files = sorted((asked.root / asked.package / room).rglob("*.py"))
+    known = {t.name: t for t in done if (t.package, t.seed) == (package, asked.seed)}
+    files = sorted((asked.root / asked.sources / package).rglob("*.py"))
     if not files:
-        raise SystemExit(f"no room {room}")
+        raise SystemExit(f"{package} is not a package")
     found: list[Trial] = []
-    for fault in islice(drawn(asked.root, files, f"{room} {asked.seed}"), asked.sample):
+    for fault in islice(drawn(asked.root, files, f"{package} {asked.seed}"), asked.sample):
         trial = known.get(fault.name)
         if trial is None or (asked.again and not trial.caught):
             chosen = reach.chosen(fault.file, fault.line, asked.budget)
             if asked.tests:
                 chosen = Chosen(tuple(asked.tests), 60.0)
             trial = bench.tried(fault, chosen)
-            trial.room, trial.seed = room, asked.seed
+            trial.package, trial.seed = package, asked.seed
             if asked.out:
                 with asked.out.open("a", encoding="utf-8") as record:
                     record.write(json.dumps(trial.row()) + "\n")
@@ -84,8 +88,8 @@ def main(given: list[str] | None = None) -> int:
     trials: list[Trial] = []
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
         bench = Bench(TreeCopy(asked.root, Path(folder)))
-        for room in asked.room or ROOMS:
-            trials += tried_in(asked, room, bench, done)
+        for package in asked.package or PACKAGES:
+            trials += tried_in(asked, package, bench, done)
     print(table(trials))
     share = sum(trial.caught for trial in trials) / max(len(trials), 1)
     if share < asked.least:

@@ -26,17 +26,17 @@ def read(path: Path) -> list[Trial]:
             trial = Trial(**json.loads(line))
         except (json.JSONDecodeError, TypeError):
             continue
-        found[trial.room, trial.seed, trial.name] = trial
+        found[trial.package, trial.seed, trial.name] = trial
     return list(found.values())
 
 
 def table(trials: list[Trial]) -> str:
     """Format one row per package, and one for all."""
-    rooms: dict[str, list[Trial]] = defaultdict(list)
+    packages: dict[str, list[Trial]] = defaultdict(list)
     for trial in trials:
-        rooms[trial.room].append(trial)
-    rows = ["| room | caught | of | rate | 95 % interval |", "| --- | --- | --- | --- | --- |"]
-    for name, held in [*rooms.items(), ("all", trials)]:
+        packages[trial.package].append(trial)
+    rows = ["| package | caught | of | rate | 95 % interval |", "| --- | --- | --- | --- | --- |"]
+    for name, held in [*packages.items(), ("all", trials)]:
         caught = sum(trial.caught for trial in held)
         low, high = interval(caught, len(held))
         share = caught / len(held)

@@ -32,7 +32,7 @@ class Trial:
     tests: int = 0
     by: str | None = None
     took_s: float = 0.0
-    room: str = ""
+    package: str = ""
     seed: int = 0
 
     @property

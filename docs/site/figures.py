@@ -20,7 +20,7 @@ from pathlib import Path
 from pages import DOCS, ROOT
 
 SCRIPTS = {
-    "docs/architecture.py": ("images/rooms.png", "images/way_of_data.png"),
+    "docs/architecture.py": ("images/packages.png", "images/data_flow.png"),
     "docs/effects.py": ("effects/*.png", "effects/*.md"),
     "docs/laws.py": ("images/laws/*.png",),
     "docs/phenomena.py": ("images/phenomena/*.png",),

@@ -34,7 +34,7 @@ help:
 	@echo "make figures  every picture and generated table of the docs anew, from this commit"
 	@echo "make test    Rust and Python tests: before every pull request"
 	@echo "make test-extended  what takes minutes: statistical studies, long simulations, all seeds"
-	@echo "make lint    formatting, clippy, ruff, mypy, rustdoc"
+	@echo "make lint    formatting, clippy, ruff, codespell, gitlint, mypy, rustdoc"
 	@echo "make format  formats Rust and Python"
 	@echo "make bench   criterion benchmarks"
 	@echo "make counts  instructions of every step, against benches/counts.txt (valgrind)"
@@ -100,13 +100,16 @@ test-extended: $(TOOLS) $(MUTANTS)
 	JBF_ALL=1 cargo test --release -p jbf-properties
 	$(VENV)/bin/python -m pytest -n auto -m extended
 
-# Fuzz targets and firmware are no part of the workspace: rustfmt is given every file.
+# Fuzz targets and firmware are not part of the workspace: rustfmt is given every file. COMMITS is the
+# range whose messages are checked; the default is the last commit.
 lint: $(TOOLS)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
 	$(VENV)/bin/ruff check $(PYTHON_CODE)
 	$(VENV)/bin/ruff format --check $(PYTHON_CODE)
+	$(VENV)/bin/codespell
+	$(VENV)/bin/gitlint $(if $(COMMITS),--commits $(COMMITS))
 	$(VENV)/bin/mypy
 	$(VENV)/bin/stubtest jbf._core
 	$(VENV)/bin/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
@@ -142,9 +145,9 @@ bits-table:
 faults: $(TOOLS) $(MUTANTS)
 	$(VENV)/bin/python benches/mutation/faults.py --only '$(ONLY)' --least $(or $(LEAST),30)
 
-# Random mutants, SAMPLE of each ROOM (package) by SEED; fails where a smaller share than LEAST is noticed.
+# Random mutants, SAMPLE of each PACKAGE by SEED; fails where a smaller share than LEAST is noticed.
 mutation: $(TOOLS) $(MUTANTS)
-	$(VENV)/bin/python benches/mutation $(if $(ROOM),--room $(ROOM)) --sample $(or $(SAMPLE),2) \
+	$(VENV)/bin/python benches/mutation $(if $(PACKAGE),--package $(PACKAGE)) --sample $(or $(SAMPLE),2) \
 		--seed $(or $(SEED),1) --budget $(or $(BUDGET),60) --least $(or $(LEAST),0.58)
 
 coverage: $(TOOLS)

@@ -31,6 +31,7 @@ _PACKED = {
 
 
 def os_error(path: Path, error: OSError, doing: str) -> InputError:
+    """Return the error to raise for a file that cannot be `doing` ("read", "written")."""
     if isinstance(error, FileNotFoundError):
         try:
             guess = closest(path.name, (entry.name for entry in path.parent.iterdir()), 0.8)

@@ -78,6 +78,7 @@ class Parser(argparse.ArgumentParser):
                 self.error(f"unrecognized arguments: {word}; did you mean {guess}?")
 
     def error(self, message: str) -> NoReturn:
+        """Print a message in one line and exit with code 2."""
         self.exit(2, f"jbf: {' '.join(message.split())} (see {self.prog} --help)\n")
 
 

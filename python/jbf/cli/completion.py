@@ -16,6 +16,7 @@ class Completion(argparse.Action):
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: Any, values: Any, option: Any = None
     ) -> None:
+        """Print the script and exit."""
         print(script(parser, str(values)), end="")
         parser.exit()
 

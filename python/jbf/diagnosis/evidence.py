@@ -71,8 +71,10 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
 
 
 def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
-    """Whether the richer of two models adds an effect that filters a force or a motion, and
-    explains no more than the errors of the motion contribute."""
+    """Whether the richer model adds a filter that explains no more than the motion's errors.
+
+    Such an effect filters a force or a motion.
+    """
     if not SMOOTHS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
     samples = common_samples(richer.samples, simpler.samples)
@@ -118,7 +120,6 @@ def swap_cost(
     near
         Solution of the model without the effect that is exchanged.
     """
-
     # As for evidence: where even `whole` leaves a smooth error, samples count for less.
     share = effective_share(whole)
 

@@ -131,7 +131,7 @@ class Map:
 
 
 def read_map(path: PathLike) -> Map:
-    """Read a map; open questions are reported later.
+    r"""Read a map; open questions are reported later.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def read_map(path: PathLike) -> Map:
     Examples
     --------
     >>> from pathlib import Path
-    >>> _ = Path("map.toml").write_text('[columns]\\nfriction_n = "force * 9.81"\\n')
+    >>> _ = Path("map.toml").write_text('[columns]\nfriction_n = "force * 9.81"\n')
     >>> jbf.read_map("map.toml").columns
     {'friction_n': 'force * 9.81'}
     """

@@ -60,16 +60,20 @@ def attribute(column: str) -> str:
 
 
 def listed(names: Iterable[str]) -> str:
+    """Return the non-empty names as a list for a message, truncated to 160 characters."""
     return shorten(", ".join(name for name in names if name), 160, placeholder=" ...")
 
 
 def frozen(values: npt.ArrayLike) -> Array:
+    """Return a read-only copy of an array as `float64`."""
     array = np.array(values, dtype=np.float64, order="C")
     array.flags.writeable = False
     return array
 
 
 def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
+    """Return a column as a read-only array, or raise `InputError` with the name of its run."""
+
     def wrong(problem: str) -> InputError:
         return InputError(
             file=name, column=column, problem=problem, mend="give one number a sample, shape (N,)"

@@ -298,7 +298,7 @@ class Rig:
 
 
 def read_rig(path: PathLike) -> Rig:
-    """Read a rig from TOML.
+    r"""Read a rig from TOML.
 
     Parameters
     ----------
@@ -318,7 +318,7 @@ def read_rig(path: PathLike) -> Rig:
     Examples
     --------
     >>> from pathlib import Path
-    >>> _ = Path("rig.toml").write_text("[load]\\nnormal_n = 50.0\\n")
+    >>> _ = Path("rig.toml").write_text("[load]\nnormal_n = 50.0\n")
     >>> jbf.read_rig("rig.toml").load
     Load(normal_n=50.0)
     """

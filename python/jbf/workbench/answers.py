@@ -29,6 +29,7 @@ Answer = dict[str, Any]
 
 
 def of_model(comparison: Comparison) -> Answer:
+    """Return a model with its errors, parameters and failures."""
     model = comparison.model
     return {
         "law": model.law,
@@ -82,6 +83,7 @@ def _parameters(model: Model, values: Mapping[str, ParameterValue]) -> Answer:
 
 
 def of_fit(fit: Fit) -> Answer:
+    """Return the parameters of a fit with their correlations."""
     told = [name for name, p in fit.parameters.items() if not p.held]
     return {
         "parameters": _parameters(fit.model, fit.parameters),
@@ -92,6 +94,7 @@ def of_fit(fit: Fit) -> Answer:
 
 
 def of_step(step: Step) -> Answer:
+    """Return the held-out error of a step and the trials of its candidates."""
     return {
         "held_out_rms": step.held_out_rms if math.isfinite(step.held_out_rms) else None,
         "trials": [t.to_dict() for t in step.trials],
@@ -110,6 +113,7 @@ def power_told(power: Iterable[Power], model: Model) -> list[Answer]:
 
 
 def of_diagnosis(diagnosis: Diagnosis) -> Answer:
+    """Return the verdict, the summary and the proposed run of a diagnosis."""
     told = diagnosis.to_dict()
     next_run = diagnosis.experiment
     return {

@@ -96,6 +96,7 @@ def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
 
 
 def without_delay(effects: Names) -> Names:
+    """Return the effects other than the delay."""
     return tuple(name for name in effects if name != DELAY)
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 ACT = """async (act) => {
   const before = document.body.dataset.draws ?? "";
   const frame = () => new Promise(requestAnimationFrame);
-  const canvas = document.querySelector("#room canvas.mine");
+  const canvas = document.querySelector("#section canvas.mine");
   const at = (type, x, y) => {
     const r = canvas.getBoundingClientRect(), buttons = type === "pointerup" ? 0 : 1;
     const where = { clientX: r.x + x, clientY: r.y + y, bubbles: true, pointerId: 1 };

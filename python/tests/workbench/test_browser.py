@@ -102,7 +102,7 @@ def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path:
         page.wait_for_selector("#models .item.now >> text=/^journal/")
         click(page, "diagnose")
         await_models(page, 3)
-        verdict = page.inner_text("#room .verdict")
+        verdict = page.inner_text("#section .verdict")
         assert verdict.startswith("Missing: sensor_lag and coulomb_drag.")
         assert_page_fits_the_window(page)
 

@@ -1,11 +1,11 @@
-// Room 1: what is in the folder, files from elsewhere, records as they were read, trims.
+// Section 1: what is in the folder, files from elsewhere, records as they were read, trims.
 import { get, upload } from "./api.js";
 import { Chart, curve } from "./chart.js";
 import { h, put } from "./dom.js";
 import { ImportForm } from "./import_form.js";
 import { TrimHandles } from "./trim.js";
 
-export class DataRoom {
+export class DataSection {
   constructor(page, place) {
     this.page = page; page.importing = false;
     this.files = h("div"); this.raw = h("div"); this.map = h("div"); this.picked = new Set();

@@ -1,4 +1,4 @@
-// Room 4: the session, the model, its report, constants for firmware, and the same by command.
+// Section 4: the session, the model, its report, constants for firmware, and the same by command.
 import { h, put } from "./dom.js";
 
 const THINGS = [
@@ -11,7 +11,7 @@ const THINGS = [
   ["trimmed", "The runs as trimmed (trimmed/)", "CSV files, without the runs left out", null],
 ];
 
-export class KeepRoom {
+export class KeepSection {
   constructor(page, place) {
     this.page = page; this.place = place;
     this.list = h("div"); this.words = h("p", { role: "status" }); this.same = h("div");

@@ -1,4 +1,4 @@
-// Room 3: what is missing: candidates with their evidence, one click adds, the error falls.
+// Section 3: what is missing: candidates with their evidence, one click adds, the error falls.
 import { get } from "./api.js";
 import { Chart, curve } from "./chart.js";
 import { h, number, put } from "./dom.js";
@@ -6,7 +6,7 @@ import { showLedger } from "./ledger.js";
 import { showRanking } from "./ranking.js";
 import { correlations, parameters, power } from "./tables.js";
 
-export class LearnRoom {
+export class LearnSection {
   constructor(page, place) {
     this.page = page;
     this.head = h("div", { class: "row" }); this.verdict = h("p", { class: "verdict" });

@@ -1,19 +1,19 @@
-// The page: rooms, what is looked at, and news from the server.
+// The page: its sections, the current selection, and news from the server.
 import { download, follow, post } from "./api.js";
 import { h, put } from "./dom.js";
-import { DataRoom } from "./data.js";
-import { SeeRoom } from "./see.js";
-import { LearnRoom } from "./learn.js";
-import { KeepRoom } from "./keep.js";
+import { DataSection } from "./data.js";
+import { SeeSection } from "./see.js";
+import { LearnSection } from "./learn.js";
+import { KeepSection } from "./keep.js";
 import { showNext } from "./next.js";
 import { showModels, showRuns } from "./side.js";
 
-const ROOMS = { Data: DataRoom, See: SeeRoom, Learn: LearnRoom, Keep: KeepRoom };
+const SECTIONS = { Data: DataSection, See: SeeSection, Learn: LearnSection, Keep: KeepSection };
 const place = (id) => document.getElementById(id);
 
 class Page {
   constructor() {
-    this.state = null; this.room = null; this.name = "Data"; this.draws = 0;
+    this.state = null; this.section = null; this.name = "Data"; this.draws = 0;
     // What is looked at: a run, a stretch of it, a selection and what it holds, an effect.
     this.run = null; this.span = [null, null]; this.selection = null; this.brushed = null; this.effect = null;
     // Whether a recording is being imported.
@@ -33,25 +33,25 @@ class Page {
     if (before && before.current !== state.current && this.selection?.mark !== undefined) { this.selection = null; this.brushed = null; }
     this.tabs(); this.head();
     showRuns(this, place("runs")); showModels(this, place("models"));
-    if (!this.room) this.enter(names.length ? this.name : "Data");
-    else this.room.told(before);
+    if (!this.section) this.enter(names.length ? this.name : "Data");
+    else this.section.told(before);
     this.next();
     document.body.dataset.version = state.version;
   }
 
   enter(name) {
     this.name = name;
-    place("room").replaceChildren();
-    this.room = new ROOMS[name](this, place("room"));
+    place("section").replaceChildren();
+    this.section = new SECTIONS[name](this, place("section"));
     this.tabs();
-    this.room.told(null);
+    this.section.told(null);
     this.next();
   }
 
   next() { showNext(this, place("next")); }
 
   tabs() {
-    put(place("tabs"), Object.keys(ROOMS).map((name, i) => h("button", {
+    put(place("tabs"), Object.keys(SECTIONS).map((name, i) => h("button", {
       role: "tab", "aria-selected": String(name === this.name), title: `key ${i + 1}`, "data-key": `tab-${name}`,
       onclick: () => this.enter(name),
     }, `${i + 1} ${name}`)));
@@ -86,7 +86,7 @@ class Page {
   look(changes) {
     Object.assign(this, changes);
     if (!this.selection) this.brushed = null;
-    showRuns(this, place("runs")); this.room.looked(changes);
+    showRuns(this, place("runs")); this.section.looked(changes);
   }
 
   // What a selection holds, for the list of runs.
@@ -94,7 +94,7 @@ class Page {
 
   key(event) {
     if (["INPUT", "TEXTAREA", "SELECT"].includes(event.target.tagName) || event.ctrlKey || event.altKey || event.metaKey) return;
-    const name = Object.keys(ROOMS)[Number(event.key) - 1];
+    const name = Object.keys(SECTIONS)[Number(event.key) - 1];
     if (name) this.enter(name);
     else if (event.key === "z" && this.model) this.do("undo");
     else if (event.key === "Escape" && this.selection) this.look({ selection: null });

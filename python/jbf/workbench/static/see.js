@@ -1,4 +1,4 @@
-// Room 2: measured and modelled in time and in the plane, over speed and over all runs; where it fails.
+// Section 2: measured and modelled in time and in the plane, over speed and over all runs; where it fails.
 import { get, post } from "./api.js";
 import { Chart, curve } from "./chart.js";
 import { h, key, number, put } from "./dom.js";
@@ -6,7 +6,7 @@ import { Plane } from "./plane.js";
 import { RunsMap } from "./runs_map.js";
 import { Stribeck } from "./stribeck.js";
 
-export class SeeRoom {
+export class SeeSection {
   constructor(page, place) {
     this.page = page; this.drag = "brush"; this.all = false; this.ends = ["", ""];
     this.words = h("p", { class: "verdict" }); this.said = h("p", { class: "said", role: "status" });

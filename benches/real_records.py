@@ -16,7 +16,7 @@ from pathlib import Path
 
 import jbf
 import numpy as np
-from jbf.records.motion.imposed import impose
+from jbf.records.motion.estimated_motion import estimate_motion
 
 MASS_KG, OFFSET_N = 95.1, -3.2
 """Values of the ball-screw axis from its publication, subtracted before the fit."""
@@ -25,7 +25,7 @@ MASS_KG, OFFSET_N = 95.1, -3.2
 def without_inertia(run: jbf.Run) -> jbf.Run:
     """Friction from a drive force: minus the inertial force of the mass and the sensor offset."""
     assert run.friction is not None
-    acceleration = impose(run, None).acceleration
+    acceleration = estimate_motion(run, None).acceleration
     friction = run.friction - MASS_KG * acceleration - OFFSET_N
     return replace(run, friction=friction, name=f"{run.name}, inertia taken off")
 

@@ -38,7 +38,7 @@ LAYERS: list[list[tuple[str, str]]] = [
         ("models", "law + effects + parameters in;\nprediction out"),
         ("importing", "foreign files, a map in;\nruns, rig, ledger out"),
     ],
-    [("records", "files in; runs, rig,\nimposed motion out")],
+    [("records", "files in; runs, rig,\nestimated motion out")],
     [("_core", "crates/jbf-py, jbf-predict, jbf-batch, jbf-core: the physics, once, in Rust")],
 ]
 

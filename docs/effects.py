@@ -297,7 +297,7 @@ def index() -> str:
         "- Pictures of the common phenomena: [friction phenomena](../phenomena.md).",
         "- Motions that determine it: [what can be identified](../what_can_be_identified.md).",
         "- Accuracy of the fitted parameters: [validation results](../validation.md).",
-        "- Effects in Python: [your own effects](../own_effects.md).",
+        "- Effects in Python: [your own effects](../user_effects.md).",
         "",
         "| stage | effect | description |",
         "| --- | --- | --- |",

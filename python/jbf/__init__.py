@@ -36,10 +36,10 @@ if _TYPE_CHECKING:
     from jbf.models.batch import batch
     from jbf.models.catalogue import Parameter, effects, laws
     from jbf.models.model import Model
-    from jbf.models.own_effects import forget_effect, load_effects, register_effect
-    from jbf.models.own_laws import forget_law, register_law
     from jbf.models.parameter_value import ParameterValue
     from jbf.models.trajectory import Trajectory, trajectories, trajectory
+    from jbf.models.user_effects import forget_effect, load_effects, register_effect
+    from jbf.models.user_laws import forget_law, register_law
     from jbf.records.csv_file import read_run
     from jbf.records.drive import Drive
     from jbf.records.rig import Bearing, Load, Lubricant, Rig, read_rig
@@ -60,11 +60,11 @@ _LATER = {
     "effects": "jbf.models.catalogue",
     "laws": "jbf.models.catalogue",
     "Model": "jbf.models.model",
-    "forget_effect": "jbf.models.own_effects",
-    "load_effects": "jbf.models.own_effects",
-    "register_effect": "jbf.models.own_effects",
-    "forget_law": "jbf.models.own_laws",
-    "register_law": "jbf.models.own_laws",
+    "forget_effect": "jbf.models.user_effects",
+    "load_effects": "jbf.models.user_effects",
+    "register_effect": "jbf.models.user_effects",
+    "forget_law": "jbf.models.user_laws",
+    "register_law": "jbf.models.user_laws",
     "ParameterValue": "jbf.models.parameter_value",
     "Trajectory": "jbf.models.trajectory",
     "trajectories": "jbf.models.trajectory",

@@ -98,7 +98,7 @@ def full_fit(rig: Rig, runs: list[Run]) -> Fit:
 
 
 @pytest.fixture
-def forget_own_effects() -> Iterator[None]:
+def forget_user_effects() -> Iterator[None]:
     """Remove the effects that a test registers in this process."""
     yield
     for name in jbf.effects().keys() - built_in().keys():

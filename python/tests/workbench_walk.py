@@ -34,7 +34,7 @@ def why_not() -> str | None:
         return "browser tests need: pip install playwright"
     if browser() is None:
         return "browser tests need: apt-get install chromium"
-    if not vendored.is_there():
+    if not vendored.is_complete():
         return "browser tests need: python -m jbf.workbench.vendored"
     return None
 

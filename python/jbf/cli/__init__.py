@@ -175,7 +175,7 @@ def _dispatch(arguments: list[str]) -> int:
         return _refuse(error)
     try:
         for file in getattr(chosen, "effects_from", []):
-            import_module("jbf.models.own_effects").load_effects(file)
+            import_module("jbf.models.user_effects").load_effects(file)
         with warnings.catch_warnings():
             warnings.showwarning = _show
             code: int = run(chosen)

@@ -12,8 +12,8 @@ from jbf.errors import InputError
 from jbf.models import catalogue
 from jbf.models.chain import core_bearing, core_load_n
 from jbf.models.model import Model
-from jbf.models.own_effects import OwnEffect
-from jbf.models.own_laws import OwnLaw
+from jbf.models.user_effects import UserEffect
+from jbf.models.user_laws import UserLaw
 from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 
@@ -101,15 +101,15 @@ def core_model(model: Model) -> dict[str, Any]:
         The model has a user-defined law or effect, which is Python code and cannot run in a loop.
     """
     pages = catalogue.effects()
-    if isinstance(catalogue.find_law(model.law), OwnLaw):
+    if isinstance(catalogue.find_law(model.law), UserLaw):
         raise InputError(
             problem=f"{model.law} is a law of your own: it runs in Python, not in a loop",
-            mend="write it for the core: cargo run --example own_law shows how",
+            mend="write it for the core: cargo run --example user_law shows how",
         )
-    own_effects = [name for name in model.effects if isinstance(pages.get(name), OwnEffect)]
-    if own_effects:
+    user_effects = [name for name in model.effects if isinstance(pages.get(name), UserEffect)]
+    if user_effects:
         raise InputError(
-            problem=f"{own_effects[0]} is an effect of your own: it runs in Python, not in a loop",
+            problem=f"{user_effects[0]} is an effect of your own: it runs in Python, not in a loop",
             mend="fit a model without it, or write it for the core (ARCHITECTURE.md)",
         )
     values = [p.value for p in model.parameters.values()]

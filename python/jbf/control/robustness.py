@@ -22,8 +22,8 @@ from jbf.control.tuning import tune
 from jbf.estimation.fit import fit
 from jbf.models.catalogue import effects, laws, reason_not_applicable
 from jbf.models.model import Model
-from jbf.models.own_effects import OwnEffect
 from jbf.models.parameter_value import ParameterValue
+from jbf.models.user_effects import UserEffect
 from jbf.records.rig import Lubricant
 from jbf.records.run import Run
 
@@ -94,7 +94,7 @@ class Outcome:
 def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
     """Yield every case in which the model is wrong."""
     for name, page in effects().items():
-        own = isinstance(page, OwnEffect)
+        own = isinstance(page, UserEffect)
         if own or reason_not_applicable(page, base.law) is not None or name in base.effects:
             continue
         strong = STRONG.get(name, {})
@@ -175,7 +175,7 @@ def robustness(
             if case.plant.rig.load is not None:
                 load = case.plant.rig.load.normal_n * case.load_factor
             errors = [
-                run(case.plant, s, short, bench=case.bench, told=bench, load_n=load).true_rms
+                run(case.plant, s, short, bench=case.bench, assumed=bench, load_n=load).true_rms
                 for s in (NoCompensation(), given)
             ]
             ratios[row] = errors[1] / errors[0]

@@ -149,7 +149,7 @@ def run(
     task: Task = TASKS["velocity sine"],
     *,
     bench: Bench = THESIS_BENCH,
-    told: Bench | None = None,
+    assumed: Bench | None = None,
     carried: Model | None = None,
     settings: Settings | None = None,
     guard: Settings | None = None,
@@ -171,12 +171,12 @@ def run(
         Reference, control law and duration.
     bench
         Motor, shaft, encoder, noise.
-    told
+    assumed
         Bench assumed by control law, observer and compensator. Default: the true one.
     carried
         Model that the compensator carries. Default: the true one.
     settings
-        Settings of the observed compensator. Default: `tune(carried, told)`.
+        Settings of the observed compensator. Default: `tune(carried, assumed)`.
     guard
         Settings whose `moving_v` and `patience_s` guard the loop. Default: those of the observed
         compensator; the thesis's schemes have no guard.
@@ -199,8 +199,8 @@ def run(
     truth = thesis_model() if model is None else the_model(model)
     of_kind(task, Task, "the task", 'name one of control.TASKS: TASKS["velocity sine"]')
     chosen = _scheme(scheme, model if carried is None else carried, settings)
-    believed = bench if told is None else told
-    if believed.dt_s != bench.dt_s:
+    assumed_bench = bench if assumed is None else assumed
+    if assumed_bench.dt_s != bench.dt_s:
         raise InputError(problem="the two benches have different steps", mend="give both one dt_s")
     n = max(round(task.seconds / bench.dt_s), 1)
     value, rate = _reference(task, bench, n, reference)
@@ -214,8 +214,8 @@ def run(
     with core_refusals(_mend):
         arrays: dict[str, Any] = _core.control_run(
             bench.core(truth),
-            core_loop(task, believed, chosen.guard(believed) if guard is None else guard),
-            chosen.core(task, believed),
+            core_loop(task, assumed_bench, chosen.guard(assumed_bench) if guard is None else guard),
+            chosen.core(task, assumed_bench),
             value,
             rate,
             load,

@@ -19,8 +19,8 @@ from jbf.estimation.settings import DEFAULT, MotionSettings, Settings
 from jbf.estimation.work import Work
 from jbf.models.catalogue import Effect
 from jbf.models.driven import Driven
-from jbf.models.own_effects import ALWAYS
 from jbf.models.requirements import has_angle, has_path, has_position
+from jbf.models.user_effects import ALWAYS
 from jbf.records.arguments import list_of_runs
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import steady_load

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf._core import whiten_motion_errors
-from jbf.records.motion.imposed import MotionErrors
+from jbf.records.motion.estimated_motion import MotionErrors
 
 Array = npt.NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from jbf.estimation.likelihood import independent_share
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.estimation.spread import Spread
-from jbf.models.late_reading import TAU, LateChain
+from jbf.models.delayed_reading import TAU, DelayedChain
 
 Array = npt.NDArray[np.float64]
 
@@ -103,7 +103,7 @@ class _Scan:
     """Likelihood of a delay with the other parameters following it."""
 
     problem: Problem
-    chain: LateChain
+    chain: DelayedChain
     friction: list[Array]
     values: Array
     way: Array
@@ -116,7 +116,7 @@ class _Scan:
         cls, problem: Problem, solution: Solution, spread: Spread, values: Array, k: int
     ) -> _Scan:
         rig, samples = problem.campaign.rig, solution.samples
-        chain = LateChain(rig, problem.law, problem.clock, problem.effects, problem.names)
+        chain = DelayedChain(rig, problem.law, problem.clock, problem.effects, problem.names)
         with np.errstate(invalid="ignore", divide="ignore"):
             way = spread.correlation[:, k] * spread.sd / spread.sd[k] / spread.scale[k]
         left = samples.without_deviations(solution.residuals, solution.noise)

@@ -30,7 +30,7 @@ from jbf.estimation.uncertainty import correlations, parameter_values
 from jbf.estimation.weighting import best_weighting
 from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
 from jbf.models.chain import check_rig
-from jbf.models.late_reading import TAU
+from jbf.models.delayed_reading import TAU
 from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record

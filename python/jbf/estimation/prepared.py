@@ -1,4 +1,4 @@
-"""One run prepared for many fits: its imposed motion, and the motion as an object of the core."""
+"""One run prepared for many fits: its estimated motion, and the motion as an object of the core."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.settings import DEFAULT, MotionSettings
-from jbf.models.chain import imposed_as_read
+from jbf.models.chain import sampled_motion
 from jbf.models.driven import Driven
 from jbf.models.driven_motion import driven_motion
 from jbf.records.checks import MIN_SAMPLES, frozen
 from jbf.records.findings.examine import Examined, examine, examine_readings
 from jbf.records.findings.finding import Finding
+from jbf.records.findings.force_sign import find_wrong_sign
 from jbf.records.findings.noisy_load import find_noisy_load, steady_load
-from jbf.records.findings.own_clock import own_clock
-from jbf.records.findings.pushing import find_pushing
 from jbf.records.findings.repeated_rows import as_read
+from jbf.records.findings.separate_clock import separate_clock
 from jbf.records.findings.slow_temperature import find_slow_temperature
 from jbf.records.findings.smooth_force import find_smooth_force
 from jbf.records.findings.steps import find_steps
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.motion.readings import ReadingErrors
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -42,7 +42,7 @@ It is a numerical resolution.
 """
 
 
-def slides(motion: ImposedMotion) -> Mask:
+def slides(motion: EstimatedMotion) -> Mask:
     """Mask of the samples where friction has a known direction, shape (n,).
 
     At rest, friction is any force up to the breakaway level in either direction: it balances the
@@ -72,11 +72,11 @@ class Prepared:
 
     rig: Rig
     run: Run
-    motion: ImposedMotion
+    motion: EstimatedMotion
     friction: Array
     step_s: float
     examined: Examined
-    recorded: tuple[Array, ImposedMotion] | None = None
+    recorded: tuple[Array, EstimatedMotion] | None = None
     """Times of the recorded motion, s, and the motion there, if the force has other times."""
 
     @property
@@ -100,7 +100,7 @@ class Prepared:
         return max((f.size for f in drawn), default=0.0)
 
     @property
-    def motion_as_read(self) -> tuple[Array, ImposedMotion]:
+    def motion_as_read(self) -> tuple[Array, EstimatedMotion]:
         """Times at which the motion was read, s, and the motion there."""
         return self.recorded or (self.run.time_s, self.motion)
 
@@ -135,11 +135,11 @@ class Prepared:
         moved = coasting(rig)
         if moved is None:
             require(run, "friction_n", "a comparison with the model")
-        instants, motion = imposed_as_read(rig, run, starts)
+        instants, motion = sampled_motion(rig, run, starts)
         if motion.clock_s is not None:
             run = replace(run, time_s=frozen(motion.clock_s))
         recorded = None
-        own = own_clock(run)
+        own = separate_clock(run)
         if run.read:
             # The model is compared only at the readings of the force.
             recorded = (instants, motion)
@@ -269,7 +269,7 @@ class Prepared:
         return {name: value for name, value in vars(self).items() if name != "core"}
 
 
-def _independent(motion: ImposedMotion, spacing: float) -> Mask:
+def _independent(motion: EstimatedMotion, spacing: float) -> Mask:
     """Mask of samples whose acceleration errors are independent, shape (n,).
 
     The covariance of the errors at two times is the product of the smoother gains between them and
@@ -288,10 +288,10 @@ def _independent(motion: ImposedMotion, spacing: float) -> Mask:
     return kept
 
 
-def _of_readings(run: Run, motion: ImposedMotion, examined: Examined) -> list[Finding]:
+def _of_readings(run: Run, motion: EstimatedMotion, examined: Examined) -> list[Finding]:
     """Findings on the force readings in relation to the motion."""
     without_noise = _without_noise(run, slides(motion) & examined.usable, examined)
-    return [*find_pushing(run, motion, examined.usable), *without_noise]
+    return [*find_wrong_sign(run, motion, examined.usable), *without_noise]
 
 
 def _derived(run: Run, moved: float) -> Finding:

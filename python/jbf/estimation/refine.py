@@ -19,9 +19,9 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
-from jbf.models.late_reading import TAU
+from jbf.models.delayed_reading import TAU
 from jbf.records.findings.finding import Finding
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 
 Array = npt.NDArray[np.float64]
 
@@ -366,7 +366,7 @@ def _moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
     The change is a fraction of a standard error, in powers of m (or rad) and s.
     """
 
-    def off(motion: ImposedMotion) -> tuple[ImposedMotion, Array]:
+    def off(motion: EstimatedMotion) -> tuple[EstimatedMotion, Array]:
         errors = motion.errors
         assert errors is not None
         step = STEP * np.sqrt(np.maximum(errors.covariance[:, axis, axis], 0.0))

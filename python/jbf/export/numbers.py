@@ -10,8 +10,8 @@ from jbf.errors import InputError
 from jbf.models.catalogue import Effect, Law, Parameter, find_effect, find_law
 from jbf.models.chain import core_bearing, core_load_n
 from jbf.models.model import Model
-from jbf.models.own_effects import OwnEffect
-from jbf.models.own_laws import OwnLaw
+from jbf.models.user_effects import UserEffect
+from jbf.models.user_laws import UserLaw
 
 
 @dataclass(frozen=True)
@@ -57,18 +57,18 @@ class Numbers:
             A law or an effect is user-defined in Python, which does not run on a target.
         """
         law = find_law(model.law)
-        if isinstance(law, OwnLaw):
+        if isinstance(law, UserLaw):
             raise InputError(
                 problem=f"the law {law.name} is written in Python, which no target runs",
-                mend="write it in Rust: cargo run --example own_law shows how",
+                mend="write it in Rust: cargo run --example user_law shows how",
             )
         effects = []
         for name in model.effects:
             page = find_effect(name)
-            if isinstance(page, OwnEffect):
+            if isinstance(page, UserEffect):
                 raise InputError(
                     problem=f"the effect {name} is written in Python, which no target runs",
-                    mend="write it in Rust: cargo run --example own_effect shows how",
+                    mend="write it in Rust: cargo run --example user_effect shows how",
                 )
             group = _group(page, model, f"{name}.")
             if not any(map(_vanishes, page.parameters, group.values)):

@@ -20,16 +20,16 @@ from jbf.models.catalogue import (
     in_chain_order,
 )
 from jbf.models.driven import Driven, DrivenChain
-from jbf.models.own_chain import BENDING, OwnChain
-from jbf.models.own_effects import MOTION_COLUMNS, OwnEffect
-from jbf.models.own_laws import OwnLaw
+from jbf.models.user_chain import BENDING, UserChain
+from jbf.models.user_effects import MOTION_COLUMNS, UserEffect
+from jbf.models.user_laws import UserLaw
 from jbf.records.arguments import one_run, the_rig
 from jbf.records.channels import of_motion
 from jbf.records.findings.noisy_load import steady_load
 from jbf.records.findings.repeated_rows import as_read
 from jbf.records.findings.slow_temperature import recorded_temperature
+from jbf.records.motion.estimated_motion import EstimatedMotion, estimate_motion
 from jbf.records.motion.first_stroke import begins_with_oscillation
-from jbf.records.motion.imposed import ImposedMotion, impose
 from jbf.records.motion.readings import ReadingErrors
 from jbf.records.recorded_load import recorded_load
 from jbf.records.rig import Rig
@@ -119,14 +119,14 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
     check_applies(law, effects)
     film_clock = find_clock(clock)
     pages = [find_effect(name) for name in in_chain_order(effects)]
-    own = [page for page in pages if isinstance(page, OwnEffect)]
+    own = [page for page in pages if isinstance(page, UserEffect)]
     page_of_law = find_law(law)
-    own_law = page_of_law.force if isinstance(page_of_law, OwnLaw) else None
+    user_law = page_of_law.force if isinstance(page_of_law, UserLaw) else None
 
     def of_core(names: list[str]) -> _core.Chain:
         with core_refusals():
             return _core.Chain(
-                law=law if own_law is None else CARRIER,
+                law=law if user_law is None else CARRIER,
                 bearing=core_bearing(rig),
                 load_n=core_load_n(rig),
                 clock=film_clock,
@@ -135,47 +135,47 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
             )
 
     core = of_core([page.name for page in pages if page not in own])
-    if not own and own_law is None:
+    if not own and user_law is None:
         return DrivenChain(core)
-    held = [] if own_law is None else [p.lower for p in find_law(CARRIER).parameters]
-    first = 0 if own_law is None else len(own_law.parameters) - len(held)
+    held = [] if user_law is None else [p.lower for p in find_law(CARRIER).parameters]
+    first = 0 if user_law is None else len(user_law.parameters) - len(held)
     names = core.parameter_names
     instrument = [
         (page.name, [first + names.index(f"{page.name}.{p.name}") for p in page.parameters])
         for page in pages
         if page.stage == "instrument" and page not in own
     ]
-    carrier = None if own_law is None else of_core([])
+    carrier = None if user_law is None else of_core([])
     bends = any(name in BENDING for name, _ in instrument)
     before = [p.name for p in pages if p not in own and p.stage != "instrument"]
     bare = of_core(before) if bends else None
-    return DrivenChain(OwnChain(core, instrument, own, own_law, held, carrier, bare))
+    return DrivenChain(UserChain(core, instrument, own, user_law, held, carrier, bare))
 
 
-def imposed(rig: Rig, run: Run) -> ImposedMotion:
-    """Estimate the motion that a run imposed on the journal or slider of the rig."""
-    instants, motion = imposed_as_read(rig, run)
+def estimated_motion(rig: Rig, run: Run) -> EstimatedMotion:
+    """Estimate the motion of the journal or slider of the rig in a run."""
+    instants, motion = sampled_motion(rig, run)
     return motion if len(instants) == len(run) else motion.at(instants, run.time_s)
 
 
-def imposed_as_read(
+def sampled_motion(
     rig: Rig, run: Run, starts: Sequence[ReadingErrors] = ()
-) -> tuple[Array, ImposedMotion]:
+) -> tuple[Array, EstimatedMotion]:
     """Estimate the motion, and return the instants at which it was sampled, s.
 
     These are the instants of the motion's own clock, if it has one. `starts` is as in
-    :func:`jbf.records.motion.imposed.impose`.
+    :func:`jbf.records.motion.estimated_motion.estimate_motion`.
     """
     run = as_read(run_on(rig, one_run(run)))
     there = of_motion(run.read)
     if there is not None:
         run = run.select(there)
-    motion = impose(run, rig.radius_m, starts)
+    motion = estimate_motion(run, rig.radius_m, starts)
     return (run.time_s if motion.clock_s is None else motion.clock_s), motion
 
 
 def core_motion(
-    rig: Rig, run: Run, motion: ImposedMotion, before: tuple[float, float] | None = None
+    rig: Rig, run: Run, motion: EstimatedMotion, before: tuple[float, float] | None = None
 ) -> Driven:
     """Convert the motion and load of a run to the form of the core.
 

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
-from jbf.models.own_chain import OwnChain
+from jbf.models.user_chain import UserChain
 
 Array = npt.NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class Driven:
 class DrivenChain:
     """A chain of the core, or one with user-defined effects, along driven motions."""
 
-    def __init__(self, core: _core.Chain | OwnChain) -> None:
+    def __init__(self, core: _core.Chain | UserChain) -> None:
         self.core = core
 
     @property

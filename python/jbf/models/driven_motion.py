@@ -14,7 +14,7 @@ import numpy.typing as npt
 from jbf.models.chain import core_motion
 from jbf.models.driven import Driven
 from jbf.records.findings.noisy_load import steady_load
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
@@ -48,12 +48,14 @@ class Reversals:
     interval: npt.NDArray[np.intp]
 
 
-def driven_motion(rig: Rig, run: Run, motion: ImposedMotion) -> Driven:
+def driven_motion(rig: Rig, run: Run, motion: EstimatedMotion) -> Driven:
     """Convert the motion of a run to the form of the core."""
     return with_instants(rig, run, motion, np.zeros(0))[1]
 
 
-def with_instants(rig: Rig, run: Run, motion: ImposedMotion, more_s: Array) -> tuple[Array, Driven]:
+def with_instants(
+    rig: Rig, run: Run, motion: EstimatedMotion, more_s: Array
+) -> tuple[Array, Driven]:
     """Convert the motion of a run to the form of the core, with additional instants.
 
     Also returns all instants of the core, s.
@@ -95,7 +97,7 @@ def with_instants(rig: Rig, run: Run, motion: ImposedMotion, more_s: Array) -> t
     return whole, Driven(driven.motion, np.searchsorted(whole, time))
 
 
-def reversals(time_s: Array, motion: ImposedMotion) -> Reversals:
+def reversals(time_s: Array, motion: EstimatedMotion) -> Reversals:
     """Find where a motion reverses, starts or stops.
 
     The error of an instant is the error of the speed divided by the acceleration.

@@ -27,20 +27,20 @@ from jbf.models.chain import (
     core_bearing,
     core_load_n,
     core_refusals,
-    imposed,
-    imposed_as_read,
+    estimated_motion,
+    sampled_motion,
     warn_of_fast_film,
 )
+from jbf.models.delayed_reading import TAU, DelayedChain
 from jbf.models.driven_motion import driven_motion
-from jbf.models.late_reading import TAU, LateChain
 from jbf.models.model_file import model_file_text, read_model_file
-from jbf.models.own_laws import OwnLaw
 from jbf.models.parameter_units import units_of
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.requirements import require_record
+from jbf.models.user_laws import UserLaw
 from jbf.models.vocabulary import Clock, ModelFile
 from jbf.records.arguments import by_name, list_of_runs, numbers, of_kind, one_run
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 from jbf.results import Shown
@@ -158,13 +158,13 @@ class Model(Shown):
         runs = list_of_runs(runs)
         for run in runs:
             self.require_columns(run)
-        motions = [driven_motion(self.rig, run, imposed(self.rig, run)) for run in runs]
+        motions = [driven_motion(self.rig, run, estimated_motion(self.rig, run)) for run in runs]
         core = chain(self.rig, self.law, self.clock, self.effects)
         warn_of_fast_film(core, self.values, motions)
         with core_refusals():
             if self.delay is None:
                 return core.predict(self.values, motions)
-            return self.predict_late((run, *imposed_as_read(self.rig, run)) for run in runs)
+            return self.predict_late((run, *sampled_motion(self.rig, run)) for run in runs)
 
     @property
     def delay(self) -> ParameterValue | None:
@@ -172,7 +172,7 @@ class Model(Shown):
         tau = self.parameters.get(TAU)
         return None if tau is None or tau.value <= 0.0 else tau
 
-    def predict_late(self, read: Iterable[tuple[Run, Array, ImposedMotion]]) -> list[Array]:
+    def predict_late(self, read: Iterable[tuple[Run, Array, EstimatedMotion]]) -> list[Array]:
         """Predict the readings of a delayed force, N, one array per run.
 
         Parameters
@@ -182,7 +182,7 @@ class Model(Shown):
         """
         assert self.delay is not None
         sd_s = self.delay.stderr or 0.0
-        late = LateChain(self.rig, self.law, self.clock, self.effects, list(self.parameters))
+        late = DelayedChain(self.rig, self.law, self.clock, self.effects, list(self.parameters))
         return [late.read(self.values, *one, sd_s).mean_n for one in read]
 
     def require_columns(self, run: Run) -> None:
@@ -198,7 +198,7 @@ class Model(Shown):
         page = find_law(self.law)
         count = len(page.parameters)
         speeds = numbers(velocity, "velocity_m_s", flat=True)
-        if isinstance(page, OwnLaw):
+        if isinstance(page, UserLaw):
             return page.steady_n(speeds, self.values[:count].tolist(), core_load_n(self.rig))
         with core_refusals():
             return _core.steady_friction(

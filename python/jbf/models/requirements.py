@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from jbf.errors import InputError
 from jbf.models.catalogue import find_effect
-from jbf.models.own_effects import ALWAYS
+from jbf.models.user_effects import ALWAYS
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.records.run_requirements import require

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jbf.models.written import number, step_words
+from jbf.models.number_format import number, step_words
 from jbf.plot.style import (
     BEFORE,
     INK,

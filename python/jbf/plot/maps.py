@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.models.written import number
+from jbf.models.number_format import number
 from jbf.plot.runs import axes_words, quantities_of
 from jbf.plot.style import DIVERGING, MEASURED, MODEL, dress, one_axes, plain, shortened
 

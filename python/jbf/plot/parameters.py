@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jbf.models.number_format import value_and_error
 from jbf.models.parameter_units import units_of
-from jbf.models.written import value_and_error
 from jbf.plot.style import INK, MEASURED, MODEL, dress, one_axes, plain
 
 if TYPE_CHECKING:

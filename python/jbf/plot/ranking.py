@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.models.written import BARE
+from jbf.models.number_format import BARE
 from jbf.plot.style import BEFORE, INK, MEASURED, MODEL, NOISE, dress, one_axes
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.models.written import number
+from jbf.models.number_format import number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -26,7 +26,7 @@ def fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Fi
     return filled(time_s, celsius, known), (finding,)
 
 
-def made_speed(columns: Mapping[str, Array]) -> Array:
+def derived_speed_column(columns: Mapping[str, Array]) -> Array:
     """Speed from the position, m/s; nan if only an angle is known, whose radius is in the rig."""
     if "position_m" in columns:
         return frozen(np.gradient(columns["position_m"], columns["time_s"]))

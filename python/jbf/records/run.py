@@ -28,7 +28,7 @@ from jbf.records.checks import (
     selection,
 )
 from jbf.records.csv_output import csv_of_columns
-from jbf.records.derived_columns import fill_gaps, made_speed
+from jbf.records.derived_columns import derived_speed_column, fill_gaps
 from jbf.records.findings.finding import Finding
 from jbf.records.frames import columns_of, columns_of_dataset, dataset_of_columns
 from jbf.records.quantities import OF_BEARING, Quantities
@@ -347,7 +347,7 @@ class Run(Shown):
         """Build a run from columns that have been checked."""
         recorded = "velocity_m_s" in columns
         if not recorded:
-            columns = dict(columns) | {"velocity_m_s": made_speed(columns)}
+            columns = dict(columns) | {"velocity_m_s": derived_speed_column(columns)}
         reading: tuple[Finding, ...] = ()
         if SLOW in columns:
             whole, reading = fill_gaps(name, columns["time_s"], columns[SLOW])

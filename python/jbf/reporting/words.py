@@ -6,12 +6,12 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from jbf.models.catalogue import find_law
-from jbf.models.written import BARE as BARE
-from jbf.models.written import measured as measured
-from jbf.models.written import number as number
-from jbf.models.written import percent as percent
-from jbf.models.written import step_words
-from jbf.models.written import value_and_error as value_and_error
+from jbf.models.number_format import BARE as BARE
+from jbf.models.number_format import measured as measured
+from jbf.models.number_format import number as number
+from jbf.models.number_format import percent as percent
+from jbf.models.number_format import step_words
+from jbf.models.number_format import value_and_error as value_and_error
 
 if TYPE_CHECKING:
     from jbf.comparison.comparison import Comparison

@@ -16,7 +16,7 @@ from jbf.errors import InputError
 from jbf.workbench import importer, kept, views
 from jbf.workbench.session import Session
 
-Asked = dict[str, Any]
+Parameters = dict[str, Any]
 DEMO_PLACES = ("hidden", "jbf-demo/hidden", "jbf-demo")
 """Folders that may contain the data of `jbf demo`, relative to the session's folder.
 
@@ -26,79 +26,81 @@ copies the data.
 MOST_PIXELS = 4000
 
 
-def _model(asked: Asked) -> int | None:
-    value = asked.get("model")
+def _model(parameters: Parameters) -> int | None:
+    value = parameters.get("model")
     return None if value in (None, "", "null") else int(value)
 
 
-def _span(asked: Asked) -> tuple[float | None, float | None]:
-    ends = [asked.get(key) for key in ("from_s", "to_s")]
+def _span(parameters: Parameters) -> tuple[float | None, float | None]:
+    ends = [parameters.get(key) for key in ("from_s", "to_s")]
     first, last = (None if v in (None, "") else float(v) for v in ends)
     return first, last
 
 
-def _pixels(asked: Asked, key: str = "pixels", usual: int = 1000) -> int:
-    return min(max(int(asked.get(key, usual)), 10), MOST_PIXELS)
+def _pixels(parameters: Parameters, key: str = "pixels", usual: int = 1000) -> int:
+    return min(max(int(parameters.get(key, usual)), 10), MOST_PIXELS)
 
 
-def state(session: Session, asked: Asked) -> Any:
+def state(session: Session, parameters: Parameters) -> Any:
     """Return the complete state, except the plots."""
-    return session.told()
+    return session.to_dict()
 
 
-def listing(session: Session, asked: Asked) -> Any:
+def listing(session: Session, parameters: Parameters) -> Any:
     """List the folder."""
     return session.folder.listing()
 
 
-def series(session: Session, asked: Asked) -> Any:
+def series(session: Session, parameters: Parameters) -> Any:
     """Return a section of a run."""
-    span = _span(asked)
-    return views.series(session, _model(asked), asked["run"], span, _pixels(asked))
+    span = _span(parameters)
+    return views.series(session, _model(parameters), parameters["run"], span, _pixels(parameters))
 
 
-def signature(session: Session, asked: Asked) -> Any:
+def signature(session: Session, parameters: Parameters) -> Any:
     """Return the signature of an effect in a run."""
-    number = _number(asked)
-    span, pixels = _span(asked), _pixels(asked)
-    return views.signature(session, number, asked["effect"], asked["run"], span, pixels)
+    number = _number(parameters)
+    span, pixels = _span(parameters), _pixels(parameters)
+    return views.signature(session, number, parameters["effect"], parameters["run"], span, pixels)
 
 
-def map_of_runs(session: Session, asked: Asked) -> Any:
+def map_of_runs(session: Session, parameters: Parameters) -> Any:
     """Return the map of the residual over runs and speeds."""
-    return views.map_of_runs(session, _number(asked))
+    return views.map_of_runs(session, _number(parameters))
 
 
-def _number(asked: Asked) -> int:
-    number = _model(asked)
+def _number(parameters: Parameters) -> int:
+    number = _model(parameters)
     if number is None:
         raise InputError(problem="no model is chosen", mend="fit one")
     return number
 
 
-def plane(session: Session, asked: Asked) -> Any:
+def plane(session: Session, parameters: Parameters) -> Any:
     """Return the plane of friction against speed."""
-    return views.plane(session, _model(asked), *_picture(asked))
+    return views.plane(session, _model(parameters), *_picture(parameters))
 
 
-def brush(session: Session, asked: Asked) -> Any:
+def brush(session: Session, parameters: Parameters) -> Any:
     """Return a selection in all views."""
-    return views.brushed(session, _model(asked), dict(asked["selection"]), *_picture(asked))
+    return views.brushed(
+        session, _model(parameters), dict(parameters["selection"]), *_picture(parameters)
+    )
 
 
-def _picture(asked: Asked) -> tuple[list[str], tuple[int, int]]:
+def _picture(parameters: Parameters) -> tuple[list[str], tuple[int, int]]:
     """Return the runs and the size in pixels of a plane."""
-    size = (_pixels(asked, "columns", 400), _pixels(asked, "rows", 300))
-    return [str(name) for name in asked["runs"]], size
+    size = (_pixels(parameters, "columns", 400), _pixels(parameters, "rows", 300))
+    return [str(name) for name in parameters["runs"]], size
 
 
-def open_campaign(session: Session, asked: Asked) -> Any:
+def open_campaign(session: Session, parameters: Parameters) -> Any:
     """Open a rig and its runs."""
-    session.open(str(asked["rig"]), [str(name) for name in asked["runs"]])
+    session.open(str(parameters["rig"]), [str(name) for name in parameters["runs"]])
     return {}
 
 
-def demo(session: Session, asked: Asked) -> Any:
+def demo(session: Session, parameters: Parameters) -> Any:
     """Open the demo data; copy them into the folder if `jbf demo` has not written them there."""
     with as_file(files("jbf") / "data" / "demo" / "hidden") as shipped:
         there = [name for name in DEMO_PLACES if _holds(session.folder.root / name, shipped)]
@@ -117,109 +119,109 @@ def _holds(folder: Path, shipped: Path) -> bool:
     return not differ and not missing
 
 
-def look(session: Session, asked: Asked) -> Any:
+def look(session: Session, parameters: Parameters) -> Any:
     """Return the guessed assignment of a file's columns."""
-    return importer.looked(session.folder, str(asked["file"]))
+    return importer.looked(session.folder, str(parameters["file"]))
 
 
-def try_map(session: Session, asked: Asked) -> Any:
+def try_map(session: Session, parameters: Parameters) -> Any:
     """Return the runs that a map yields from files."""
-    form = asked.get("form")
+    form = parameters.get("form")
     told = None if form is None else dict(form)
-    return importer.tried(session.folder, _files(asked), str(asked["map"]), told)
+    return importer.tried(session.folder, _files(parameters), str(parameters["map"]), told)
 
 
-def import_files(session: Session, asked: Asked) -> Any:
+def import_files(session: Session, parameters: Parameters) -> Any:
     """Import files as runs and open them."""
-    into = str(asked["into"])
-    found = importer.imported(session.folder, _files(asked), str(asked["map"]), into)
+    into = str(parameters["into"])
+    found = importer.imported(session.folder, _files(parameters), str(parameters["map"]), into)
     session.open(found["rig"], found["files"])
     return found
 
 
-def _files(asked: Asked) -> list[str]:
-    return [str(name) for name in asked["files"]]
+def _files(parameters: Parameters) -> list[str]:
+    return [str(name) for name in parameters["files"]]
 
 
-def trim(session: Session, asked: Asked) -> Any:
+def trim(session: Session, parameters: Parameters) -> Any:
     """Restrict a run to an interval, or restore all of it."""
-    first, last = _span(asked)
+    first, last = _span(parameters)
     span = None if first is None or last is None else (first, last)
     with session.lock:
-        session.on_bench().trim(str(asked["run"]), span)
+        session.on_bench().trim(str(parameters["run"]), span)
     session.changed()
     return {}
 
 
-def leave_out(session: Session, asked: Asked) -> Any:
+def leave_out(session: Session, parameters: Parameters) -> Any:
     """Exclude a run from fits, or include it again."""
     with session.lock:
-        session.on_bench().leave_out(str(asked["run"]), bool(asked["out"]))
+        session.on_bench().leave_out(str(parameters["run"]), bool(parameters["out"]))
     session.changed()
     return {}
 
 
-def law(session: Session, asked: Asked) -> Any:
+def law(session: Session, parameters: Parameters) -> Any:
     """Choose the base law."""
-    session.choose_law(str(asked["law"]))
+    session.choose_law(str(parameters["law"]))
     return {}
 
 
-def fit(session: Session, asked: Asked) -> Any:
+def fit(session: Session, parameters: Parameters) -> Any:
     """Fit a law with effects, and test all other effects as candidates."""
-    session.begin("round", [str(e) for e in asked.get("effects", [])], _parent(asked))
+    session.begin("round", [str(e) for e in parameters.get("effects", [])], _parent(parameters))
     return {}
 
 
-def diagnose(session: Session, asked: Asked) -> Any:
+def diagnose(session: Session, parameters: Parameters) -> Any:
     """Run the complete diagnosis."""
-    session.begin("diagnose", (), _parent(asked))
+    session.begin("diagnose", (), _parent(parameters))
     return {}
 
 
-def _parent(asked: Asked) -> int | None:
-    return None if asked.get("parent") is None else int(asked["parent"])
+def _parent(parameters: Parameters) -> int | None:
+    return None if parameters.get("parent") is None else int(parameters["parent"])
 
 
-def cancel(session: Session, asked: Asked) -> Any:
+def cancel(session: Session, parameters: Parameters) -> Any:
     """Cancel the running fit."""
     return {"cancelled": session.jobs.cancel()}
 
 
-def show(session: Session, asked: Asked) -> Any:
+def show(session: Session, parameters: Parameters) -> Any:
     """Select the model to display."""
-    session.show(_model(asked))
+    session.show(_model(parameters))
     return {}
 
 
-def beside(session: Session, asked: Asked) -> Any:
+def compare_with(session: Session, parameters: Parameters) -> Any:
     """Select a second model to draw for comparison."""
-    session.models.put_beside(_model(asked))
+    session.models.set_compared(_model(parameters))
     session.changed()
     return {}
 
 
-def undo(session: Session, asked: Asked) -> Any:
+def undo(session: Session, parameters: Parameters) -> Any:
     """Return to the parent model."""
     parent = session.models.node()["parent"]
     session.show(parent)
     return {}
 
 
-def keep(session: Session, asked: Asked) -> Any:
+def keep(session: Session, parameters: Parameters) -> Any:
     """Write a file into the folder."""
-    return kept.keep(session, str(asked["what"]))
+    return kept.keep(session, str(parameters["what"]))
 
 
-def text(session: Session, asked: Asked) -> Any:
+def text(session: Session, parameters: Parameters) -> Any:
     """Return the content of such a file as a download."""
-    name, content = kept.text_of(session, str(asked["what"]))
+    name, content = kept.text_of(session, str(parameters["what"]))
     said = f"attachment; filename*=UTF-8''{quote(name)}"
     # Never displayed as a page of this server: a report is opened from disk.
     return Response(content, headers={"content-disposition": said}, media_type="text/plain")
 
 
-ASKED: dict[str, Callable[[Session, Asked], Any]] = {
+QUERIES: dict[str, Callable[[Session, Parameters], Any]] = {
     "state": state,
     "files": listing,
     "series": series,
@@ -228,7 +230,7 @@ ASKED: dict[str, Callable[[Session, Asked], Any]] = {
     "text": text,
 }
 """Handlers of GET requests, which change nothing."""
-DONE: dict[str, Callable[[Session, Asked], Any]] = {
+COMMANDS: dict[str, Callable[[Session, Parameters], Any]] = {
     "plane": plane,
     "brush": brush,
     "open": open_campaign,
@@ -243,7 +245,7 @@ DONE: dict[str, Callable[[Session, Asked], Any]] = {
     "diagnose": diagnose,
     "cancel": cancel,
     "show": show,
-    "beside": beside,
+    "compare_with": compare_with,
     "undo": undo,
     "keep": keep,
 }

@@ -101,7 +101,7 @@ def of_step(step: Step) -> Answer:
     }
 
 
-def power_told(power: Iterable[Power], model: Model) -> list[Answer]:
+def of_power(power: Iterable[Power], model: Model) -> list[Answer]:
     """Return the detection limits of each effect, worded as in the reports."""
     found = list(power)
     rows = power_rows(found, model.law, model.rig.quantities)

@@ -27,8 +27,8 @@ TICK_S = 0.1
 PULSE_S = 10.0
 """Interval without changes after which a comment line is sent, so that a closed page is noticed."""
 
-Asked = dict[str, Any]
-Action = Callable[[Session, Asked], Any]
+Parameters = dict[str, Any]
+Action = Callable[[Session, Parameters], Any]
 
 
 def create_app(session: Session, token: str, port: int, largest: int = LARGEST_UPLOAD) -> Starlette:
@@ -48,7 +48,7 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
 
     def endpoint(action: Action) -> Callable[[Request], Any]:
         async def answer(request: Request) -> Response:
-            asked: Asked = dict(request.query_params)
+            parameters: Parameters = dict(request.query_params)
             if request.method == "POST":
                 body = await request.body()
                 try:
@@ -57,8 +57,8 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
                     return _refused("the body is no JSON", 400)
                 if not isinstance(content, dict):
                     return _refused("the body is no object", 400)
-                asked = content
-            return await run_in_threadpool(_answered, action, session, asked)
+                parameters = content
+            return await run_in_threadpool(_answered, action, session, parameters)
 
         return answer
 
@@ -86,8 +86,8 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
         Route("/", _page),
         Route("/api/events", events),
         Route("/api/upload", upload, methods=["POST"]),
-        *(Route(f"/api/{n}", endpoint(a)) for n, a in actions.ASKED.items()),
-        *(Route(f"/api/{n}", endpoint(a), methods=["POST"]) for n, a in actions.DONE.items()),
+        *(Route(f"/api/{n}", endpoint(a)) for n, a in actions.QUERIES.items()),
+        *(Route(f"/api/{n}", endpoint(a), methods=["POST"]) for n, a in actions.COMMANDS.items()),
         Mount("/static", StaticFiles(packages=[("jbf.workbench", "static")])),
         Route("/vendored/{name}", _vendored),
     ]
@@ -95,9 +95,9 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
     return Starlette(routes=routes, middleware=[guard])
 
 
-def _answered(action: Action, session: Session, asked: Asked) -> Response:
+def _answered(action: Action, session: Session, parameters: Parameters) -> Response:
     try:
-        found = action(session, asked)
+        found = action(session, parameters)
     except JbfError as error:
         return _refused(str(error))
     except (KeyError, TypeError, ValueError) as error:
@@ -132,7 +132,7 @@ async def _news(session: Session, request: Request) -> AsyncIterator[str]:
         # The elapsed time of a running fit changes as well.
         if session.version != told or (running and quiet >= 1.0):
             told, quiet = session.version, 0.0
-            state = await run_in_threadpool(session.told)
+            state = await run_in_threadpool(session.to_dict)
             yield f"data: {json.dumps(state)}\n\n"
         elif quiet >= PULSE_S:
             quiet = 0.0

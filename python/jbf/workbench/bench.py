@@ -18,8 +18,8 @@ from jbf.records.rig import Rig, read_rig
 from jbf.records.run import Run
 from jbf.records.run_files import read_runs
 from jbf.text_files import read_text
+from jbf.workbench.equivalent_commands import Steps
 from jbf.workbench.files import Folder
-from jbf.workbench.said import Steps
 
 Span = tuple[float, float]
 
@@ -146,7 +146,7 @@ class Bench:
 
         threading.Thread(target=look, daemon=True).start()
 
-    def told(self) -> list[Mapping[str, Any]]:
+    def to_list(self) -> list[Mapping[str, Any]]:
         """Return the runs as data for the page."""
         return [
             {

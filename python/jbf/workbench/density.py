@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.workbench.plane import Frame
-from jbf.workbench.series import Seen
+from jbf.workbench.series import RunSeries
 
 Mask = npt.NDArray[np.bool_]
 Size = tuple[int, int]
@@ -34,11 +34,11 @@ class Density:
     """
 
     frame: Frame
-    places: Mapping[Seen, npt.NDArray[np.int32]]
+    places: Mapping[RunSeries, npt.NDArray[np.int32]]
     measured: str
     model: str | None
 
-    def layer_of(self, masks: Mapping[Seen, Mask]) -> str:
+    def layer_of(self, masks: Mapping[RunSeries, Mask]) -> str:
         """Return the image of a subset of the samples."""
         return self.frame.picture([place[masks[run]] for run, place in self.places.items()])
 
@@ -49,7 +49,7 @@ class Density:
 
 
 @lru_cache(maxsize=8)
-def density(runs: tuple[Seen, ...], size: Size) -> Density:
+def density(runs: tuple[RunSeries, ...], size: Size) -> Density:
     """Compute the density of runs with at most the given number of columns and rows."""
     measured = {run: run.friction for run in runs if run.friction is not None}
     models = [run.model_n for run in measured if run.model_n is not None]

@@ -18,7 +18,7 @@ from jbf.importing.map_text import map_text
 from jbf.importing.result import Import
 from jbf.workbench.files import Folder
 from jbf.workbench.map_form import (
-    beside_names,
+    additional_names,
     changed_by,
     cut_name,
     file_columns,
@@ -82,14 +82,16 @@ def tried(
     if form is not None:
         text = changed_by(text, list(form["rows"]), dict(form["rig"]))
     paths, cut = _paths(folder, names), _cut_file(folder, text)
-    beside = _beside(folder, text)
-    told: dict[str, Any] = {"map": text, "form": form_of(text), "runs": [], "problem": None}
+    beside = _additional_files(folder, text)
+    answer: dict[str, Any] = {"map": text, "form": form_of(text), "runs": [], "problem": None}
     try:
         with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
-            told |= _told(import_files(paths, _map_file(there, text), cut_file=cut, beside=beside))
+            answer |= _content_of(
+                import_files(paths, _map_file(there, text), cut_file=cut, beside=beside)
+            )
     except InputError as error:
-        told["problem"] = str(unplaced(error))
-    return told
+        answer["problem"] = str(unplaced(error))
+    return answer
 
 
 def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict[str, Any]:
@@ -98,15 +100,15 @@ def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict
     if out.exists():
         raise InputError(file=into, problem="is there already", mend="name another folder")
     paths, cut = _paths(folder, names), _cut_file(folder, text)
-    beside = _beside(folder, text)
+    beside = _additional_files(folder, text)
     with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
         try:
             found = import_files(paths, _map_file(there, text), out, cut_file=cut, beside=beside)
         except InputError as error:
             raise unplaced(error) from None
-        told = _told(found)
+        answer = _content_of(found)
     runs = [folder.name(out / f"{piece.name}.csv") for piece in found.pieces if piece.keep]
-    return {**told, "rig": folder.name(out / "rig.toml"), "files": runs}
+    return {**answer, "rig": folder.name(out / "rig.toml"), "files": runs}
 
 
 def _paths(folder: Folder, names: Sequence[str]) -> list[Path]:
@@ -125,9 +127,9 @@ def _cut_file(folder: Folder, text: str) -> Path | None:
     return None if name is None else folder.path(name)
 
 
-def _beside(folder: Folder, text: str) -> list[Path] | None:
+def _additional_files(folder: Folder, text: str) -> list[Path] | None:
     """Return the additional files named by a map; they must be in the folder, too."""
-    return [folder.path(name) for name in beside_names(text)] or None
+    return [folder.path(name) for name in additional_names(text)] or None
 
 
 def _map_file(folder: str, text: str) -> Path:
@@ -136,7 +138,7 @@ def _map_file(folder: str, text: str) -> Path:
     return path
 
 
-def _told(found: Import) -> dict[str, Any]:
+def _content_of(found: Import) -> dict[str, Any]:
     said, runs = found.rig.quantities, []
     units = {"friction_n": said.force, "velocity_m_s": said.speed, "position_m": said.length}
     for run in found.runs:

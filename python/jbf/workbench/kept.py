@@ -9,7 +9,7 @@ from jbf.errors import InputError
 from jbf.export import c, rust
 from jbf.reporting.comparison_page import comparison_page
 from jbf.text_files import write_texts
-from jbf.workbench.said import TRIMMED
+from jbf.workbench.equivalent_commands import TRIMMED
 from jbf.workbench.session import Session
 from jbf.workbench.session_file import FILE, save
 

@@ -240,7 +240,7 @@ def cut_name(text: str) -> str | None:
     return str(_parsed(text)["cut"]["file"])
 
 
-def beside_names(text: str) -> list[str]:
+def additional_names(text: str) -> list[str]:
     """Return the additional files named by a map, as written in it.
 
     Raises

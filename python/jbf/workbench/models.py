@@ -22,13 +22,13 @@ class Models:
         Data of each model by number; `parent` is the number of the model it was derived from.
     current
         Number of the model that the plots show.
-    beside
+    compared
         Number of a second model that is drawn for comparison.
     """
 
     nodes: dict[int, dict[str, Any]] = field(default_factory=dict)
     current: int | None = None
-    beside: int | None = None
+    compared: int | None = None
 
     def add(self, parent: int | None, words: str, content: Mapping[str, Any]) -> int:
         """Add a model, which becomes the current one; returns its number."""
@@ -54,9 +54,9 @@ class Models:
         """Display a model, or only the records."""
         self.current = None if number is None else int(self.node(number)["id"])
 
-    def put_beside(self, number: int | None) -> None:
+    def set_compared(self, number: int | None) -> None:
         """Draw a second model for comparison with the current one."""
-        self.beside = None if number is None else int(self.node(number)["id"])
+        self.compared = None if number is None else int(self.node(number)["id"])
 
     def undo(self) -> None:
         """Return to the parent of the current model, which stays in the tree."""
@@ -72,11 +72,11 @@ class Models:
         keys = ("id", "words", "effects", "rms", "held_out_rms", "noise_rms")
         return [{key: node.get(key) for key in keys} for node in reversed(line)]
 
-    def told(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Return the data for the page."""
         return {
             "current": self.current,
-            "beside": self.beside,
+            "compared": self.compared,
             "ledger": self.ledger(),
             "nodes": [
                 {key: value for key, value in node.items() if key not in LARGE}

@@ -21,7 +21,7 @@ TIME_DIGITS = 11
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class RunSeries:
     """Data of one run, compared by identity; `model_n` and `counted` exist only with a model."""
 
     time_s: Array
@@ -49,32 +49,32 @@ class Seen:
 
 
 @lru_cache(maxsize=512)
-def as_read(run: Run) -> Seen:
+def as_read(run: Run) -> RunSeries:
     """Return the data of a run as in its file."""
     speed = run.velocity
     if not np.any(np.isfinite(speed)):
         path = run.position_m if run.position_m is not None else run.angle_rad
         speed = np.zeros(len(run)) if path is None else np.gradient(path, run.time_s)
-    return Seen(run.time_s, speed, run.friction)
+    return RunSeries(run.time_s, speed, run.friction)
 
 
 @lru_cache(maxsize=512)
-def as_modelled(file: Path) -> Seen:
+def as_modelled(file: Path) -> RunSeries:
     """Return the data of a run with a model's prediction, from the file written by the fit."""
     time, speed, friction, model, counted = map(np.asarray, np.load(file, mmap_mode="r"))
-    return Seen(time, speed, friction, model, counted)
+    return RunSeries(time, speed, friction, model, counted)
 
 
-def drawn(seen: Seen, from_s: float | None, to_s: float | None, pixels: int) -> dict[str, Any]:
+def drawn(data: RunSeries, from_s: float | None, to_s: float | None, pixels: int) -> dict[str, Any]:
     """Return an interval of a run, reduced to the resolution of the plot."""
-    begin = seen.time_s[0] if from_s is None else from_s
-    end = seen.time_s[-1] if to_s is None else to_s
-    stretch = Stretch.between(seen.time_s, float(begin), float(end), pixels)
-    found = thinned(seen.time_s, seen.columns(), stretch)
+    begin = data.time_s[0] if from_s is None else from_s
+    end = data.time_s[-1] if to_s is None else to_s
+    stretch = Stretch.between(data.time_s, float(begin), float(end), pixels)
+    found = thinned(data.time_s, data.columns(), stretch)
     return {
-        "samples": len(seen.time_s),
-        "from_s": float(seen.time_s[0]),
-        "to_s": float(seen.time_s[-1]),
+        "samples": len(data.time_s),
+        "from_s": float(data.time_s[0]),
+        "to_s": float(data.time_s[-1]),
         "stride": stretch.stride,
         **{name: listed(values, TIME_DIGITS if name == "time_s" else DIGITS)
            for name, values in found.items()},

@@ -50,7 +50,7 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
     except ImportError:
         mend = 'pip install "jbf[workbench]"'
         raise InputError(problem="Starlette or uvicorn is not installed", mend=mend) from None
-    if not vendored.is_there():
+    if not vendored.is_complete():
         mend = "python -m jbf.workbench.vendored (once, with a network)"
         raise InputError(problem=f"{vendored.NAME} was not fetched when this was built", mend=mend)
     listener = listening(port)

@@ -13,15 +13,15 @@ from jbf.models.catalogue import effects as catalogue
 from jbf.models.catalogue import find_effect, find_law, laws, reason_not_applicable
 from jbf.models.chain import check_rig
 from jbf.models.model import Model
+from jbf.models.number_format import number as written
 from jbf.models.vocabulary import AUTO
-from jbf.models.written import number as written
 from jbf.records.counts import count_of
 from jbf.records.rig import Rig
 from jbf.workbench.bench import Bench
+from jbf.workbench.equivalent_commands import commands, python
 from jbf.workbench.files import Folder
 from jbf.workbench.jobs import Ending, Jobs
 from jbf.workbench.models import Models
-from jbf.workbench.said import commands, python
 from jbf.workbench.work import Kind, Order
 
 
@@ -236,7 +236,7 @@ class Session:
             self._loaded[number] = Model.load(file)
         return self._loaded[number]
 
-    def told(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Return the complete state for the page."""
         with self.lock:
             job, bench = self.jobs.job, self.bench
@@ -245,13 +245,13 @@ class Session:
                 "folder": str(self.folder.root),
                 "rig": None if bench is None else bench.rig_name,
                 "units": None if bench is None else _units(bench.rig),
-                "runs": [] if bench is None else bench.told(),
+                "runs": [] if bench is None else bench.to_list(),
                 "law": self.law,
                 "laws": [*laws(), AUTO],
                 "effects": self._effects(),
                 "job": None if job is None else job.to_dict(),
                 "message": self.message,
-                **self.models.told(),
+                **self.models.to_dict(),
             }
             if bench is not None:
                 node = None if self.models.current is None else self.models.node()

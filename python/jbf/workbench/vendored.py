@@ -35,7 +35,7 @@ def file(name: str) -> Path | None:
     return path if name in FILES.values() and path.is_file() else None
 
 
-def is_there() -> bool:
+def is_complete() -> bool:
     """Return whether all files were fetched."""
     return all(file(name) for name in FILES.values())
 
@@ -72,6 +72,6 @@ def fetch() -> None:
 
 
 if __name__ == "__main__":
-    if not is_there():
+    if not is_complete():
         fetch()
     sys.stdout.write(f"{NAME} {VERSION} is in {HERE}\n")

@@ -14,7 +14,7 @@ from jbf.models.catalogue import effects as catalogue
 from jbf.models.model import Model
 from jbf.workbench.density import Density, Size, density
 from jbf.workbench.plane import within
-from jbf.workbench.series import Seen, as_modelled, as_read, drawn, listed
+from jbf.workbench.series import RunSeries, as_modelled, as_read, drawn, listed
 from jbf.workbench.session import Session
 from jbf.workbench.thinning import Stretch, ranges_of, thinned
 
@@ -23,7 +23,7 @@ Mask = npt.NDArray[np.bool_]
 MAP_SPEEDS = 24
 
 
-def seen(session: Session, number: int | None) -> dict[str, Seen]:
+def series_by_run(session: Session, number: int | None) -> dict[str, RunSeries]:
     """Return every run by name: with a model's prediction if available, otherwise as read."""
     found = {run.name: as_read(run) for run in session.on_bench().runs}
     files = None if number is None else session.records(number)
@@ -32,10 +32,10 @@ def seen(session: Session, number: int | None) -> dict[str, Seen]:
     return found
 
 
-def one(session: Session, number: int | None, name: str) -> Seen:
+def series_of_run(session: Session, number: int | None, name: str) -> RunSeries:
     """Return one of these runs."""
     session.on_bench().run(name)
-    return seen(session, number)[name]
+    return series_by_run(session, number)[name]
 
 
 def series(
@@ -43,19 +43,19 @@ def series(
     pixels: int,
 ) -> dict[str, Any]:  # fmt: skip
     """Return a section of a run, with the prediction of the second model if one is selected."""
-    whole = one(session, number, name)
+    whole = series_of_run(session, number, name)
     found = drawn(whole, *span, pixels)
-    beside = session.models.beside
-    if beside is not None and beside != number:
-        other = one(session, beside, name)
+    compared = session.models.compared
+    if compared is not None and compared != number:
+        other = series_of_run(session, compared, name)
         if other.model_n is not None and len(other.time_s) == len(whole.time_s):
             stretch = Stretch.between(
                 whole.time_s, float(span[0] or whole.time_s[0]),
                 float(whole.time_s[-1] if span[1] is None else span[1]), pixels,
             )  # fmt: skip
-            columns = {"beside_n": other.model_n}
+            columns = {"compared_n": other.model_n}
             if other.residual_n is not None:
-                columns["beside_residual_n"] = other.residual_n
+                columns["compared_residual_n"] = other.residual_n
             shown = thinned(whole.time_s, columns, stretch)
             found |= {name: listed(shown[name]) for name in columns}
     return found
@@ -67,11 +67,16 @@ def plane(session: Session, number: int | None, names: list[str], size: Size) ->
 
 
 def _density(session: Session, number: int | None, names: list[str], size: Size) -> Density:
-    return density(tuple(run for name, run in seen(session, number).items() if name in names), size)
+    return density(
+        tuple(run for name, run in series_by_run(session, number).items() if name in names), size
+    )
 
 
 def masks_of(
-    session: Session, number: int | None, selection: Mapping[str, Any], runs: Mapping[str, Seen]
+    session: Session,
+    number: int | None,
+    selection: Mapping[str, Any],
+    runs: Mapping[str, RunSeries],
 ) -> dict[str, Mask]:
     """Return the mask of selected samples of each run.
 
@@ -98,7 +103,7 @@ def masks_of(
 
 
 def _marked(
-    session: Session, number: int | None, place: int, runs: Mapping[str, Seen]
+    session: Session, number: int | None, place: int, runs: Mapping[str, RunSeries]
 ) -> dict[str, Mask]:
     node = session.models.node(number)
     if not 0 <= place < len(node["failures"]):
@@ -127,7 +132,7 @@ def brushed(
     They are its intervals and residual per run, its speed range, its cells in the map over runs,
     and its density in the plane of some runs.
     """
-    runs = seen(session, number)
+    runs = series_by_run(session, number)
     masks = masks_of(session, number, selection, runs)
     edges = speed_edges(tuple(runs.values()))
     by_run: dict[str, dict[str, Any]] = {}
@@ -166,7 +171,7 @@ def _rms(values: Array) -> float | None:
 
 
 @lru_cache(maxsize=8)
-def speed_edges(runs: tuple[Seen, ...]) -> Array:
+def speed_edges(runs: tuple[RunSeries, ...]) -> Array:
     """Return the edges of the map's columns, m/s.
 
     They are closer near standstill, where friction changes most.
@@ -182,7 +187,7 @@ def _column(speed: Array, edges: Array) -> Array:
 
 def map_of_runs(session: Session, number: int) -> dict[str, Any]:
     """Return the mean of record minus prediction, one row per run, one column per speed range."""
-    runs = seen(session, number)
+    runs = series_by_run(session, number)
     if all(run.residual_n is None for run in runs.values()):
         raise InputError(problem="this model has not been compared yet", mend="wait a moment")
     edges = speed_edges(tuple(runs.values()))
@@ -210,7 +215,7 @@ def signature(
     It is scaled by least squares to the residual.
     """
     run = session.on_bench().run(name)
-    known = one(session, number, name)
+    known = series_of_run(session, number, name)
     base = session.model(number)
     if effect in base.effects or effect not in catalogue():
         raise InputError(problem=f"{effect} is in the model already, or unknown", mend="choose")

@@ -32,8 +32,8 @@ from jbf.workbench.answers import (
     of_diagnosis,
     of_fit,
     of_model,
+    of_power,
     of_step,
-    power_told,
 )
 
 Kind = Literal["round", "diagnose", "compare"]
@@ -102,17 +102,17 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
 
     Ctrl-C in the terminal is handled by the server, which stops its processes.
     """
-    asked = threading.Event()
+    stop_requested = threading.Event()
 
     def interrupt(*_: object) -> None:
-        if asked.is_set():
-            asked.clear()
+        if stop_requested.is_set():
+            stop_requested.clear()
             raise KeyboardInterrupt
 
     def listen() -> None:
         try:
             if connection.recv() == STOP:
-                asked.set()
+                stop_requested.set()
                 _thread.interrupt_main()
         except (EOFError, OSError):  # the server has ended, or the work is done
             pass
@@ -122,7 +122,7 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
     try:
         yield
     finally:
-        asked.clear()
+        stop_requested.clear()
 
 
 def best_so_far(fit: Fit, order: Order) -> Answer:
@@ -158,14 +158,14 @@ def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
             progress=progress,
             fitted_as=fitted_as,
         )
-        return {**of_step(found.step), "power": power_told(found.power, found.fit.model)}
+        return {**of_step(found.step), "power": of_power(found.power, found.fit.model)}
     diagnosis = diagnose(order.rig, order.runs, law=order.law, clock=order.clock, progress=progress)
     return {
         **of_model(diagnosis.after),
         **of_fit(diagnosis.fit),
         **of_step(diagnosis.steps[-1]),
         **kept_records(diagnosis.after, order.folder),
-        "power": power_told(diagnosis.power, diagnosis.model),
+        "power": of_power(diagnosis.power, diagnosis.model),
         "diagnosis": of_diagnosis(diagnosis),
         "report": diagnosis_page(diagnosis),
     }

@@ -97,7 +97,7 @@ def extra_files(folder: Path) -> None:
     (folder / "ends.py").write_text("raise SystemExit(3)\n")
 
 
-pytestmark = pytest.mark.usefixtures("forget_own_effects")
+pytestmark = pytest.mark.usefixtures("forget_user_effects")
 
 
 @pytest.mark.parametrize(("words", "fragment"), cases(REFUSED | REFUSED_SLOWLY, REFUSED))

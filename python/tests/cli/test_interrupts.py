@@ -36,7 +36,7 @@ jbf.register_effect(stopping, parameters=[zero])
 
 
 FIT = "fit runs --effects stopping"
-pytestmark = pytest.mark.usefixtures("forget_own_effects")
+pytestmark = pytest.mark.usefixtures("forget_user_effects")
 
 
 def register(at: int) -> dict[str, Any]:

@@ -123,7 +123,7 @@ def test_robustness_ratio_is_the_error_with_over_that_without_compensation(name:
     task = replace(TASKS["position square"], seconds=27.0)
     load_n = case.load_factor * BASE.rig.load.normal_n
     without, with_ = (
-        run(case.plant, s, task, bench=case.bench, told=THESIS_BENCH, load_n=load_n).true_rms
+        run(case.plant, s, task, bench=case.bench, assumed=THESIS_BENCH, load_n=load_n).true_rms
         for s in (NoCompensation(), Observed(BASE, tune(BASE)))
     )
     assert square_outcomes()[name].ratios == {"position square": pytest.approx(with_ / without)}

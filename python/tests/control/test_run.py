@@ -154,7 +154,7 @@ def test_single_precision_run_has_float32_output_and_an_error_within_10_percent(
 @pytest.mark.parametrize(
     ("given", "named"),
     [
-        ({"told": replace(THESIS_BENCH, dt_s=0.001)}, "different steps"),
+        ({"assumed": replace(THESIS_BENCH, dt_s=0.001)}, "different steps"),
         ({"reference": ([], [])}, r"\(0,\) and \(0,\)"),
         ({"reference": ([1.0], [1.0, 2.0])}, r"\(1,\) and \(2,\)"),
         ({"reference": ([[1.0]], [[1.0]])}, r"\(1, 1\)"),

@@ -17,7 +17,7 @@ from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.power.detection_limits import non_centrality
 from jbf.diagnosis.power.planned_runs import as_recorded
 from jbf.diagnosis.power.strength import strength_of
-from jbf.models.chain import core_motion, imposed
+from jbf.models.chain import core_motion, estimated_motion
 from jbf.records.drive import Drive
 from jbf.records.run_files import read_runs
 from jbf.records.toml_file import MOST
@@ -79,7 +79,7 @@ def test_each_run_of_a_plan_is_the_best_addition_to_the_runs_before_it() -> None
     steps = [VALUES | {name: (1.0 + step) * value} for name, value in VALUES.items()]
     informations = []
     for _, run in motions:
-        driven = [core_motion(MODEL.rig, run, imposed(MODEL.rig, run))]
+        driven = [core_motion(MODEL.rig, run, estimated_motion(MODEL.rig, run))]
         friction = MODEL.predict(run)
         slopes = [
             (Model(Rig(), "coulomb", parameters=stepped).predict(run) - friction) / step

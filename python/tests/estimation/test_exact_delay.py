@@ -20,9 +20,9 @@ from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
 from jbf.estimation.spread import Spread, spread
+from jbf.models.delayed_reading import TAU, DelayedChain
 from jbf.models.driven_motion import reversals
-from jbf.models.late_reading import TAU, LateChain
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from scipy.stats import norm
 
 STEP_S, TAU_S, NOISE_N = 0.02, 0.0471, 0.2
@@ -206,10 +206,12 @@ def friction(v: Array) -> Array:
     return LAW["F_c"] * np.sign(v) + LAW["F_v"] * v
 
 
-def known_motion(time: Array, velocity: Array, acceleration: Array, error: float) -> ImposedMotion:
+def known_motion(
+    time: Array, velocity: Array, acceleration: Array, error: float
+) -> EstimatedMotion:
     rest = velocity == 0.0
     path = np.concatenate(([0.0], np.cumsum(velocity[1:] * np.diff(time))))
-    return ImposedMotion(velocity, acceleration, path, np.full(len(time), error), rest, ~rest)
+    return EstimatedMotion(velocity, acceleration, path, np.full(len(time), error), rest, ~rest)
 
 
 @pytest.mark.parametrize("tau_s", [0.033, 0.151])
@@ -250,7 +252,7 @@ def test_mean_force_near_a_reversal_is_blurred_by_the_errors_of_instant_and_dela
     motion = known_motion(time, v, np.full(len(time), slope), error)
     run = Run.from_arrays(time, v, np.zeros(len(time)))
     model = delayed_model(tau_s)
-    chain = LateChain(Rig(), "coulomb", "journal", model.effects, list(model.parameters))
+    chain = DelayedChain(Rig(), "coulomb", "journal", model.effects, list(model.parameters))
     reading = chain.read(model.values, run, time, motion, delay_sd_s)
     gone_s = time - tau_s - turn_s
     sd_s = np.hypot(error / slope, delay_sd_s)

@@ -25,7 +25,7 @@ from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.reversals import instant_errors_n
 from jbf.models.catalogue import parameters_of
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from rigsim.motions import sine
 
 EXTENDED = pytest.mark.extended
@@ -174,7 +174,7 @@ def prepared(
     rest = v == 0.0
     known = ~rest & ~np.isin(np.arange(n), unknown)
     errors = np.broadcast_to(np.asarray(error, dtype=float), (n,)).copy()
-    motion = ImposedMotion(v, np.zeros(n), STEP_S * np.cumsum(v), errors, rest, known)
+    motion = EstimatedMotion(v, np.zeros(n), STEP_S * np.cumsum(v), errors, rest, known)
     short = made.run.select(np.arange(200) < n)
     return replace(made, run=short, motion=motion, friction=made.friction[:n])
 

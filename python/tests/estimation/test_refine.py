@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 from jbf import Rig, Run, fit
 from jbf.estimation.errors_in_motion import ErrorsInMotion
-from jbf.records.motion.imposed import impose
+from jbf.records.motion.estimated_motion import estimate_motion
 
 STEP_S = 0.004
 INERTIA, COULOMB, VISCOUS = 0.05, 0.4, 0.1
@@ -81,7 +81,7 @@ def drawn_residual(
 
 
 def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posterior() -> None:
-    errors: Any = impose(drive(3), None).errors
+    errors: Any = estimate_motion(drive(3), None).errors
     n = len(errors.covariance)
     sensitivity = np.tile([0.0, VISCOUS, INERTIA], (n, 1))
     residual = drawn_residual(errors, sensitivity, 1.0, np.random.default_rng(1))
@@ -98,7 +98,7 @@ def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posteri
 def test_likelihood_is_largest_at_the_scale_with_which_motion_errors_were_drawn(
     scale: float,
 ) -> None:
-    errors: Any = impose(drive(3), None).errors
+    errors: Any = estimate_motion(drive(3), None).errors
     n = len(errors.covariance)
     sensitivity = np.tile([0.0, VISCOUS, INERTIA], (n, 1))
     residual = drawn_residual(errors, sensitivity, scale, np.random.default_rng(2))

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import Model, Rig, Run, compare, fit
-from jbf.records.motion.imposed import impose
+from jbf.records.motion.estimated_motion import estimate_motion
 from point_to_point import BREAKAWAY_N, COULOMB_N, TRUTH, point_to_point
 
 
@@ -36,7 +36,7 @@ def test_sliding_parameters_are_recovered_if_a_controller_holds_between_moves(
 def held_with(run: Run, force_n: float) -> Run:
     """The run with a different holding force at rest."""
     assert run.friction is not None
-    resting = impose(run, None).resting
+    resting = estimate_motion(run, None).resting
     assert 0.2 < np.mean(resting) < 0.8
     return replace(run, friction=np.where(resting, force_n, 0.0) + run.friction)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from input_checks import Capture
 from jbf import cli, export
-from jbf.models.chain import MAX_STEP_S, imposed
+from jbf.models.chain import MAX_STEP_S, estimated_motion
 
 ROOT = Path(__file__).resolve().parents[3]
 Rows = dict[str, list[list[str]]]
@@ -190,12 +190,12 @@ def run(*command: object, folder: Path) -> str:
 
 @pytest.fixture(scope="module")
 def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the imposed motion of each model."""
+    """A folder with the estimated motion of each model."""
     if shutil.which("cargo") is None or not (ROOT / "crates" / "jbf-c").is_dir():
         pytest.skip("needs cargo and the source tree")
     folder = tmp_path_factory.mktemp("export")
     for name, model in models().items():
-        record, m = motion(model), imposed(model.rig, motion(model))
+        record, m = motion(model), estimated_motion(model.rig, motion(model))
         load = np.full(len(record), 104.0 if model.rig.load else 1.0)
         missing = np.full(len(record), np.nan)
         celsius = missing if record.temperature_c is None else record.temperature_c

@@ -11,7 +11,7 @@ from input_errors import input_error
 from jbf import Run
 from jbf.estimation.prepared import Prepared
 from jbf.records.channels import recorded_samples, side_by_side
-from jbf.records.findings.own_clock import own_clock
+from jbf.records.findings.separate_clock import separate_clock
 
 LAW = {"F_c": 4.0, "F_v": 20.0}
 NOISE_N = 0.05
@@ -79,16 +79,18 @@ def test_clock_finding_has_the_force_rate_if_force_and_motion_rates_differ() -> 
     run = Run.from_arrays(0.01 * index, np.sin(0.01 * index), np.cos(0.01 * index), name="a")
     # The force is compared with the fastest motion channel.
     slow = {"velocity_m_s": index % 10 == 0, "angle_rad": index % 2 == 0}
-    assert "50 Hz" in own_clock(replace(run, read=slow))[0].words
+    assert "50 Hz" in separate_clock(replace(run, read=slow))[0].words
     for read, rate_hz in (
         ({"friction_n": index % 4 == 0, "velocity_m_s": index % 5 == 0}, 25.0),
         ({"friction_n": index % 4 == 0}, 25.0),
         ({"velocity_m_s": index % 4 == 0}, 100.0),
     ):
-        (f,) = own_clock(replace(run, read=read))
+        (f,) = separate_clock(replace(run, read=read))
         assert (f.kind, f.channel, f.unit) == ("own_clock", "friction_n", "Hz")
         assert f.size == pytest.approx(rate_hz)
-    assert own_clock(replace(run, read={"load_n": index % 4 == 0})) == own_clock(run) == []
+    assert (
+        separate_clock(replace(run, read={"load_n": index % 4 == 0})) == separate_clock(run) == []
+    )
 
 
 def slide(force_hz: float = 90.0, motion_hz: float = 400.0, seed: int = 1) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import Rig, Run, fit
-from jbf.models.chain import imposed
+from jbf.models.chain import estimated_motion
 from jbf.records.findings.gaps import find_gaps
 from jbf.records.findings.repeated_rows import as_read, repeated_rows
 from jbf.records.findings.repeated_run import copies, repeated, same_recording
@@ -160,7 +160,7 @@ def test_imposed_speed_has_a_tenth_of_the_error_of_a_speed_with_repeated_rows() 
     clean, stale, _ = logged(42)
     for true, run in zip(clean, stale, strict=True):
         assert as_read(true) is true
-        motion = imposed(Rig(), run)
+        motion = estimated_motion(Rig(), run)
         assert len(motion.velocity) == len(run)
         error_m_s = np.linalg.norm(motion.velocity - true.velocity)
         assert error_m_s < 0.1 * np.linalg.norm(run.velocity - true.velocity)
@@ -169,7 +169,7 @@ def test_imposed_speed_has_a_tenth_of_the_error_of_a_speed_with_repeated_rows() 
 def test_imposed_motion_with_repeated_rows_does_not_depend_on_the_force() -> None:
     run = logged(42)[1][0]
     bare = Run.from_arrays(run.time_s, run.velocity, position_m=run.position_m)
-    speeds = [imposed(Rig(), r).velocity for r in (run, bare)]
+    speeds = [estimated_motion(Rig(), r).velocity for r in (run, bare)]
     np.testing.assert_array_equal(*speeds)
 
 

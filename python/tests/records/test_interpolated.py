@@ -10,8 +10,8 @@ import pytest
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
-from jbf.records.findings.filled_in import find_filled_in
 from jbf.records.findings.interpolated import find_native, find_native_of, is_smooth
+from jbf.records.findings.interpolated_samples import find_interpolated_samples
 from jbf.records.findings.polygon import polygon, polygon_rms
 from known_motions import Array, quantised, reading_instants, reversing_force, white
 from scipy.signal import butter, filtfilt, lfilter
@@ -246,7 +246,7 @@ def test_quantised_force_of_a_smooth_drive_has_no_interpolated_samples(
     force = 2.0 * np.tanh(speed / 0.01) + 1.1 * speed + noise * step_n * filtered
     read = np.round(quantised(force, step_n), 5)
     assert find_native(time_s, read) is None
-    assert find_filled_in(time_s, read) is None
+    assert find_interpolated_samples(time_s, read) is None
 
 
 @pytest.mark.parametrize("ratio", [5, 10])
@@ -257,7 +257,7 @@ def test_force_read_at_uneven_instants_and_interpolated_has_samples_on_lines(
     random = np.random.default_rng(ratio)
     ticks_s = 0.02 * (np.cumsum(random.uniform(0.5, 1.5, 3000 // ratio + 200)) * ratio - 3 * ratio)
     drawn = np.interp(TIME_S, ticks_s, reversing_force(ticks_s, 3))
-    native: Any = find_filled_in(TIME_S, np.round(drawn, digits))
+    native: Any = find_interpolated_samples(TIME_S, np.round(drawn, digits))
     # The samples on both sides of a reading are kept.
     assert len(native.time_s) == pytest.approx(2 * len(TIME_S) / ratio, rel=0.1)
 
@@ -269,7 +269,7 @@ def test_single_interpolated_samples_are_removed_from_a_noisy_force(uneven: bool
     lost = random.random(len(time_s)) < 0.05
     lost[[0, -1]] = False
     force = reversing_force(time_s, 3)
-    native: Any = find_filled_in(time_s, np.interp(time_s, time_s[~lost], force[~lost]))
+    native: Any = find_interpolated_samples(time_s, np.interp(time_s, time_s[~lost], force[~lost]))
     np.testing.assert_array_equal(native.time_s, time_s[~lost])
     np.testing.assert_array_equal(native.values, force[~lost])
 
@@ -288,7 +288,7 @@ def test_quantised_noise_has_no_single_interpolated_samples(step_n: float) -> No
     for force in (reversing_force(TIME_S, 0), 0.3 * TIME_S + reversing_force(TIME_S, 0, 0.1)):
         for digits in (3, 4, 15):
             value = quantised(force, step_n) if step_n else force
-            assert find_filled_in(TIME_S, np.round(value, digits)) is None
+            assert find_interpolated_samples(TIME_S, np.round(value, digits)) is None
 
 
 @pytest.mark.parametrize("omega", [*extended([0.02, 0.3]), 3.0])
@@ -300,5 +300,5 @@ def test_smooth_linear_and_held_forces_have_no_single_interpolated_samples(omega
     low = filtfilt(*butter(4, 0.2), 20.0 * np.sign(np.sin(omega * TIME_S)) + noise)
     records = [smooth, triangle, np.sign(triangle - 0.5), half, low, np.repeat(noise[::3], 3)]
     for record in (*records, np.zeros(len(TIME_S)), TIME_S):
-        assert find_filled_in(TIME_S, record) is None
-        assert find_filled_in(TIME_S, np.round(record, 4)) is None
+        assert find_interpolated_samples(TIME_S, record) is None
+        assert find_interpolated_samples(TIME_S, np.round(record, 4)) is None

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import Run
-from jbf.records.motion.imposed import impose
+from jbf.records.motion.estimated_motion import estimate_motion
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
 from known_motions import integrated, path_of, quantised, speed_of, white
 
@@ -96,7 +96,7 @@ def test_finding_of_time_stamp_jitter_states_which_instants_are_used(even: bool)
     stamped = stamps(3e-4, 1000)
     read = STEP_S * np.arange(1000) if even else stamped
     path = quantised(path_of(read), 1e-6)
-    motion = impose(Run.from_arrays(stamped, position_m=path), None)
+    motion = estimate_motion(Run.from_arrays(stamped, position_m=path), None)
     (done,) = (f.done for f in motion.findings if f.kind == "jitter")
     assert done == ("the instants of the even clock are used" if even else "taken as they are")
     assert (motion.clock_s is not None) == even

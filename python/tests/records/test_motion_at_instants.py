@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from jbf import Rig, Run
 from jbf.estimation.prepared import Prepared
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from known_motions import white
 from numpy.polynomial import Polynomial
 
@@ -14,11 +14,11 @@ INSTANTS_S = np.array([0.0, 1.0, 2.0, 4.0, 5.0])
 DURATION_S = 20.0
 
 
-def motion(v: Any, a: Any, rest: str = "00000", known: str = "11111") -> ImposedMotion:
+def motion(v: Any, a: Any, rest: str = "00000", known: str = "11111") -> EstimatedMotion:
     """A motion at five instants; its masks are given as ones and zeros."""
     resting, sign_known = (np.array([c == "1" for c in text]) for text in (rest, known))
     error = np.array([1.0, 2.0, 3.0, 1.0, 1.0])
-    return ImposedMotion(np.array(v), np.array(a), 3.0 * INSTANTS_S, error, resting, sign_known)
+    return EstimatedMotion(np.array(v), np.array(a), 3.0 * INSTANTS_S, error, resting, sign_known)
 
 
 def test_speed_is_interpolated_by_cubics_that_match_speed_and_acceleration() -> None:

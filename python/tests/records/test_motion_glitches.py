@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import Run
-from jbf.records.motion.believed import believed
+from jbf.records.motion.corrected_records import corrected_records
+from jbf.records.motion.estimated_motion import estimate_motion
 from jbf.records.motion.glitches import mend_position, mend_speed, mend_speed_ends
-from jbf.records.motion.held_path import mend_held
-from jbf.records.motion.imposed import impose
 from jbf.records.motion.position import Position
+from jbf.records.motion.stale_positions import replace_stale_positions
 from known_motions import STEP_S, Array, places, quantised, white
 
 SAMPLES = 1000
@@ -128,7 +128,7 @@ def test_speed_that_contradicts_the_path_for_six_samples_is_not_used() -> None:
     for factor, offset in ((0.5, 0.0), (1.0, 0.05)):
         speed = SPEED_M_S + white(SAMPLES, 6, 1e-4)
         speed[500:506] = factor * speed[500:506] + offset
-        motion = impose(Run.from_arrays(TIME_S, speed, position_m=COUNTED_M), None)
+        motion = estimate_motion(Run.from_arrays(TIME_S, speed, position_m=COUNTED_M), None)
         assert np.max(np.abs(motion.velocity - SPEED_M_S)[490:516]) < 1e-3
 
 
@@ -138,10 +138,10 @@ def test_speed_outlier_at_a_record_end_is_replaced_with_unknown_sign(end: int, a
     speed = SPEED_M_S + white(SAMPLES, 5, 1e-4)
     speed[end] = 40.0
     run = Run.from_arrays(TIME_S, speed, angle_rad=PATH_M / 0.5 if angle else None)
-    records = believed(run, 0.5)
+    records = corrected_records(run, 0.5)
     assert places(records.loose) == [end]
     np.testing.assert_allclose(records.speed, SPEED_M_S, atol=2e-3)
-    motion = impose(run, 0.5)
+    motion = estimate_motion(run, 0.5)
     assert not motion.sign_known[end]
     assert motion.sign_known[[1, 2, -3, -2]].all()
     assert [(f.kind, f.channel) for f in motion.findings] == [("glitches", "velocity_m_s")]
@@ -153,7 +153,7 @@ def test_position_outlier_at_a_record_end_is_extrapolated(end: int, with_speed: 
     path = PATH_M.copy()
     path[end] += 0.1
     speed = SPEED_M_S + white(SAMPLES, 5, 1e-4) if with_speed else None
-    records: Any = believed(Run.from_arrays(TIME_S, speed, angle_rad=path / 0.5), 0.5)
+    records: Any = corrected_records(Run.from_arrays(TIME_S, speed, angle_rad=path / 0.5), 0.5)
     assert places(records.loose) == [end]
     np.testing.assert_allclose(records.path, PATH_M, atol=1e-4)
     (finding,) = [f for f in records.findings if f.kind == "glitches"]
@@ -185,7 +185,7 @@ def held_path(at: dict[int, int], *, step: float = 1e-6, speed: Any = 0.1) -> tu
     for first, count in at.items():
         path[first + 1 : first + 1 + count] = path[first]
     position, speeds = Position(path, "angle_rad", "rad", 0.5), np.broadcast_to(speed, 400)
-    return *mend_held("a", TIME_S[:400], position, speeds, "the drive"), true
+    return *replace_stale_positions("a", TIME_S[:400], position, speeds, "the drive"), true
 
 
 def test_held_positions_of_a_moving_shaft_are_reconstructed_from_the_speed() -> None:

@@ -140,7 +140,7 @@ def test_run_is_read_from_an_arrow_table_and_an_arrow_stream() -> None:
         np.testing.assert_array_equal(run.velocity, TIME_S + 1.0)
 
 
-def own_clock() -> Run:
+def separate_clock() -> Run:
     """A run whose friction was sampled at every second instant."""
     return Run.from_channels(
         {
@@ -162,7 +162,7 @@ def assert_equal_runs(run: Run, other: Run) -> None:
     }
 
 
-@pytest.mark.parametrize("run", [RUN, own_clock()])
+@pytest.mark.parametrize("run", [RUN, separate_clock()])
 def test_pandas_frame_of_a_run_is_read_back_to_the_same_bits(run: Run) -> None:
     pytest.importorskip("pandas")
     frame = run.to_frame()
@@ -172,7 +172,7 @@ def test_pandas_frame_of_a_run_is_read_back_to_the_same_bits(run: Run) -> None:
     assert_equal_runs(Run.from_frame(frame.set_index("time_s"), name="a"), run)
 
 
-@pytest.mark.parametrize("run", [RUN, own_clock()])
+@pytest.mark.parametrize("run", [RUN, separate_clock()])
 def test_xarray_dataset_of_a_run_is_read_back_to_the_same_bits(run: Run) -> None:
     pytest.importorskip("xarray")
     dataset = run.to_xarray()

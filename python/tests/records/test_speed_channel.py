@@ -7,7 +7,7 @@ import pytest
 from jbf import Run
 from jbf.records.motion.compared import compared
 from jbf.records.motion.derived_speed import derived_speed
-from jbf.records.motion.imposed import impose
+from jbf.records.motion.estimated_motion import estimate_motion
 from jbf.records.motion.lateness import filtered_speed
 from jbf.records.motion.speed_zero import speed_zero
 from known_motions import STEP_S, TIME_S, Array, integrated, path_of, quantised, speed_of, white
@@ -31,7 +31,7 @@ def test_delay_of_up_to_one_and_a_half_samples_is_corrected_in_the_motion(
     delay_steps: float,
 ) -> None:
     speed = speed_of(TIME_S - delay_steps * STEP_S) + white(len(TIME_S), 5, 5e-3)
-    motion = impose(Run.from_arrays(TIME_S, speed, position_m=PATH_M), None)
+    motion = estimate_motion(Run.from_arrays(TIME_S, speed, position_m=PATH_M), None)
     sizes = [f.size for f in motion.findings if f.kind == "late_speed"]
     assert len(sizes) == (delay_steps != 0.0)
     assert sizes == [pytest.approx(delay_steps * STEP_S, rel=0.1)] * len(sizes)
@@ -161,7 +161,7 @@ def test_run_with_a_speed_offset_rests_where_its_position_is_constant(count_m_s:
     noisy = true + white(len(TIME_S), 3, 1e-5)
     recorded = offset + (quantised(true, count_m_s) if count_m_s else noisy)
     path = quantised(integrated(true, STEP_S), 5e-6)
-    motion = impose(Run.from_arrays(TIME_S, recorded, position_m=path), None)
+    motion = estimate_motion(Run.from_arrays(TIME_S, recorded, position_m=path), None)
     (finding,) = motion.findings
     assert (finding.kind, finding.size) == ("speed_zero", pytest.approx(offset, abs=2e-5))
     assert motion.resting[true == 0.0].mean() > 0.9

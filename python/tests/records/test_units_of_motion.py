@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from jbf import Run
 from jbf.records.motion.compared import HALF_WIDTHS, compared
-from jbf.records.motion.imposed import impose
+from jbf.records.motion.estimated_motion import estimate_motion
 from jbf.records.motion.position import Position, recorded_position
 from jbf.records.motion.ratio import factor_between, metres_per_unit, slope_near
 from jbf.records.motion.units import wrong_unit
@@ -164,7 +164,7 @@ def test_path_is_the_unwrapped_angle_times_the_radius_or_else_the_position() -> 
 def test_motion_is_recovered_from_speed_and_angle_if_the_radius_is_unknown(radius_m: float) -> None:
     angle = np.round(PATH_M / radius_m, 5)
     speed = SPEED_M_S + white(len(TIME_S), 0, 1e-4)
-    motion = impose(Run.from_arrays(TIME_S, speed, angle_rad=angle), None)
+    motion = estimate_motion(Run.from_arrays(TIME_S, speed, angle_rad=angle), None)
     assert motion.findings == ()
     assert np.std(motion.velocity - SPEED_M_S) < 0.5e-4
     assert np.max(np.abs(np.diff(motion.angle_rad - angle))) < 1e-4
@@ -172,6 +172,6 @@ def test_motion_is_recovered_from_speed_and_angle_if_the_radius_is_unknown(radiu
 
 def test_angle_unrelated_to_the_speed_is_unwrapped_but_not_used_for_speed() -> None:
     angle = np.mod(np.cumsum(np.random.default_rng(3).uniform(0.0, 1.0, len(TIME_S))), TURN)
-    motion = impose(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=angle), None)
+    motion = estimate_motion(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=angle), None)
     np.testing.assert_allclose(motion.angle_rad, np.unwrap(angle))
     np.testing.assert_allclose(motion.velocity, SPEED_M_S, atol=1e-4)

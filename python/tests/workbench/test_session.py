@@ -148,7 +148,7 @@ def test_saving_the_next_run_is_refused_if_none_was_proposed(fitted: Session) ->
 
 @pytest.mark.usefixtures("inside_folder")
 def test_command_line_shown_for_a_model_reproduces_the_model(fitted: Session) -> None:
-    words = fitted.told()["command"].split()
+    words = fitted.to_dict()["command"].split()
     assert words[0] == "jbf"
     assert main(words[1:]) == 0
     model = jbf.Model.load("model.toml")
@@ -160,7 +160,7 @@ def test_command_line_shown_for_a_model_reproduces_the_model(fitted: Session) ->
 def test_python_code_shown_for_a_model_fits_trimmed_runs(fitted: Session) -> None:
     fitted.show(1)
     fitted.on_bench().trim("stopgo", (1.0, 20.0))
-    lines = fitted.told()["python"]
+    lines = fitted.to_dict()["python"]
     assert "(1.0, 20.0)" in lines
     space: dict[str, object] = {}
     exec(lines, space)

@@ -8,7 +8,7 @@
 //! let effects = Effects::NONE.with(Beside::<MyWiper<f64>>::new(&[0.5])?);
 //! ```
 //!
-//! `cargo run --example own_effect` shows a complete example.
+//! `cargo run --example user_effect` shows a complete example.
 
 use super::{
     Bristle, Contact, Drive, EffectSet, Film, Info, Instrument, Loading, Lubricant, OtherFriction,

@@ -14,7 +14,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.models.catalogue import find_effect
 from jbf.models.chain import core_load_n, core_motion
 from jbf.models.driven import Driven
-from jbf.models.own_effects import ALWAYS
+from jbf.models.user_effects import ALWAYS
 from jbf.records.motion.known import known_motion
 from jbf.records.rig import Rig
 from jbf.records.run import Run

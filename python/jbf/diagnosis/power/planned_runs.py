@@ -17,7 +17,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.samples import Samples
 from jbf.models.model import Model
 from jbf.records.arguments import list_of_runs, of_kind
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.run import Run
 from jbf.records.toml_file import MOST, number
 from jbf.results import Result
@@ -90,7 +90,7 @@ def as_recorded(model: Model, runs: Sequence[Run], noise_rms: float, policy: Pol
     return Candidates(campaign, model.law, model.clock, policy)
 
 
-def _as_read(motion: ImposedMotion) -> ImposedMotion:
+def _as_read(motion: EstimatedMotion) -> EstimatedMotion:
     """Treat a planned motion like a recorded one.
 
     For samples next to a reversal the side is unknown. If it were known exactly, these samples

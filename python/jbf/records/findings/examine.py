@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from jbf.records.findings.filled_in import find_filled_in
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.gaps import find_gaps
 from jbf.records.findings.glitches import find_glitches
 from jbf.records.findings.held_samples import find_held
 from jbf.records.findings.interpolated import Native, find_native, find_native_of
+from jbf.records.findings.interpolated_samples import find_interpolated_samples
 from jbf.records.findings.saturation import find_saturation
 from jbf.records.findings.slow_channel import find_repeated
 from jbf.records.findings.steps import find_steps
@@ -68,7 +68,7 @@ def examine(run: Run, velocity: Array | None = None, period_s: float | None = No
     native = find_repeated(run.time_s, run.friction)
     if native is not None:
         return Examined((_repeated(run, native),), np.ones(len(run), dtype=bool), native)
-    native = find_filled_in(run.time_s, run.friction)
+    native = find_interpolated_samples(run.time_s, run.friction)
     if native is not None:
         return Examined((_filled_in(run, native),), np.ones(len(run), dtype=bool), native)
     of_readings = examine_readings(run, velocity)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.run import Run
 
 
-def known_motion(run: Run, radius_m: float | None) -> ImposedMotion:
+def known_motion(run: Run, radius_m: float | None) -> EstimatedMotion:
     """Return the motion of a run whose speed is exact.
 
     Parameters
@@ -26,7 +26,7 @@ def known_motion(run: Run, radius_m: float | None) -> ImposedMotion:
     if angle is None:
         assert run.position_m is not None
         angle = run.position_m / (radius_m or 1.0)
-    return ImposedMotion(
+    return EstimatedMotion(
         velocity=velocity,
         acceleration=np.gradient(velocity, run.time_s),
         angle_rad=angle,

@@ -15,16 +15,16 @@ async function answered(response) {
   throw new Error(words);
 }
 
-export async function get(name, asked = {}) {
+export async function get(name, parameters = {}) {
   const query = new URLSearchParams();
-  for (const [key, value] of Object.entries(asked)) {
+  for (const [key, value] of Object.entries(parameters)) {
     if (value !== null && value !== undefined) query.set(key, value);
   }
   return (await answered(await fetch(`/api/${name}?${query}`, { headers }))).json();
 }
 
-export async function post(name, asked = {}) {
-  const body = JSON.stringify(asked);
+export async function post(name, parameters = {}) {
+  const body = JSON.stringify(parameters);
   return (await answered(await fetch(`/api/${name}`, { method: "POST", headers, body }))).json();
 }
 
@@ -44,7 +44,7 @@ export async function download(what, name) {
 }
 
 // The state whenever it changes; begins anew where the line breaks.
-export async function follow(told, lost) {
+export async function follow(received, lost) {
   for (;;) {
     try {
       const response = await answered(await fetch("/api/events", { headers }));
@@ -55,7 +55,7 @@ export async function follow(told, lost) {
         if (done) break;
         const parts = (rest + value).split("\n\n");
         rest = parts.pop();
-        for (const part of parts) if (part.startsWith("data: ")) told(JSON.parse(part.slice(6)));
+        for (const part of parts) if (part.startsWith("data: ")) received(JSON.parse(part.slice(6)));
       }
       lost("The server has ended: start jbf workbench again.");
     } catch (error) { lost(error.message); }

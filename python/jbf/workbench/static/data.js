@@ -13,7 +13,7 @@ export class DataSection {
     place.append(this.map, this.shelf, this.raw);
   }
 
-  told(before) {
+  update(before) {
     const { state } = this.page, names = (s) => JSON.stringify([s.rig, s.runs.map((r) => r.file)]);
     if (!before || names(before) !== names(state)) this.list();
     if (!before || JSON.stringify(before.runs) !== JSON.stringify(state.runs)) this.draw();

@@ -16,7 +16,7 @@ export class ImportForm {
   // `done` is called when the runs are open, `closed` when the form is put away.
   constructor(page, place, files, found, { done, closed }) {
     Object.assign(this, { page, place, files, found, done, closed });
-    this.text = found.map; this.form = found.form; this.told = null; this.asked = 0; this.into = found.into;
+    this.text = found.map; this.form = found.form; this.answer = null; this.requests = 0; this.into = found.into;
     this.open = false; this.questions = found.questions;
     this.show();
     place.querySelector("select")?.focus();
@@ -25,11 +25,11 @@ export class ImportForm {
 
   // The map as it stands, or as the form changes it; what comes back is shown.
   async send(form) {
-    const asked = ++this.asked;
-    const told = await this.page.do("try", { files: this.files, map: this.text, form });
-    if (asked !== this.asked) return;
-    if (told) {
-      this.text = told.map; this.form = told.form; this.told = told;
+    const request = ++this.requests;
+    const answer = await this.page.do("try", { files: this.files, map: this.text, form });
+    if (request !== this.requests) return;
+    if (answer) {
+      this.text = answer.map; this.form = answer.form; this.answer = answer;
       if (form) this.questions = [];
     }
     this.show();
@@ -52,7 +52,7 @@ export class ImportForm {
   }
 
   show() {
-    const { found, told } = this, ready = told && !told.problem;
+    const { found, answer } = this, ready = answer && !answer.problem;
     const names = this.files.length > 3 ? `${this.files.slice(0, 2).join(", ")} and ${this.files.length - 2} more` : this.files.join(", ");
     const text = h("textarea", { "aria-label": "map", spellcheck: "false", "data-key": "map", onchange: () => { this.text = text.value; this.send(null); } });
     text.value = this.text;
@@ -70,10 +70,10 @@ export class ImportForm {
   }
 
   says() {
-    const { told } = this;
-    if (!told) return "Reading…";
-    if (told.problem) return `Not yet: ${this.questions.length ? this.questions.join("; ") : told.problem}.`;
-    const runs = told.runs.map((run) => `${run.name}: ${run.samples} samples`);
+    const { answer } = this;
+    if (!answer) return "Reading…";
+    if (answer.problem) return `Not yet: ${this.questions.length ? this.questions.join("; ") : answer.problem}.`;
+    const runs = answer.runs.map((run) => `${run.name}: ${run.samples} samples`);
     return `Good: ${runs.slice(0, 6).join("; ")}${runs.length > 6 ? ` and ${runs.length - 6} more runs` : ""}.`;
   }
 
@@ -94,7 +94,7 @@ export class ImportForm {
 
   // From the least to the largest value of what a column becomes, in all runs.
   read(key) {
-    const found = (this.told?.runs ?? []).flatMap((run) => run.columns.filter((c) => c.name === key || c.name === MADE[key]));
+    const found = (this.answer?.runs ?? []).flatMap((run) => run.columns.filter((c) => c.name === key || c.name === MADE[key]));
     if (!found.length) return "";
     return `${number(Math.min(...found.map((c) => c.least)))} to ${number(Math.max(...found.map((c) => c.most)))} ${found[0].unit}`;
   }

@@ -18,7 +18,7 @@ export class KeepSection {
     place.append(h("h2", {}, "What to keep"), h("p", { class: "faint" }, "Of the model that is chosen at the left."), this.list, this.words, this.same);
   }
 
-  told() {
+  update() {
     const { page } = this, node = page.model;
     const there = (what) => (what === "session" || what === "trimmed" ? page.state.runs.length > 0
       : node && (what !== "next_run" || node.diagnosis?.next_run));

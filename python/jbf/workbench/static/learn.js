@@ -19,7 +19,7 @@ export class LearnSection {
       h("h2", {}, "Parameters"), this.values, this.more);
   }
 
-  told(before) {
+  update(before) {
     const { state } = this.page, node = this.page.model;
     const now = JSON.stringify([state.current, state.nodes.length, state.law, state.rig, state.runs.length, Boolean(state.job), node?.records, Boolean(node?.trials)]);
     if (!before || now !== this.was) { this.was = now; this.show(); }
@@ -39,7 +39,7 @@ export class LearnSection {
     put(this.verdict, node?.diagnosis ? node.diagnosis.sentence : "");
     showLedger(page, this.ledger); showRanking(page, this.ranks);
     put(this.values, node ? h("div", { class: "two" }, parameters(node), node.correlations ? correlations(node.correlations) : h("div")) : h("p", { class: "faint" }, "None yet."));
-    put(this.more, node?.diagnosis ? this.told_by_diagnosis(node.diagnosis) : null,
+    put(this.more, node?.diagnosis ? this.diagnosis_details(node.diagnosis) : null,
       node?.power?.length ? h("details", { open: Boolean(node.diagnosis) }, h("summary", { "data-key": "power" }, "Power: what these runs would have shown"), power(node.power)) : null,
       node?.diagnosis ? h("details", {}, h("summary", { "data-key": "words" }, "In words"), h("pre", {}, node.diagnosis.summary)) : null);
     this.draw();
@@ -67,7 +67,7 @@ export class LearnSection {
     } catch (error) { put(this.sketch); this.chart = null; put(this.sketched, `${page.effect}: ${error.message}`); }
   }
 
-  told_by_diagnosis(d) {
+  diagnosis_details(d) {
     return [
       d.residual_structure.length ? h("section", {}, h("h2", {}, "What remains"), h("ul", {}, d.residual_structure.map((r) => h("li", {}, `${r.axis}: ${r.where}`)))) : null,
       d.next_experiment ? h("section", {}, h("h2", {}, "The next experiment"), h("p", {}, d.next_experiment), d.next_run ? h("p", {},

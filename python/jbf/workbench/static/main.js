@@ -24,7 +24,7 @@ class Page {
   get model() { return this.state.nodes.find((node) => node.id === this.state.current) ?? null; }
   get units() { return this.state.units ?? { force: "N", speed: "m/s", velocity: "speed", friction: "friction", noun: "force" }; }
 
-  told(state) {
+  update(state) {
     const before = this.state;
     this.state = state;
     const names = state.runs.map((run) => run.name);
@@ -34,7 +34,7 @@ class Page {
     this.tabs(); this.head();
     showRuns(this, place("runs")); showModels(this, place("models"));
     if (!this.section) this.enter(names.length ? this.name : "Data");
-    else this.section.told(before);
+    else this.section.update(before);
     this.next();
     document.body.dataset.version = state.version;
   }
@@ -44,7 +44,7 @@ class Page {
     place("section").replaceChildren();
     this.section = new SECTIONS[name](this, place("section"));
     this.tabs();
-    this.section.told(null);
+    this.section.update(null);
     this.next();
   }
 
@@ -102,4 +102,4 @@ class Page {
 }
 
 const page = new Page();
-follow((state) => page.told(state), (words) => page.say(words));
+follow((state) => page.update(state), (words) => page.say(words));

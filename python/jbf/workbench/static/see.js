@@ -9,11 +9,11 @@ import { Stribeck } from "./stribeck.js";
 export class SeeSection {
   constructor(page, place) {
     this.page = page; this.drag = "brush"; this.all = false; this.ends = ["", ""];
-    this.words = h("p", { class: "verdict" }); this.said = h("p", { class: "said", role: "status" });
+    this.words = h("p", { class: "verdict" }); this.status = h("p", { class: "said", role: "status" });
     this.head = h("div", { class: "row" }); this.fails = h("div"); this.which = h("div", { class: "row" });
     const force = h("div", { class: "plot" }), rest = h("div", { class: "plot" }), plane = h("div"), map = h("div"), speeds = h("div");
     this.residual = h("div", {}, h("h3", {}, "Record minus model"), rest);
-    place.append(this.words, this.head, this.said,
+    place.append(this.words, this.head, this.status,
       h("div", { class: "two" }, h("section", {}, h("h2", {}, "In time"), force, this.residual),
         h("section", {}, h("div", { class: "row tight" }, h("h2", {}, "Friction against speed"), this.which), plane)),
       h("div", { class: "two" }, h("section", {}, h("h2", {}, "Where it fails, worst first"), this.fails),
@@ -25,17 +25,17 @@ export class SeeSection {
     const common = { brushed, zoomed, mode: () => this.drag, sync: "see" };
     this.force = new Chart(force, { ...common, unit: `${units.noun} (${units.force})`, height: 200, curves: [
       curve("friction_n", "measured", "measured"), curve("model_n", "model", "model", { width: 1.6 }),
-      curve("beside_n", "beside", "beside", { dash: [6, 4], width: 1.4 })] });
+      curve("compared_n", "beside", "beside", { dash: [6, 4], width: 1.4 })] });
     this.rest = new Chart(rest, { ...common, unit: units.force, height: 140, legend: false, curves: [
-      curve("beside_residual_n", "of the other", "beside", { width: 0.8 }), curve("residual_n", "record minus model", "measured")] });
+      curve("compared_residual_n", "of the other", "beside", { width: 0.8 }), curve("residual_n", "record minus model", "measured")] });
     this.plane = new Plane(plane, { brushed: (box) => this.select(box && { box }), height: 360 });
     this.speeds = new Stribeck(speeds, { brushed: (box) => this.select(box && { box }) });
     this.map = new RunsMap(map, (run, box) => page.look({ run, span: [null, null], ...(box ? { selection: { run, box } } : {}) }));
   }
 
-  told(before) {
+  update(before) {
     const { state } = this.page;
-    const now = JSON.stringify([state.current, state.beside, state.runs.map((r) => r.name), this.page.model?.records, this.page.model?.held_out_rms]);
+    const now = JSON.stringify([state.current, state.compared, state.runs.map((r) => r.name), this.page.model?.records, this.page.model?.held_out_rms]);
     if (!before || now !== this.was) { this.was = now; this.looked({}); }
   }
 
@@ -121,10 +121,10 @@ export class SeeSection {
 
   say(brushed) {
     const { page } = this, unit = page.units.force, mark = page.selection?.mark;
-    if (!brushed) { this.said.textContent = "Select by dragging in any plot: it is shown in all of them."; return; }
+    if (!brushed) { this.status.textContent = "Select by dragging in any plot: it is shown in all of them."; return; }
     const there = brushed.rms === null ? "" : `; record minus model there: mean ${number(brushed.mean_n)} ${unit}, RMS ${number(brushed.rms)} ${unit}`;
     const runs = Object.entries(brushed.by_run).map(([name, one]) => `${name} ${one.samples}`);
     const named = runs.length ? ` (${runs.slice(0, 4).join(", ")}${runs.length > 4 ? ", …" : ""})` : "";
-    this.said.textContent = `${mark === undefined ? "Selected" : `Marked: ${page.model.failures[mark].bin}`}: ${brushed.samples} samples${named}${there}.`;
+    this.status.textContent = `${mark === undefined ? "Selected" : `Marked: ${page.model.failures[mark].bin}`}: ${brushed.samples} samples${named}${there}.`;
   }
 }

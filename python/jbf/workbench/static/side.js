@@ -8,10 +8,10 @@ export function showRuns(page, place) {
       h("input", { type: "checkbox", checked: !run.excluded, "aria-label": `use ${run.name} in fits`, title: "use it in fits", "data-key": `use-${run.name}`,
         onchange: (event) => page.do("leave_out", { run: run.name, out: !event.target.checked }) }),
       h("button", { "data-key": `run-${run.name}`, "aria-pressed": String(run.name === page.run), onclick: () => page.look({ run: run.name, span: [null, null] }) },
-        run.name, h("br"), h("small", {}, said(page, run))))));
+        run.name, h("br"), h("small", {}, runNote(page, run))))));
 }
 
-function said(page, run) {
+function runNote(page, run) {
   const parts = [`${number(run.duration_s)} s, ${run.samples} samples`];
   const own = page.model?.runs.find((r) => r.name === run.name);
   if (own) parts.push(`RMS ${number(own.rms)} ${page.units.force}`);
@@ -25,19 +25,19 @@ function said(page, run) {
 }
 
 export function showModels(page, place) {
-  const { nodes, current, beside } = page.state;
+  const { nodes, current, compared } = page.state;
   if (nodes.length === 0) { put(place, h("p", { class: "faint" }, "None yet.")); return; }
   const rows = [];
   const walk = (parent, depth) => {
     for (const node of nodes.filter((n) => n.parent === parent)) {
       const outside = node.held_out_rms === null || node.held_out_rms === undefined ? "" : `; left out ${number(node.held_out_rms)}`;
-      const item = h("div", { class: `item${node.id === current ? " now" : ""}${node.id === beside ? " beside" : ""}` },
+      const item = h("div", { class: `item${node.id === current ? " now" : ""}${node.id === compared ? " beside" : ""}` },
         h("button", { "data-key": `model-${node.id}`, "aria-pressed": String(node.id === current), onclick: () => page.do("show", { model: node.id }) },
           node.words, h("br"), h("small", {}, `${number(node.rms)} ${page.units.force}${outside}`)),
         h("label", { title: "draw it beside the current model" },
-          h("input", { type: "checkbox", checked: node.id === beside, disabled: node.id === current, "data-key": `beside-${node.id}`,
+          h("input", { type: "checkbox", checked: node.id === compared, disabled: node.id === current, "data-key": `beside-${node.id}`,
             "aria-label": `draw ${node.words} beside`,
-            onchange: (event) => page.do("beside", { model: event.target.checked ? node.id : null }) }),
+            onchange: (event) => page.do("compare_with", { model: event.target.checked ? node.id : null }) }),
           h("small", {}, "beside")));
       item.style.marginLeft = `${12 * Math.min(depth, 5)}px`;
       rows.push(item);

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf import _core
-from jbf.models.own_effects import OwnEffect
+from jbf.models.user_effects import UserEffect
 
 Array = npt.NDArray[np.float64]
 
@@ -30,7 +30,7 @@ Read = tuple[Array, Array]
 """A reading, and its derivatives by the parameters of the instrument, shape (n, parameters)."""
 
 
-class OwnChain:
+class UserChain:
     """Chain with the interface of `_core.Chain`, and user-defined effects after the others.
 
     Parameters
@@ -55,8 +55,8 @@ class OwnChain:
         self,
         core: _core.Chain,
         instrument: Sequence[tuple[str, Sequence[int]]],
-        own: Sequence[OwnEffect],
-        law: OwnEffect | None = None,
+        own: Sequence[UserEffect],
+        law: UserEffect | None = None,
         held: Sequence[float] = (),
         carrier: _core.Chain | None = None,
         bare: _core.Chain | None = None,

@@ -18,7 +18,7 @@ from jbf.models.chain import chain
 from jbf.models.driven import Driven, DrivenChain
 from jbf.models.driven_motion import reversals, with_instants
 from jbf.models.vocabulary import Clock
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 
@@ -32,7 +32,7 @@ BESIDE = 1e-3
 
 
 @dataclass(frozen=True)
-class LateReading:
+class DelayedReading:
     """Readings of a delayed force; all arrays of shape (n,).
 
     Attributes
@@ -53,7 +53,7 @@ class LateReading:
         return self.over * self.after_n + (1.0 - self.over) * self.before_n
 
 
-class LateChain:
+class DelayedChain:
     """A law with effects whose friction is recorded with a time delay.
 
     The chain itself excludes the delay.
@@ -76,8 +76,8 @@ class LateChain:
         self.drift = names.index(DRIFT) if DRIFT in names else None
 
     def read(
-        self, values: Array, run: Run, instants_s: Array, motion: ImposedMotion, sd_s: float
-    ) -> LateReading:
+        self, values: Array, run: Run, instants_s: Array, motion: EstimatedMotion, sd_s: float
+    ) -> DelayedReading:
         """Compute the readings of a run.
 
         Parameters
@@ -116,7 +116,7 @@ class LateChain:
             before = found - np.where(gone > 0.0, jump, 0.0)
             after = before + jump
             over = ndtr(gone / np.maximum(np.hypot(turns.sd_s[nearest], sd_s), 1e-12))
-        return LateReading(before, after, over)
+        return DelayedReading(before, after, over)
 
 
 def _nearest(places: Array, instants: Array) -> npt.NDArray[np.intp]:

@@ -21,7 +21,11 @@ from jbf.errors import InputError
 from jbf.records.checks import frozen
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.agreement import contradiction_of
-from jbf.records.motion.believed import NOT_AS_RECORDED, Believed, believed
+from jbf.records.motion.corrected_records import (
+    NOT_AS_RECORDED,
+    CorrectedRecords,
+    corrected_records,
+)
 from jbf.records.motion.even_clock import even_clock
 from jbf.records.motion.first_stroke import begins_with_oscillation
 from jbf.records.motion.position import recorded_position
@@ -92,7 +96,7 @@ class MotionErrors:
 
 
 @dataclass(frozen=True)
-class ImposedMotion:
+class EstimatedMotion:
     """The motion that a model is driven with; all arrays of shape (n,).
 
     Attributes
@@ -129,7 +133,9 @@ class ImposedMotion:
         """Columns that were discarded as a whole, or converted."""
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
-    def rougher(self, time_s: Array, factor: float, *, same_corners: bool = False) -> ImposedMotion:
+    def rougher(
+        self, time_s: Array, factor: float, *, same_corners: bool = False
+    ) -> EstimatedMotion:
         """Posterior mean with the noise intensity multiplied by a factor (`Smoothed.rougher`).
 
         Parameters
@@ -144,7 +150,7 @@ class ImposedMotion:
         smoothed = self.errors.smoothed.rougher(factor, same_corners=same_corners)
         mean, errors = replace(self.errors, smoothed=smoothed).at(time_s)
         velocity = np.where(self.resting, 0.0, mean[:, 1])
-        # As in `impose`: with an unknown first sign a model starts at rest.
+        # As in `estimate_motion`: with an unknown first sign a model starts at rest.
         if len(velocity) and not self.sign_known[0]:
             velocity[0] = 0.0
         return replace(
@@ -155,7 +161,7 @@ class ImposedMotion:
             errors=errors,
         )
 
-    def at(self, time_s: Array, instants_s: Array) -> ImposedMotion:
+    def at(self, time_s: Array, instants_s: Array) -> EstimatedMotion:
         """The motion at other instants within it.
 
         It is the posterior mean if that is known, and otherwise cubics through speed and
@@ -216,8 +222,10 @@ class ImposedMotion:
         )
 
 
-def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = ()) -> ImposedMotion:
-    """Estimate the imposed motion of a run.
+def estimate_motion(
+    run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = ()
+) -> EstimatedMotion:
+    """Estimate the motion of a run.
 
     Parameters
     ----------
@@ -236,7 +244,7 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
     stamps_s = None
     if clock_s is not None:
         stamps_s, run = run.time_s, replace(run, time_s=frozen(clock_s))
-    records = believed(run, radius_m, stamps_s)
+    records = corrected_records(run, radius_m, stamps_s)
     time, path, speed, step = run.time_s, records.path, records.speed, records.step
     n = len(time)
     rest = resting_samples(speed) if records.speed_measured else np.zeros(n, dtype=bool)
@@ -280,7 +288,7 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
     angle = smooth_path / (radius_m or records.arm_m)
     if records.path is None and radius_m is None and run.angle_rad is not None:
         angle = np.unwrap(run.angle_rad)
-    return ImposedMotion(
+    return EstimatedMotion(
         velocity,
         acceleration,
         angle,
@@ -299,7 +307,7 @@ def impose(run: Run, radius_m: float | None, starts: Sequence[ReadingErrors] = (
     )
 
 
-def _steady(run: Run) -> ImposedMotion:
+def _steady(run: Run) -> EstimatedMotion:
     """Return the motion of steady states: their speeds, without acceleration and path."""
     if not run.speed_recorded:
         raise InputError(
@@ -309,7 +317,7 @@ def _steady(run: Run) -> ImposedMotion:
             mend="add the speed of each point",
         )
     zeros, rest = np.zeros(len(run)), run.velocity == 0.0
-    return ImposedMotion(run.velocity, zeros, zeros, zeros, rest, ~rest)
+    return EstimatedMotion(run.velocity, zeros, zeros, zeros, rest, ~rest)
 
 
 def _clock(run: Run, radius_m: float | None) -> Array | None:
@@ -338,7 +346,7 @@ def _late(run: Run, delay_s: float) -> list[Finding]:
     return [Finding("late_speed", "velocity_m_s", run.name, delay_s, "s", "corrected", words)]
 
 
-def _readings(records: Believed, time: Array, rest: Mask) -> Readings:
+def _readings(records: CorrectedRecords, time: Array, rest: Mask) -> Readings:
     """Return the readings of a motion, with their smallest possible errors."""
     n, path, speed = len(time), records.path, records.speed
     sure = sure_rests(rest)

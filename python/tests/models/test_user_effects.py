@@ -16,8 +16,8 @@ from input_checks import Capture
 from jbf import InputError, Model, Parameter, Rig, Run, export
 from jbf.cli import main
 from jbf.models import catalogue
-from jbf.models.chain import chain, core_motion, imposed
-from jbf.models.own_chain import BENDING
+from jbf.models.chain import chain, core_motion, estimated_motion
+from jbf.models.user_chain import BENDING
 
 HEAT = Parameter("k_n_k", "N/K", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))
 TRUTH = 0.35
@@ -96,7 +96,7 @@ def slopes_of(effects: list[str], values: np.ndarray, run: Run) -> tuple[np.ndar
     """Return the Jacobian of the chain and its approximation by central differences."""
     rig = Rig.thesis()
     core = chain(rig, "journal", "journal", effects)
-    motion = core_motion(rig, run, imposed(rig, run))
+    motion = core_motion(rig, run, estimated_motion(rig, run))
     [(_, slopes)] = core.jacobian(values, [motion], list(range(len(values))))
     result = np.empty_like(slopes)
     for i, step in enumerate(np.diag(1e-5 * np.maximum(np.abs(values), 1e-3))):

@@ -9,7 +9,7 @@ from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
 
 
-def own_clock(run: Run) -> list[Finding]:
+def separate_clock(run: Run) -> list[Finding]:
     """Return a finding if the force was not sampled at the instants of the motion."""
     force, motion = run.read.get("friction_n"), of_motion(run.read)
     if force is None and motion is None:

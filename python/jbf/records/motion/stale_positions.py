@@ -24,7 +24,7 @@ MOST = 0.3
 """Largest share of held readings in a record; more of them are a property of the channel."""
 
 
-def mend_held(
+def replace_stale_positions(
     name: str, time: Array, position: Position, speed: Array, mover: str = "the shaft"
 ) -> tuple[Position, Finding | None]:
     """Replace held readings of the path by the position that follows from the speed."""

@@ -7,8 +7,8 @@ import pytest
 from jbf import Rig, Run
 from jbf.estimation.prepared import Prepared
 from jbf.records.findings.finding import Finding
-from jbf.records.findings.pushing import find_pushing
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.findings.force_sign import find_wrong_sign
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from known_motions import Array, white
 
 SAMPLES = 2000
@@ -20,11 +20,11 @@ MOTIONS = (0.1, pytest.param(0.7, marks=pytest.mark.extended), 6.0)
 """Angular frequencies of slow, typical and fast motions, 1/s."""
 
 
-def exact_motion(speed: Array, sign_known: Any = True) -> ImposedMotion:
+def exact_motion(speed: Array, sign_known: Any = True) -> EstimatedMotion:
     """A motion with known speed, acceleration and path."""
     a, path, error = np.gradient(speed, 0.01), np.cumsum(speed) * 0.01, np.zeros(len(speed))
     sign_known = np.broadcast_to(sign_known, len(speed)).copy()
-    return ImposedMotion(speed, a, path, error, error > 0.0, sign_known)
+    return EstimatedMotion(speed, a, path, error, error > 0.0, sign_known)
 
 
 def findings_of(push: float, v: Any = SPEED_M_S, sign_known: Any = True, usable: Any = True) -> Any:
@@ -32,7 +32,7 @@ def findings_of(push: float, v: Any = SPEED_M_S, sign_known: Any = True, usable:
     motion = exact_motion(v, sign_known)
     force = push * np.sign(v) + 3.0 + 0.2 * motion.acceleration - 5.0 * motion.angle_rad
     run = Run.from_arrays(TIME_S, v, force + 0.1 * NOISE)
-    return find_pushing(run, motion, np.broadcast_to(usable, SAMPLES).copy())
+    return find_wrong_sign(run, motion, np.broadcast_to(usable, SAMPLES).copy())
 
 
 def test_friction_that_drives_the_motion_is_reported_with_its_size() -> None:
@@ -76,7 +76,7 @@ def test_driving_force_is_reported_beyond_8_standard_errors_and_0_3_of_spread(
     all_forces = np.zeros(samples)
     all_forces[moving] = force + added * design[:, 0]
     run = Run.from_arrays(TIME_S[:samples], speed, all_forces)
-    assert (find_pushing(run, motion, np.ones(samples, dtype=bool)) != []) == found
+    assert (find_wrong_sign(run, motion, np.ones(samples, dtype=bool)) != []) == found
 
 
 def test_driving_force_is_reported_only_with_100_usable_samples_of_known_sign() -> None:

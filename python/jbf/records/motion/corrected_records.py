@@ -16,12 +16,12 @@ from jbf.records.motion.glitches import (
     mend_speed,
     mend_speed_ends,
 )
-from jbf.records.motion.held_path import mend_held
 from jbf.records.motion.jitter import shaken_path, uneven_stamps
 from jbf.records.motion.lateness import filtered_speed
 from jbf.records.motion.position import recorded_position
 from jbf.records.motion.roughness import quantum_of, step_of
 from jbf.records.motion.speed_zero import speed_zero
+from jbf.records.motion.stale_positions import replace_stale_positions
 from jbf.records.motion.units import wrong_unit
 from jbf.records.run import Run
 
@@ -41,7 +41,7 @@ NOT_AS_RECORDED = (
 
 
 @dataclass(frozen=True, eq=False)
-class Believed:
+class CorrectedRecords:
     """The records of a motion after correction of inconsistent parts.
 
     Attributes
@@ -74,7 +74,9 @@ class Believed:
     hum: float = 0.0
 
 
-def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) -> Believed:
+def corrected_records(
+    run: Run, radius_m: float | None, stamps_s: Array | None = None
+) -> CorrectedRecords:
     """Examine the records of the motion of a run.
 
     Outliers are corrected first, because they hide other defects. The validity of a channel as a
@@ -103,7 +105,7 @@ def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) ->
             )
         speed, odd = mend_speed(name, time, speed, None, said.speed)
         speed, loose, ends = mend_speed_ends(name, time, speed, None, said.speed)
-        return Believed(None, 0.0, speed, True, _present(odd, *ends, stamps), loose)
+        return CorrectedRecords(None, 0.0, speed, True, _present(odd, *ends, stamps), loose)
     step = quantum_of(position.path_m) or step_of(position.path_m)
     position, astray = mend_position(name, time, position)
     position, loose, ends = mend_path_ends(name, time, position)
@@ -133,14 +135,14 @@ def believed(run: Run, radius_m: float | None, stamps_s: Array | None = None) ->
         speed, odd = mend_speed(name, time, speed, path, said.speed)
         speed, off, more = mend_speed_ends(name, time, speed, path, said.speed)
         loose, ends = loose | off, [*ends, *more]
-        position, held = mend_held(name, time, position, speed, said.mover)
+        position, held = replace_stale_positions(name, time, position, speed, said.mover)
         path = position.path_m
     else:
         speed = centred_speed(time, path)
     shaken = stamps or shaken_path(name, time, path, speed)
     scale = None if unit is None else unit.finding
     findings = _present(astray, *ends, zero, scale, aside, odd, held, shaken)
-    return Believed(path, step, speed, measured, findings, loose, position.arm_m, hum)
+    return CorrectedRecords(path, step, speed, measured, findings, loose, position.arm_m, hum)
 
 
 def _without_speed(
@@ -151,13 +153,13 @@ def _without_speed(
     found: tuple[Finding, ...],
     loose: Mask,
     unit: str,
-) -> Believed:
+) -> CorrectedRecords:
     """Return the records of a motion without a recorded speed."""
     speed = centred_speed(time, path)
     words = "no speed was recorded"
     made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "the path alone tells it", words)
     shaken = () if found else _present(shaken_path(name, time, path, speed))
-    return Believed(path, step, speed, False, (made, *found, *shaken), loose)
+    return CorrectedRecords(path, step, speed, False, (made, *found, *shaken), loose)
 
 
 def _present(*findings: Finding | None) -> tuple[Finding, ...]:

@@ -29,17 +29,17 @@ import numpy.typing as npt
 from jbf.errors import InputError, quoted
 from jbf.models import catalogue
 from jbf.models.catalogue import Law, Parameter
-from jbf.models.own_effects import MOTION_COLUMNS, OwnEffect, check_pages, columns_of
+from jbf.models.user_effects import MOTION_COLUMNS, UserEffect, check_pages, columns_of
 from jbf.models.vocabulary import AUTO
 
 Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)
-class OwnLaw(Law):
+class UserLaw(Law):
     """A user-defined law: its catalogue page and its force."""
 
-    force: OwnEffect | None = None
+    force: UserEffect | None = None
 
     def steady_n(self, velocity: Array, values: Sequence[float], load_n: float | None) -> Array:
         """Force at steady speeds, N, for a law that depends on speed, load and time only."""
@@ -121,7 +121,7 @@ def register_law(
         "source": source or f"{getattr(function, '__module__', 'unknown')}",
         "limits": limits or "as its author knows them",
     }
-    force = OwnEffect(
+    force = UserEffect(
         name=own,
         stage="other friction",
         needs=(),
@@ -139,7 +139,7 @@ def register_law(
         source=words["source"],
         limits=words["limits"],
     )
-    page = OwnLaw(
+    page = UserLaw(
         name=own,
         needs_bearing=False,
         has_film=False,

@@ -44,7 +44,7 @@ With a larger one, the complex step is not used.
 
 
 @dataclass(frozen=True, repr=False)
-class OwnEffect(Effect):
+class UserEffect(Effect):
     """A user-defined effect: its catalogue page and its function."""
 
     function: Callable[..., Any] = field(default=lambda: 0.0, compare=False)
@@ -235,7 +235,7 @@ def register_effect(
     check_pages(pages, wrong)
     if all(p.null is None for p in pages):
         raise wrong("never vanishes", "give one parameter null=VALUE, where the force is zero")
-    page = OwnEffect(
+    page = UserEffect(
         name=own,
         stage=STAGES[stage],
         summary=summary or (inspect.getdoc(function) or "an effect of one's own").splitlines()[0],

@@ -2,7 +2,7 @@
 //! speed, `F = F_1 (|v|/v_1)^-p`, round which the catalogue's effects act. The crate is not touched.
 //!
 //! ```text
-//! cargo run --example own_law
+//! cargo run --example user_law
 //! ```
 
 use jbf_core::effect::Effects;

@@ -2,7 +2,7 @@
 //! half of each turn. The crate is not touched.
 //!
 //! ```text
-//! cargo run --example own_effect
+//! cargo run --example user_effect
 //! ```
 
 use jbf_core::effect::{Beside, Effect, Effects, Info, OtherFriction, Parameter, Rig, Stage};

@@ -1,4 +1,4 @@
-"""Estimation of the imposed motion from records of speed and position of known motions."""
+"""Estimation of the motion from records of speed and position of known motions."""
 
 from typing import Any
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from input_errors import input_error
 from jbf import Model, Rig, Run
-from jbf.records.motion.believed import believed
-from jbf.records.motion.imposed import ImposedMotion, impose
+from jbf.records.motion.corrected_records import corrected_records
+from jbf.records.motion.estimated_motion import EstimatedMotion, estimate_motion
 from known_motions import STEP_S, TIME_S, Array, integrated, path_of, quantised, speed_of, white
 
 SAMPLES = len(TIME_S)
@@ -23,25 +23,27 @@ def run_of(speed: Any = SPEED_M_S, path: Any = PATH_M, time_s: Any = TIME_S) -> 
 
 
 def kinds(run: Run) -> list[str]:
-    return [finding.kind for finding in believed(run, None).findings]
+    return [finding.kind for finding in corrected_records(run, None).findings]
 
 
 def test_recorded_speed_and_path_without_a_fault_are_used_unchanged() -> None:
-    records: Any = believed(run_of(), None)
+    records: Any = corrected_records(run_of(), None)
     np.testing.assert_array_equal(records.path, PATH_M)
     np.testing.assert_array_equal(records.speed, SPEED_M_S)
     assert records.step == pytest.approx(COUNT_M)
     assert (records.speed_measured, records.findings, records.arm_m) == (True, (), 1.0)
-    records = believed(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=PATH_M / RADIUS_M), RADIUS_M)
+    records = corrected_records(
+        Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=PATH_M / RADIUS_M), RADIUS_M
+    )
     np.testing.assert_allclose(records.path, PATH_M)
     assert (records.step, records.arm_m) == (pytest.approx(COUNT_M), RADIUS_M)
 
 
 def test_speed_is_derived_from_an_angle_only_if_the_radius_is_known() -> None:
     run = Run.from_arrays(TIME_S, angle_rad=PATH_M / RADIUS_M, name="a")
-    error = input_error(believed, run, None)
+    error = input_error(corrected_records, run, None)
     assert (error.file, error.column) == ("a", "velocity_m_s")
-    records: Any = believed(run, RADIUS_M)
+    records: Any = corrected_records(run, RADIUS_M)
     assert [finding.kind for finding in records.findings] == ["no_speed"]
     assert (records.speed_measured, records.arm_m) == (False, RADIUS_M)
     np.testing.assert_allclose(records.speed, np.gradient(records.path, TIME_S))
@@ -52,20 +54,20 @@ def test_speed_is_derived_from_an_angle_only_if_the_radius_is_known() -> None:
 )
 def test_wrong_unit_or_sign_of_speed_or_path_is_corrected(path: float, speed: float) -> None:
     run = run_of(speed * SPEED_M_S, path * PATH_M)
-    records: Any = believed(run, None)
+    records: Any = corrected_records(run, None)
     assert [finding.kind for finding in records.findings] == ["sign" if path == -1.0 else "units"]
     # The factor 7.7 matches no unit and is estimated.
     rtol = 2e-3 if path == 7.7 else 1e-9
     np.testing.assert_allclose(records.path, PATH_M, rtol=rtol)
     np.testing.assert_allclose(records.speed, SPEED_M_S)
     assert records.step == pytest.approx(COUNT_M, rel=rtol)
-    motion = impose(run, None)
+    motion = estimate_motion(run, None)
     assert motion.aside == {records.findings[0].channel}
     assert np.std(motion.velocity - speed_of(TIME_S)) < 1e-4
 
 
 def test_speed_delayed_by_three_samples_is_replaced_by_the_path_derivative() -> None:
-    records = believed(run_of(speed_of(TIME_S - 3.0 * STEP_S)), None)
+    records = corrected_records(run_of(speed_of(TIME_S - 3.0 * STEP_S)), None)
     assert [finding.kind for finding in records.findings] == ["filtered_speed"]
     assert not records.speed_measured
     np.testing.assert_allclose(records.speed, np.gradient(PATH_M, TIME_S))
@@ -79,12 +81,12 @@ def test_glitches_held_samples_and_jitter_of_a_motion_are_each_reported_once() -
     path, speed = PATH_M.copy(), SPEED_M_S.copy()
     path[300] += 0.01
     speed[500] += 0.1
-    findings = believed(run_of(speed, path), None).findings
+    findings = corrected_records(run_of(speed, path), None).findings
     assert [finding.kind for finding in findings] == ["glitches", "glitches"]
     assert [finding.channel for finding in findings] == ["position_m", "velocity_m_s"]
     held = PATH_M.copy()
     held[601:609] = held[600]
-    records: Any = believed(run_of(path=held), None)
+    records: Any = corrected_records(run_of(path=held), None)
     assert [f.kind for f in records.findings] == ["held_samples"]
     np.testing.assert_allclose(records.path, PATH_M, atol=5e-5)
     uneven_s = TIME_S + white(SAMPLES, 2, 5e-4)
@@ -118,10 +120,12 @@ def test_motion_without_a_fault_has_no_findings_and_no_glitches_at_gaps(
         v, x = triangle_and_stops(name, time_s)
     speed = np.where(v == 0.0, 0.0, v + white(1500, 1, noise))
     angle = quantised(x / RADIUS_M, count)
-    assert impose(Run.from_arrays(time_s, speed, angle_rad=angle), RADIUS_M).findings == ()
-    assert impose(Run.from_arrays(time_s, speed), RADIUS_M).findings == ()
+    assert estimate_motion(Run.from_arrays(time_s, speed, angle_rad=angle), RADIUS_M).findings == ()
+    assert estimate_motion(Run.from_arrays(time_s, speed), RADIUS_M).findings == ()
     kept = np.sort(np.random.default_rng(8).permutation(1500)[:1350])
-    gappy = impose(Run.from_arrays(time_s[kept], speed[kept], angle_rad=angle[kept]), RADIUS_M)
+    gappy = estimate_motion(
+        Run.from_arrays(time_s[kept], speed[kept], angle_rad=angle[kept]), RADIUS_M
+    )
     assert "glitches" not in {finding.kind for finding in gappy.findings}
 
 
@@ -138,7 +142,9 @@ def test_noisy_sine_is_recovered_within_its_errors_without_a_rest(omega: float, 
     if not even:
         time_s = np.cumsum(np.random.default_rng(3).uniform(0.01, 0.03, 2000))
     v = 0.127 * np.sin(omega * time_s)
-    motion = impose(recorded(time_s, v, 0.127 / omega * (1.0 - np.cos(omega * time_s))), RADIUS_M)
+    motion = estimate_motion(
+        recorded(time_s, v, 0.127 / omega * (1.0 - np.cos(omega * time_s))), RADIUS_M
+    )
     assert np.std(motion.velocity - v) < 0.4e-4
     a = 0.127 * omega * np.cos(omega * time_s)
     assert np.std(motion.acceleration - a) < 2e-3 + 0.02 * 0.127 * omega
@@ -151,7 +157,7 @@ def test_noisy_sine_is_recovered_within_its_errors_without_a_rest(omega: float, 
 
 
 def test_sign_of_a_recovered_motion_is_known_beyond_four_standard_errors() -> None:
-    motion = impose(run_of(), None)
+    motion = estimate_motion(run_of(), None)
     np.testing.assert_allclose(motion.velocity, speed_of(TIME_S), atol=3e-4)
     np.testing.assert_allclose(motion.angle_rad, path_of(TIME_S), atol=COUNT_M)
     acceleration = 0.2 * 1.7 * np.cos(1.7 * TIME_S + 0.4) + 0.05 * 4.3 * np.cos(4.3 * TIME_S)
@@ -159,23 +165,25 @@ def test_sign_of_a_recovered_motion_is_known_beyond_four_standard_errors() -> No
     significant = np.abs(motion.velocity) > 4.0 * motion.velocity_error_m_s
     np.testing.assert_array_equal(motion.sign_known, significant)
     assert 2e-5 < np.median(motion.velocity_error_m_s) < 1e-4
-    turned = impose(Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=PATH_M / RADIUS_M), RADIUS_M)
+    turned = estimate_motion(
+        Run.from_arrays(TIME_S, SPEED_M_S, angle_rad=PATH_M / RADIUS_M), RADIUS_M
+    )
     np.testing.assert_allclose(turned.angle_rad, path_of(TIME_S) / RADIUS_M, atol=1e-3)
 
 
 def test_speed_without_a_position_is_smoothed_and_integrated_to_an_angle() -> None:
-    motion = impose(Run.from_arrays(TIME_S, SPEED_M_S), RADIUS_M)
+    motion = estimate_motion(Run.from_arrays(TIME_S, SPEED_M_S), RADIUS_M)
     np.testing.assert_allclose(motion.velocity, speed_of(TIME_S), atol=4e-4)
     path = path_of(TIME_S) - path_of(0.0)
     np.testing.assert_allclose(motion.angle_rad * RADIUS_M, path, atol=2e-4)
-    motion = impose(Run.from_arrays(TIME_S, speed_of(TIME_S)), RADIUS_M)
+    motion = estimate_motion(Run.from_arrays(TIME_S, speed_of(TIME_S)), RADIUS_M)
     np.testing.assert_allclose(motion.velocity, speed_of(TIME_S), atol=2e-5)
 
 
 def test_error_of_the_imposed_speed_is_larger_where_its_record_is_noisier() -> None:
     loud = np.where((TIME_S > 3.0) & (TIME_S < 6.0), 10.0, 1.0)
     run = Run.from_arrays(TIME_S, speed_of(TIME_S) + loud * white(SAMPLES, 8, 1e-4))
-    motion = impose(run, None)
+    motion = estimate_motion(run, None)
     inside, outside = (TIME_S > 3.6) & (TIME_S < 5.4), TIME_S < 2.0
     error = motion.velocity_error_m_s
     assert np.median(error[inside]) > 3.0 * np.median(error[outside])
@@ -185,16 +193,16 @@ def test_error_of_the_imposed_speed_is_larger_where_its_record_is_noisier() -> N
 
 
 def test_error_of_the_imposed_speed_is_larger_if_the_path_is_noisier() -> None:
-    rough = impose(run_of(path=path_of(TIME_S) + white(SAMPLES, 7, 2e-5)), None)
+    rough = estimate_motion(run_of(path=path_of(TIME_S) + white(SAMPLES, 7, 2e-5)), None)
     np.testing.assert_allclose(rough.velocity, speed_of(TIME_S), atol=4e-4)
-    error_m_s = np.median(impose(run_of(), None).velocity_error_m_s)
+    error_m_s = np.median(estimate_motion(run_of(), None).velocity_error_m_s)
     assert np.median(rough.velocity_error_m_s) > 1.1 * error_m_s
     assert np.std(rough.angle_rad - path_of(TIME_S)) < 1.5e-5
 
 
 def test_sign_of_the_motion_is_unknown_where_speed_contradicts_position() -> None:
     path = PATH_M + np.where(np.arange(SAMPLES) >= 400, 2e-3, 0.0)
-    motion = impose(run_of(path=path), None)
+    motion = estimate_motion(run_of(path=path), None)
     assert not motion.sign_known[398:402].any()
     assert motion.sign_known[380:390].all()
 
@@ -206,7 +214,7 @@ def test_wrapped_and_unwrapped_angle_give_equal_motions_and_predictions() -> Non
     unwrapped = Run.from_arrays(time_s, v, angle_rad=angle)
     wrapped = Run.from_arrays(time_s, v, angle_rad=np.mod(angle + 1.0, 2.0 * np.pi) - 1.0)
     for radius_m in (RADIUS_M, None):
-        one, other = impose(unwrapped, radius_m), impose(wrapped, radius_m)
+        one, other = estimate_motion(unwrapped, radius_m), estimate_motion(wrapped, radius_m)
         np.testing.assert_allclose(other.velocity, one.velocity, atol=1e-9)
         np.testing.assert_allclose(other.angle_rad, one.angle_rad, atol=1e-6)
     model = Model(Rig.thesis(), effects=["position_ripple"], parameters={"position_ripple.a": 0.2})
@@ -217,7 +225,7 @@ def test_trapezoidal_speed_is_recovered_with_its_corners_and_rests() -> None:
     time_s = np.arange(0.0, 12.0, 0.02)
     v = 0.05 * np.clip(np.minimum(time_s - 2.0, 8.0 - time_s), 0.0, 1.0)
     path = integrated(v, 0.02)
-    motion = impose(recorded(time_s, v, path), RADIUS_M)
+    motion = estimate_motion(recorded(time_s, v, path), RADIUS_M)
     assert np.max(np.abs(motion.velocity - v)) < 4e-4
     np.testing.assert_array_equal(motion.resting, v == 0.0)
     assert np.all(motion.velocity[motion.resting] == 0.0)
@@ -233,7 +241,7 @@ def test_rms_position_error_at_rests_is_below_0_15_encoder_counts() -> None:
     angle = integrated(v, 0.02) / RADIUS_M
     counted = quantised(angle, COUNT_RAD)
     speed = np.where(v == 0.0, 0.0, v + white(len(v), 5, 1e-5))
-    motion = impose(Run.from_arrays(time_s, speed, angle_rad=counted), RADIUS_M)
+    motion = estimate_motion(Run.from_arrays(time_s, speed, angle_rad=counted), RADIUS_M)
     rests = [np.flatnonzero((stroke == k) & (phase > 3.0)) for k in range(20)]
     assert all(motion.resting[rest].all() for rest in rests)
 
@@ -251,18 +259,18 @@ def test_standstill_with_a_small_oscillation_of_the_speed_is_a_rest() -> None:
     way = np.where(np.mod(time_s, 4.0) < 2.0, 1.0, -1.0)
     v = np.where(phase < 1.4, way * 2.5e-4 * np.sin(np.pi * phase / 1.4) ** 2, 0.0)
     hum = 4e-7 * np.sin(40.0 * time_s) * (v == 0.0)
-    motion = impose(run_of(v + hum, np.round(integrated(v, 0.005), 7), time_s), None)
+    motion = estimate_motion(run_of(v + hum, np.round(integrated(v, 0.005), 7), time_s), None)
     assert motion.resting[(v == 0.0) & (phase > 1.5) & (phase < 1.9)].all()
     assert not motion.velocity[motion.resting].any()
     assert not motion.resting[np.abs(v) > 5e-6].any()
 
 
-def two_rests() -> tuple[Array, Array, ImposedMotion]:
-    """True speed, recorded speed and imposed motion, with two moving samples between rests."""
+def two_rests() -> tuple[Array, Array, EstimatedMotion]:
+    """True speed, recorded speed and estimated motion, with two moving samples between rests."""
     v = np.where((TIME_S > 2.0) & (TIME_S < 4.0), 0.0, 0.1)
     v[300:302] = 0.05
     speed = np.where(v == 0.0, 0.0, v + white(SAMPLES, 4, 1e-4))
-    motion = impose(run_of(speed, quantised(integrated(v, STEP_S), COUNT_M)), None)
+    motion = estimate_motion(run_of(speed, quantised(integrated(v, STEP_S), COUNT_M)), None)
     return v, speed, motion
 
 
@@ -286,7 +294,7 @@ def test_sign_after_a_rest_is_unknown_up_to_three_standard_errors_of_path() -> N
     ramp = 0.1 * np.minimum(np.abs(TIME_S - 4.0), 1.0)
     v = np.where((TIME_S > 2.0) & (TIME_S < 4.0), 0.0, ramp)
     coarse = quantised(integrated(v, STEP_S), 1e-4)
-    motion = impose(Run.from_arrays(TIME_S, position_m=coarse), None)
+    motion = estimate_motion(Run.from_arrays(TIME_S, position_m=coarse), None)
     assert motion.resting[250:380].all()
     first = int(np.flatnonzero(~motion.resting & (TIME_S > 3.0))[0])
     moved = np.abs(coarse - coarse[first - 1]) > 3.0 * 1e-4 / np.sqrt(12.0)
@@ -298,5 +306,5 @@ def test_sign_after_a_rest_is_unknown_up_to_three_standard_errors_of_path() -> N
 def test_run_that_begins_with_a_small_oscillation_begins_at_rest(sign: float) -> None:
     alternating = np.where(np.arange(SAMPLES) % 2, -1.0, 1.0)
     v = np.where(np.arange(SAMPLES) < 3, 1e-5 * sign * alternating, 0.1)
-    motion = impose(run_of(v, integrated(v, STEP_S)), None)
+    motion = estimate_motion(run_of(v, integrated(v, STEP_S)), None)
     assert (motion.velocity[0], motion.sign_known[0]) == (0.0, False)

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
-from jbf.records.motion.imposed import ImposedMotion
+from jbf.records.motion.estimated_motion import EstimatedMotion
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -27,7 +27,7 @@ SLOW = 0.02
 """Share of the top speed below which the force may be due to other causes than friction."""
 
 
-def find_pushing(run: Run, motion: ImposedMotion, usable: Mask) -> list[Finding]:
+def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Finding]:
     """Find a force that acts in the direction of the motion.
 
     An offset, an inertia and a spring also act in this direction at times; their forces are fitted

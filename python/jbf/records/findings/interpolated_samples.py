@@ -35,7 +35,7 @@ LONGEST = 50.0
 """Largest ratio of samples to readings; beyond it the lines belong to the friction itself."""
 
 
-def find_filled_in(time: Array, values: Array) -> Native | None:
+def find_interpolated_samples(time: Array, values: Array) -> Native | None:
     """Return the original readings of a channel; None if all samples are readings."""
     if len(time) < 5:
         return None

@@ -46,7 +46,7 @@ fn alone(law: &Journal<f64>, steps: &[FilmStep]) -> Vec<f64> {
 }
 
 #[test]
-fn the_bits_of_each_alone() {
+fn film_path_in_a_batch_has_the_bits_of_its_separate_path() {
     // Fewer films than a block, exactly a block, and more; with separate or shared motions.
     for count in [1, 7, 16, 30, 45] {
         let motions: Vec<Vec<FilmStep>> = (0..count)
@@ -65,7 +65,7 @@ fn the_bits_of_each_alone() {
 
 /// A film that leaves its bearing in a coarse step has no path; the other films have theirs.
 #[test]
-fn what_leaves_the_bearing_is_told() {
+fn film_that_leaves_the_bearing_has_no_path_and_others_keep_theirs() {
     let coarse = steps(200, 1, 5.0);
     let films = [
         (law(0, 7.5e5), coarse.as_slice()),
@@ -77,6 +77,6 @@ fn what_leaves_the_bearing_is_told() {
 }
 
 #[test]
-fn no_films_no_paths() {
+fn batch_without_films_has_no_paths() {
     assert!(film_paths(&[], Simd::best()).is_empty());
 }

@@ -109,7 +109,7 @@ fn agree<F: Float>(sets: usize, method: Method, dt_s: f64) -> u32 {
 }
 
 #[test]
-fn double_precision() {
+fn batch_has_the_bits_of_single_laws_in_double_precision() {
     for sets in [1, 31, 32, 75] {
         assert_eq!(agree::<f64>(sets, Method::Euler, 0.002), 0);
         assert_eq!(agree::<f64>(sets, Method::Rk4, 0.002), 0);
@@ -117,7 +117,7 @@ fn double_precision() {
 }
 
 #[test]
-fn single_precision() {
+fn batch_has_the_bits_of_single_laws_in_single_precision() {
     for sets in [1, 75] {
         agree::<f32>(sets, Method::Euler, 0.002);
         agree::<f32>(sets, Method::Rk4, 0.002);
@@ -126,14 +126,14 @@ fn single_precision() {
 
 /// With steps so coarse that films leave the bearing, they are held as in the core.
 #[test]
-fn held_films() {
+fn films_are_held_as_in_the_core_if_steps_are_too_coarse() {
     assert!(agree::<f64>(40, Method::Euler, 0.3) > 0);
     assert!(agree::<f64>(40, Method::Rk4, 0.8) > 0);
     assert!(agree::<f32>(40, Method::Euler, 0.3) > 0);
 }
 
 #[test]
-fn nothing_to_do() {
+fn batch_without_laws_or_samples_returns_nothing() {
     let none = Batch::<f64>::new(Vec::new(), Method::Euler);
     none.friction(
         &mut none.start(),

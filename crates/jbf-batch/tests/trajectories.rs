@@ -69,7 +69,7 @@ fn every(step_s: f64, count: usize) -> Vec<f64> {
 }
 
 #[test]
-fn sines_of_unlike_lengths() {
+fn trajectories_of_sines_of_different_lengths_equal_single_ones() {
     let sine = |top, omega, bias| Sine::with_bias(top, omega, bias).expect("valid");
     let runs = [
         (sine(0.127, 0.1, 0.0), every(0.02, 900)),
@@ -91,7 +91,7 @@ fn sines_of_unlike_lengths() {
 }
 
 #[test]
-fn records_with_steps_and_rests() {
+fn trajectories_of_records_with_steps_and_rests_equal_single_ones() {
     let time_s = every(0.01, 400);
     let speeds: Vec<Vec<f64>> = (0..4)
         .map(|k| {
@@ -112,7 +112,7 @@ fn records_with_steps_and_rests() {
 }
 
 #[test]
-fn the_first_that_breaks_a_rule_is_named() {
+fn decreasing_times_of_one_trajectory_are_refused_by_name() {
     let motion = Sine::new(0.127, 1.0).expect("valid");
     let falling = [1.0, 0.5];
     let along = |times_s| {

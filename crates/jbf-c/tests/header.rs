@@ -6,7 +6,7 @@ use jbf_core::law::CATALOGUE;
 const HEADER: &str = include_str!("../include/jbf.h");
 
 #[test]
-fn every_law_is_declared_with_its_sizes() {
+fn header_declares_the_sizes_of_every_law() {
     let declared: Vec<(String, String, usize, usize)> = HEADER
         .lines()
         .filter_map(|line| line.strip_prefix("JBF_DECLARE(")?.strip_suffix(')'))
@@ -24,7 +24,7 @@ fn every_law_is_declared_with_its_sizes() {
 }
 
 #[test]
-fn every_law_of_the_catalogue_is_there_in_both_kinds() {
+fn every_catalogue_law_is_exported_in_both_precisions() {
     for page in CATALOGUE {
         for kind in ["f32", "f64"] {
             assert!(

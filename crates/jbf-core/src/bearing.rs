@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_bearing_says_which_size_it_was_not_told() {
+    fn missing_size_of_a_bearing_is_reported_by_name() {
         let most = Bearing::new()
             .with_radius_m(0.0127)
             .with_length_m(0.01905)

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn poles_are_where_they_are_placed() {
+    fn closed_loop_poles_are_those_requested() {
         let other = Drive::new(10.0, 100.0);
         for (law, drive, side, within) in [
             // The thesis prints five digits.
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn the_thesiss_drive_has_the_thesiss_gains() {
+    fn gains_of_the_thesis_drive_are_those_printed_in_the_thesis() {
         let volts = Drive::THESIS.with_volts_per_n(0.5).with_limit_v(24.0);
         assert_eq!(BaseLaw::position(&volts), BaseLaw::THESIS_POSITION);
         assert_eq!(BaseLaw::velocity(&volts), BaseLaw::THESIS_VELOCITY);
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_velocity_law_is_as_stiff_on_any_drive() {
+    fn velocity_loop_has_the_same_stiffness_for_any_drive() {
         let drive = Drive::new(10.0, 100.0);
         let [g, c] = BaseLaw::velocity(&drive).gains();
         assert!((g * drive.input_rad_s2_v - 457.0).abs() < 1e-12);

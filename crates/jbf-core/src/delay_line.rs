@@ -88,7 +88,7 @@ mod tests {
 
     /// A ramp is delayed exactly, for steps short and long relative to the delay.
     #[test]
-    fn a_ramp_is_late_by_the_delay() {
+    fn delayed_ramp_lags_by_the_delay_for_any_step() {
         let delay = 0.0173_f64;
         for dt in [1e-5, 1e-4, 2e-3, 0.01, 0.05] {
             let mut line = DelayLine::new();
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn the_derivative_by_the_delay_is_the_slope() {
+    fn derivative_by_the_delay_is_minus_the_slope() {
         let delay = Dual::<1>::parameter(0.02, 0);
         let mut line = DelayLine::new();
         for i in 0..100 {

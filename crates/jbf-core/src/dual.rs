@@ -243,7 +243,7 @@ mod tests {
 
     /// Compares every operation with a central difference of the plain f64 evaluation.
     #[test]
-    fn slopes_match_differences() {
+    fn derivatives_of_dual_numbers_match_central_differences() {
         fn f<T: Real>(x: T, y: T) -> T {
             (x * y).sin() / (y + T::of(2.0)).sqrt()
                 + (x - y).abs().powf(y) * x.exp().ln() * (-y).exp_m1()

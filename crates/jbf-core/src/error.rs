@@ -232,7 +232,7 @@ mod tests {
     use std::string::ToString;
 
     #[test]
-    fn every_message_names_parameter_value_and_rule() {
+    fn error_message_has_parameter_value_and_rule() {
         for (error, said) in [
             (Error::UnknownLaw, "law is not in the catalogue"),
             (Error::UnknownEffect, "effect is not in the catalogue"),
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn rules_hold_at_their_ends() {
+    fn checks_accept_and_refuse_values_at_the_ends_of_their_ranges() {
         assert!(positive("x", 0.0).is_err() && positive("x", f64::MIN_POSITIVE).is_ok());
         assert!(positive("x", f64::INFINITY).is_err() && positive("x", f64::NAN).is_err());
         assert!(not_negative("x", 0.0).is_ok() && not_negative("x", -1e-300).is_err());

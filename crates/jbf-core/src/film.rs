@@ -43,7 +43,7 @@ mod tests {
 
     /// Reference values by quadrature of the defining integrals.
     #[test]
-    fn integrals_match_quadrature() {
+    fn film_integrals_match_quadrature() {
         let reference = [
             (
                 0.001,
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn determinant_identity() {
+    fn determinant_of_the_film_integrals_has_its_closed_form() {
         for eps in [0.05, 0.4, 0.9, 0.99] {
             let j = FilmIntegrals::at(eps);
             let d: f64 = (1.0 - eps) * (1.0 + eps);

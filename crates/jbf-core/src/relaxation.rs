@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn follows_the_closed_form_of_a_ramp() {
+    fn relaxation_of_a_ramp_follows_its_closed_form() {
         // y' = (t - y)/tau from y(0) = 0: y = t - tau (1 - exp(-t/tau)).
         for tau in [0.3_f64, 0.01, 30.0] {
             let dt = 0.05;
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn pieces_join_smoothly() {
+    fn relaxation_is_continuous_between_its_approximations() {
         let at = |r: f64| relax(0.3, [1.0, 2.0], r);
         for joint in [1e-3, 1.0] {
             let (below, above) = (at(joint * (1.0 - 1e-12)), at(joint * (1.0 + 1e-12)));
@@ -62,14 +62,14 @@ mod tests {
     }
 
     #[test]
-    fn settles_for_any_step() {
+    fn relaxation_settles_for_an_infinite_step() {
         assert_eq!(relax(5.0_f64, [1.0, 1.0], f64::INFINITY), 1.0);
         assert!(relax(5.0_f32, [1.0, 1.0], 1e30).is_finite());
     }
 
     /// Non-negative inputs never give a negative result, including rounding.
     #[test]
-    fn rounding_does_not_cross_zero() {
+    fn relaxation_of_non_negative_inputs_is_not_negative() {
         for power in -80..20 {
             let ratio = libm::powf(10.0, 0.1 * power as f32);
             for x in [[1e12_f32, 1e12], [1e12, 0.0], [0.0, 1e12], [1e-12, 1e-12]] {

@@ -52,7 +52,7 @@ mod tests {
 
     /// Load numbers and roots of Tables 4.2 to 4.5, computed independently.
     #[test]
-    fn matches_the_four_tables() {
+    fn transition_eccentricity_matches_the_four_tables() {
         let reference = [
             (323.5151161660348, 0.9723504945734831),
             (311.6943715368912, 0.9718339551301634),
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn solves_its_equation_from_light_to_heavy() {
+    fn transition_eccentricity_solves_its_equation_for_any_load_number() {
         for power in -40..60 {
             let fb = libm::pow(10.0, f64::from(power) / 10.0);
             let e: f64 = transition_eccentricity(fb);
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn derivative_matches_difference() {
+    fn derivative_of_the_transition_eccentricity_matches_a_difference() {
         let fb = 323.5;
         let d = transition_eccentricity(Dual::<1>::parameter(fb, 0));
         let h = 1e-3;

@@ -12,7 +12,7 @@ fn build(bearing: Bearing, load_n: f64, p: Parameters<f64>) -> Result<(), Error>
 
 /// `kappa0 (eps - eps_tr)/(eps_b - eps_tr)` and `K0 (eps - eps_tr)` are the same line.
 #[test]
-fn original_form_is_the_same_stiffness() {
+fn stiffness_converted_from_the_original_form_gives_the_same_line() {
     let eps_tr = 0.9723504945734831;
     let (kappa0, eps_b) = (18_000.0, 0.9995);
     let k0 = k0_from_original(kappa0, eps_b, eps_tr).expect("valid");
@@ -28,7 +28,7 @@ fn original_form_is_the_same_stiffness() {
 }
 
 #[test]
-fn original_form_names_what_is_wrong() {
+fn invalid_value_of_the_original_form_is_refused_by_name() {
     for (kappa0, eps_b, name) in [
         (0.0, 0.999, "kappa0"),
         (-1.0, 0.999, "kappa0"),
@@ -44,7 +44,7 @@ fn original_form_names_what_is_wrong() {
 }
 
 #[test]
-fn sizes_of_the_bearing_are_named() {
+fn invalid_size_of_a_bearing_is_refused_by_name() {
     let good = Bearing::THESIS;
     for (bearing, name) in [
         (good.with_radius_m(0.0), "radius_m"),
@@ -64,7 +64,7 @@ fn sizes_of_the_bearing_are_named() {
 
 /// The load is representable, but the load number that follows from it is not.
 #[test]
-fn a_load_too_small_for_the_number_is_named() {
+fn load_whose_load_number_underflows_is_refused_by_name() {
     for load_n in [1e-39, 1e-310] {
         let error = build(Bearing::THESIS, load_n, Parameters::TABLE_4_2);
         let single = Journal::<f32>::new(
@@ -79,7 +79,7 @@ fn a_load_too_small_for_the_number_is_named() {
 }
 
 #[test]
-fn parameters_of_the_law_are_named() {
+fn invalid_parameter_of_the_journal_law_is_refused_by_name() {
     let good = Parameters::TABLE_4_2;
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         for (load_n, p, name) in [
@@ -115,7 +115,7 @@ fn parameters_of_the_law_are_named() {
 }
 
 #[test]
-fn parameters_of_every_effect_are_named() {
+fn invalid_or_missing_parameter_of_an_effect_is_refused_by_name() {
     for info in CATALOGUE {
         let good: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
         assert!(
@@ -148,7 +148,7 @@ fn parameters_of_every_effect_are_named() {
 }
 
 #[test]
-fn eps_tr_must_lie_inside() {
+fn transition_eccentricity_outside_the_bearing_is_refused() {
     for bad in [0.0, 1.0, -0.5, f64::NAN] {
         let error = common::law::<f64>(Clock::Journal)
             .with_eps_tr(bad)

@@ -16,7 +16,7 @@ use jbf_core::Real;
 
 /// After a step of 10 rad the position settles there with every compensator.
 #[test]
-fn a_step_of_ten_radians() {
+fn position_settles_after_a_step_of_ten_radians() {
     with_each_compensator!(f64, Control::Position, |name, controller| {
         let mut bench = Bench::new(plant(&[]), controller);
         let mut last = 0.0_f64;
@@ -35,7 +35,7 @@ fn a_step_of_ten_radians() {
 
 /// When the load doubles in motion and then falls to half, the speed recovers.
 #[test]
-fn the_load_doubles() {
+fn speed_recovers_after_the_load_doubles_and_halves() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
         let mut bench = Bench::new(plant(&[]), controller);
         let mut late = 0.0_f64;
@@ -67,7 +67,7 @@ fn the_load_doubles() {
 ///
 /// Nothing is learned meanwhile and the control law acts alone; the loop recovers with the counter.
 #[test]
-fn a_frozen_encoder() {
+fn frozen_encoder_is_reported_and_the_control_law_acts_alone() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
         let mut bench = Bench::new(plant(&[]), controller);
         for _ in 0..3_000 {
@@ -106,7 +106,7 @@ fn a_frozen_encoder() {
 
 /// Nothing is learned in steps without a valid measurement.
 #[test]
-fn nothing_is_learned_in_the_dark() {
+fn learned_values_are_kept_while_the_encoder_is_frozen() {
     let mut bench = Bench::new(
         plant(&[]),
         common::bench::controller::<f64, _>(Control::Velocity, learning(Control::Velocity)),
@@ -125,7 +125,7 @@ fn nothing_is_learned_in_the_dark() {
 
 /// If a counter jumps, that step is rejected and the loop continues from its previous position.
 #[test]
-fn a_jumping_encoder() {
+fn jump_of_the_encoder_is_rejected_and_the_loop_continues() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
         let mut bench = Bench::new(plant(&[]), controller);
         for _ in 0..3_000 {
@@ -145,7 +145,7 @@ fn a_jumping_encoder() {
 
 /// If a reference is not finite, the last valid one is used.
 #[test]
-fn a_reference_that_is_no_number() {
+fn last_valid_reference_is_used_if_the_reference_is_not_finite() {
     with_each_compensator!(f32, Control::Position, |name, controller| {
         let mut bench = Bench::new(plant(&[]), controller);
         for _ in 0..1_000 {
@@ -169,7 +169,7 @@ fn a_reference_that_is_no_number() {
 ///
 /// Afterwards the loop follows again.
 #[test]
-fn saturated() {
+fn saturation_is_reported_and_the_loop_follows_again_afterwards() {
     with_each_compensator!(f64, Control::Velocity, |name, controller| {
         let mut bench = Bench::new(plant(&[]), controller);
         let mut said = 0_u32;
@@ -232,20 +232,20 @@ fn torture<T: Real, C: Compensator<T>>(name: &str, controller: &Controller<T, C>
 }
 
 #[test]
-fn torture_in_double() {
+fn loop_stays_finite_for_arbitrary_inputs_in_double_precision() {
     with_each_compensator!(f64, Control::Position, |name, c| { torture(name, &c) });
     with_each_compensator!(f64, Control::Velocity, |name, c| { torture(name, &c) });
 }
 
 #[test]
-fn torture_in_single() {
+fn loop_stays_finite_for_arbitrary_inputs_in_single_precision() {
     with_each_compensator!(f32, Control::Position, |name, c| { torture(name, &c) });
     with_each_compensator!(f32, Control::Velocity, |name, c| { torture(name, &c) });
 }
 
 /// Learned values survive a power cycle; values not finite or beyond the limits do no harm.
 #[test]
-fn what_was_learned_can_be_kept() {
+fn learned_values_are_resumed_and_invalid_ones_replaced_or_limited() {
     let control = Control::Velocity;
     let mut bench = Bench::new(
         plant(&[]),
@@ -276,7 +276,7 @@ fn what_was_learned_can_be_kept() {
 
 /// Single precision gives the same result as double precision.
 #[test]
-fn single_precision_follows_double() {
+fn tracking_error_in_single_precision_is_within_10_percent_of_double() {
     fn rms<T: Real>() -> f64 {
         let control = Control::Velocity;
         let mut bench = Bench::new(

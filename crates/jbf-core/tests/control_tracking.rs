@@ -35,7 +35,7 @@ fn rms<T: Real, C: Compensator<T>>(
 }
 
 #[test]
-fn the_observed_model_beats_every_other() {
+fn observed_compensator_halves_the_error_of_the_other_schemes() {
     for control in [Control::Position, Control::Velocity] {
         let mut others = Vec::new();
         let mut ours = f64::INFINITY;
@@ -55,7 +55,7 @@ fn the_observed_model_beats_every_other() {
 
 /// A model with the effect of the plant is better than a model without it.
 #[test]
-fn the_missing_effect_is_worth_having() {
+fn compensator_with_the_effect_of_the_plant_has_a_smaller_error() {
     let control = Control::Velocity;
     for effect in [
         ("presliding", &[2e4][..]),
@@ -78,7 +78,7 @@ fn the_missing_effect_is_worth_having() {
 
 /// The observer's error decays by its poles: two at -60/s, the plant's own at -135/s.
 #[test]
-fn the_observer_has_its_poles() {
+fn observer_error_decays_at_the_rate_of_the_requested_poles() {
     let control = Control::Velocity;
     let compensator = observed::<f64>(control);
     let mut state = compensator.start();
@@ -131,7 +131,7 @@ fn endless<T: Real, C: Compensator<T>>(name: &str, control: Control, c: Controll
 
 /// 300,000 steps in single precision.
 #[test]
-fn a_million_steps_change_nothing() {
+fn tracking_error_does_not_change_over_300_000_steps() {
     for control in [Control::Velocity, Control::Position] {
         with_each_compensator!(f32, control, |name, c| {
             endless(name, control, c, 300_000)
@@ -142,7 +142,7 @@ fn a_million_steps_change_nothing() {
 /// 1e8 steps, 55 hours of the loop, without drift or growth: `cargo test --release -- --ignored`.
 #[test]
 #[ignore = "minutes: make test-extended"]
-fn a_hundred_million_steps_change_nothing() {
+fn tracking_error_does_not_change_over_a_hundred_million_steps() {
     let n = 100_000_000;
     let control = Control::Velocity;
     endless(

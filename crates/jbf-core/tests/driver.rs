@@ -82,7 +82,7 @@ fn errors<F: Film<f64, N>, const N: usize>(film: &F, run: &Run, tolerance: f64) 
 }
 
 #[test]
-fn the_reduced_model_is_right_to_1e_9() {
+fn trajectory_of_the_reduced_model_agrees_with_the_reference_to_1e_9() {
     for run in reduced_runs() {
         let [f, eps, phi] = errors(&law(run.clock), &run, 1e-9);
         let name = format!("{:?} {}", run.clock, run.omega_rad_s);
@@ -94,7 +94,7 @@ fn the_reduced_model_is_right_to_1e_9() {
 }
 
 #[test]
-fn the_full_model_is_right_to_1e_7() {
+fn trajectory_of_the_full_model_agrees_with_the_reference_to_1e_7() {
     for run in full_runs() {
         let [f, eps, phi] = errors(&full(run.clock), &run, 1e-8);
         let name = format!("{:?} {}", run.clock, run.omega_rad_s);
@@ -128,7 +128,7 @@ fn falls_with_the_tolerance<F: Film<f64, N>, const N: usize>(film: &F, run: &Run
 }
 
 #[test]
-fn no_tolerance_fails() {
+fn trajectory_error_decreases_with_the_tolerance() {
     for run in reduced_runs() {
         falls_with_the_tolerance(&law(run.clock), &run, 2e-12);
     }
@@ -141,7 +141,7 @@ fn no_tolerance_fails() {
 ///
 /// The forms are a formula with its kinks, a function without known reversals, and a dense record.
 #[test]
-fn the_same_motion_in_three_forms() {
+fn friction_is_the_same_for_three_forms_of_one_motion() {
     let film = law::<f64>(Clock::Journal);
     let (a, w, b) = (0.1, 1.3, 0.04);
     let times: Vec<f64> = (1..400).map(|i| 0.0251 * f64::from(i)).collect();
@@ -190,7 +190,7 @@ impl Excitation for Dyn<'_> {
 
 /// A record that rests, starts, rests and reverses.
 #[test]
-fn rest_is_a_motion_too() {
+fn trajectory_with_rests_agrees_with_steps_of_constant_length() {
     let film = full(Clock::Journal);
     let (t, v) = (
         [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
@@ -223,7 +223,7 @@ fn rest_is_a_motion_too() {
 
 /// Derivatives pass through the driver: its steps depend on the values alone.
 #[test]
-fn derivatives_match_differences() {
+fn trajectory_derivatives_match_central_differences() {
     let motion = Sine::new(AMPLITUDE_M_S, 1.0).expect("valid");
     let times: Vec<f64> = (1..40).map(|i| 0.17 * f64::from(i)).collect();
     let p = [0.26, 0.06, 7.5e5, 33.0];
@@ -267,7 +267,7 @@ fn derivatives_match_differences() {
 
 /// With laws far from the thesis's and any tolerance, every run ends with finite numbers.
 #[test]
-fn far_laws_are_followed() {
+fn trajectory_of_any_law_at_any_tolerance_ends_with_finite_numbers() {
     let mut random = Random::new(21);
     let times: Vec<f64> = (1..50).map(|i| 0.1 * f64::from(i)).collect();
     let mut out = vec![0.0; times.len()];
@@ -312,7 +312,7 @@ fn far_laws_are_followed() {
 }
 
 #[test]
-fn bad_numbers_are_named() {
+fn invalid_argument_of_a_trajectory_is_refused_by_name() {
     let film = law::<f64>(Clock::Journal);
     let motion = Sine::new(0.1, 1.0).expect("valid");
     let mut out = [0.0; 2];

@@ -104,7 +104,7 @@ fn as_it_was<C: Compensator<f32>>(
 }
 
 #[test]
-fn a_million_steps() {
+fn loop_state_does_not_drift_over_a_million_steps() {
     for control in [Control::Velocity, Control::Position] {
         as_it_was(
             "observed",
@@ -132,7 +132,7 @@ fn a_million_steps() {
 /// smaller number of steps.
 #[test]
 #[ignore = "forty minutes: make test-extended"]
-fn a_billion_steps() {
+fn loop_state_does_not_drift_over_a_billion_steps() {
     let asked = std::env::var("JBF_STEPS").map(|n| n.parse().expect("a number"));
     let control = Control::Velocity;
     as_it_was(

@@ -130,7 +130,7 @@ fn readings<T: Real, L: Law<T>>(law: L, record: &Record<'_>) -> Vec<T> {
 }
 
 #[test]
-fn the_same_bits_and_slopes() {
+fn readings_on_a_stored_film_path_have_the_same_bits_and_derivatives() {
     let columns = Columns::new();
     let record = columns.record();
     let by = <Journal<f64> as Law<f64>>::FILM_PARAMETERS.expect("a film");
@@ -161,7 +161,7 @@ fn the_same_bits_and_slopes() {
 
 /// For effects without memory the steps between two samples do not change a reading.
 #[test]
-fn the_last_step_before_each_sample_is_enough() {
+fn last_step_before_each_sample_suffices_for_effects_without_memory() {
     let columns = Columns::new();
     let record = columns.record();
     let inner_s = inner_step_s(&with(law(|v, _| v), &[]), &record, MAX_STEP_S);
@@ -203,7 +203,7 @@ fn plain_parameter(number: usize) -> f64 {
 
 /// Beyond the end of the path the film steps by itself, from the last eccentricity of the path.
 #[test]
-fn a_path_too_short_is_no_panic() {
+fn readings_beyond_the_end_of_a_film_path_are_finite() {
     let columns = Columns::new();
     let record = columns.record();
     let path = path::<3>(&record, [1, 2]);

@@ -118,14 +118,14 @@ fn comes_back<T: Real, A: Named<T>, B: Named<f64>>(values: &[f64], effects: &[(&
 }
 
 #[test]
-fn any_viscous_friction_in_double_precision() {
+fn loop_recovers_from_a_frozen_encoder_with_any_viscous_friction_in_double_precision() {
     for viscous in [0.0, 100.0, 1e3, 2e3, 3e3, 5e3, 1e4, 2e4, 5e4, 1e5, 1e6, 1e7] {
         comes_back::<f64, Coulomb<f64>, Coulomb<f64>>(&[8.0, 10.0, viscous], NO_EFFECTS);
     }
 }
 
 #[test]
-fn any_viscous_friction_in_single_precision() {
+fn loop_recovers_from_a_frozen_encoder_with_any_viscous_friction_in_single_precision() {
     for viscous in [0.0, 100.0, 1e3, 2e3, 3e3, 5e3, 1e4, 2e4, 5e4, 1e5, 1e6, 1e7] {
         comes_back::<f32, Coulomb<f32>, Coulomb<f64>>(&[8.0, 10.0, viscous], NO_EFFECTS);
     }
@@ -135,7 +135,7 @@ fn any_viscous_friction_in_single_precision() {
 ///
 /// A weight that hides it, an asymmetry that doubles it, a quadratic drag, and a bristle.
 #[test]
-fn steep_through_effects() {
+fn loop_recovers_from_a_frozen_encoder_with_steep_friction_from_effects() {
     let values = [8.0, 10.0, 1e4];
     for effect in [
         ("gravity", &[20.0, 0.3][..]),

@@ -89,7 +89,7 @@ fn runs() -> Vec<Run> {
 /// Most of it comes from steps across the kink of |U| at a reversal (6e-7 if a step ends there),
 /// and in single precision from rounding.
 #[test]
-fn the_loop_step_is_far_within_1e_4_of_the_peak() {
+fn error_at_the_loop_step_is_below_5e_5_of_the_peak() {
     for run in runs() {
         let third = run.worst::<f64>(&Rodas3, LOOP_STEP_S);
         let fifth = run.worst::<f64>(&Rodas5P, LOOP_STEP_S);
@@ -103,7 +103,7 @@ fn the_loop_step_is_far_within_1e_4_of_the_peak() {
 
 /// With short steps the error is that of the reference, 1e-8.
 #[test]
-fn short_steps_converge_on_the_reference() {
+fn short_steps_converge_to_the_reference() {
     for run in runs() {
         let error = run.worst::<f64>(&Rodas5P, LOOP_STEP_S / 64.0);
         assert!(
@@ -119,7 +119,7 @@ fn short_steps_converge_on_the_reference() {
 ///
 /// The derivatives are the limits of differences.
 #[test]
-fn derivatives_go_through_the_implicit_step() {
+fn derivatives_through_the_implicit_step_match_differences() {
     let end = |lift: &dyn Fn(usize, f64) -> Dual<4>| {
         let p = Parameters::TABLE_4_2;
         let parameters = Parameters {
@@ -154,7 +154,7 @@ fn derivatives_go_through_the_implicit_step() {
 
 /// After a change of load the state reaches the steady state of the new load.
 #[test]
-fn a_jump_of_the_load_is_followed() {
+fn state_settles_at_the_steady_state_of_a_new_load() {
     let law = full::<f64>(Clock::Journal);
     let mut state = law.start(LOAD_N);
     for load_n in [104.0, 30.0, 150.0, 83.5, 104.0] {
@@ -171,7 +171,7 @@ fn a_jump_of_the_load_is_followed() {
 
 /// An invalid bearing mass is rejected with its name.
 #[test]
-fn the_mass_is_checked() {
+fn invalid_mass_of_a_bearing_is_refused_by_name() {
     for (mass_kg, name) in [(0.0, "mass_kg"), (1e-320, "mass_number")] {
         let bearing = Bearing::THESIS.with_mass_kg(mass_kg);
         let error = JournalFull::new(&bearing, LOAD_N, &table_4_2::<f64>(), Clock::Journal)

@@ -9,7 +9,7 @@ use jbf_core::stepper::Rk4;
 use jbf_core::{Bearing, Clock};
 
 #[test]
-fn after_a_change_of_load_the_law_is_the_other_loads() {
+fn friction_after_a_change_of_load_is_that_of_the_new_load() {
     let heavy = common::law::<f64>(Clock::Journal);
     let light = Journal::new(&Bearing::THESIS, 83.5, &table_4_2(), Clock::Journal).expect("valid");
     let mut state = heavy.start(104.0);
@@ -39,7 +39,7 @@ fn after_a_change_of_load_the_law_is_the_other_loads() {
 ///
 /// The film reaches the steady state of that load for any load before, and all numbers stay finite.
 #[test]
-fn a_lifted_bearing_has_a_small_friction() {
+fn lifted_bearing_has_the_friction_of_a_hundredth_of_its_load() {
     let law = common::law::<f64>(Clock::Journal);
     let light = Journal::new(&Bearing::THESIS, 1.04, &table_4_2(), Clock::Journal).expect("valid");
     let chain = common::chain_round(law, &[]);

@@ -12,7 +12,7 @@ use jbf_core::{Bearing, Clock};
 /// Its return in steps of that length equals that in steps a quarter as long, within a thousandth
 /// of the gap.
 #[test]
-fn the_longest_step_loses_nothing() {
+fn longest_step_agrees_with_shorter_steps_within_a_thousandth_of_the_gap() {
     let mut random = Random::new(11);
     for _ in 0..5000 {
         let p = Parameters {
@@ -54,7 +54,7 @@ fn the_longest_step_loses_nothing() {
 
 /// The step is not too short: for the thesis's bearing several steps of its 2 ms loop.
 #[test]
-fn the_longest_step_is_not_timid() {
+fn longest_step_is_several_times_the_loop_step() {
     for clock in [Clock::Journal, Clock::Thesis] {
         let dt = common::law::<f64>(clock).longest_step_s(0.127);
         assert!((6e-3..0.1).contains(&dt), "{clock:?} {dt}");

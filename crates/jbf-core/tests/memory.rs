@@ -42,7 +42,7 @@ fn lean<T: Real>() {
 }
 
 #[test]
-fn an_effect_that_is_not_there_costs_no_memory() {
+fn absent_effect_takes_no_memory() {
     lean::<f32>();
     lean::<f64>();
     println!(

@@ -22,18 +22,18 @@ fn files(at: &Path) -> Vec<PathBuf> {
 fn imports() -> BTreeMap<String, BTreeSet<String>> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let entries = fs::read_dir(&src).expect("the sources");
-    let rooms: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
+    let modules: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
     let name = |p: &Path| {
         p.file_stem()
             .expect("a name")
             .to_string_lossy()
             .into_owned()
     };
-    let names: BTreeSet<String> = rooms.iter().map(|p| name(p)).collect();
+    let names: BTreeSet<String> = modules.iter().map(|p| name(p)).collect();
     let mut found = BTreeMap::new();
-    for room in rooms.iter().filter(|p| name(p) != "lib") {
+    for module in modules.iter().filter(|p| name(p) != "lib") {
         let mut wanted = BTreeSet::new();
-        for file in files(room) {
+        for file in files(module) {
             let text = fs::read_to_string(&file).expect("source");
             let text = text
                 .split("#[cfg(test)]\nmod tests")
@@ -53,14 +53,14 @@ fn imports() -> BTreeMap<String, BTreeSet<String>> {
                 }
             }
         }
-        wanted.remove(&name(room));
-        found.insert(name(room), wanted);
+        wanted.remove(&name(module));
+        found.insert(name(module), wanted);
     }
     found
 }
 
 #[test]
-fn rooms_import_one_way() {
+fn modules_do_not_import_each_other_in_a_cycle() {
     let mut left = imports();
     assert!(left.len() > 20 && left["chain"].contains("effect"));
     // Remove repeatedly the modules that import no remaining module, and those that no remaining
@@ -68,17 +68,17 @@ fn rooms_import_one_way() {
     loop {
         let done: Vec<String> = left
             .iter()
-            .filter(|(room, wanted)| {
+            .filter(|(module, wanted)| {
                 wanted.iter().all(|w| !left.contains_key(w))
-                    || !left.values().any(|wanted| wanted.contains(*room))
+                    || !left.values().any(|wanted| wanted.contains(*module))
             })
-            .map(|(room, _)| room.clone())
+            .map(|(module, _)| module.clone())
             .collect();
         if done.is_empty() {
             break;
         }
-        for room in done {
-            left.remove(&room);
+        for module in done {
+            left.remove(&module);
         }
     }
     assert!(left.is_empty(), "these import each other: {left:#?}");

@@ -9,7 +9,7 @@ use jbf_core::observer::{CoulombObserver, VelocityObserver};
 use jbf_core::reference::{Reference, Wave};
 
 #[test]
-fn the_counter_rolls_over_both_ways() {
+fn counter_overflow_is_followed_in_both_directions() {
     let encoder = Encoder::<f64>::new(COUNTS_PER_RAD, 16, 68.0, DT_S).unwrap();
     let mut state = encoder::State::default();
     let mut true_counts = 0_i64;
@@ -24,7 +24,7 @@ fn the_counter_rolls_over_both_ways() {
 }
 
 #[test]
-fn a_jump_is_told_and_not_believed() {
+fn jump_of_the_counter_is_reported_and_ignored() {
     let encoder = Encoder::<f64>::new(COUNTS_PER_RAD, 16, 68.0, DT_S).unwrap();
     let mut state = encoder::State::default();
     encoder.step(&mut state, 100);
@@ -40,14 +40,14 @@ fn a_jump_is_told_and_not_believed() {
 }
 
 #[test]
-fn a_speed_that_hides_a_roll_over_is_refused() {
+fn top_speed_that_hides_an_overflow_is_refused() {
     let error = Encoder::<f64>::new(COUNTS_PER_RAD, 8, 68.0, DT_S).unwrap_err();
     assert_eq!(error.name(), "top_speed_rad_s");
 }
 
 /// Single precision keeps the last count after a billion counts.
 #[test]
-fn the_angle_of_a_billion_counts() {
+fn angle_of_a_billion_counts_is_exact() {
     let encoder = Encoder::<f64>::new(1.0, 32, 1e9, DT_S).unwrap();
     let mut state = encoder::State::default();
     encoder.step(&mut state, 0);
@@ -61,7 +61,7 @@ fn the_angle_of_a_billion_counts() {
 
 /// The observer equals the thesis's step, `v = k x + z; z += dt (-(a + k) v + b u)`.
 #[test]
-fn velocity_observers_are_the_thesis_s() {
+fn velocity_observer_equals_that_of_the_thesis() {
     for (a, b) in [(0.0, 0.0), (135.0, 457.0)] {
         let ours = VelocityObserver::<f64>::fed_forward(15.0, a, b, DT_S).unwrap();
         let (mut z, mut carried, mut before) = (0.0, 0.0, 0.0);
@@ -80,7 +80,7 @@ fn velocity_observers_are_the_thesis_s() {
 
 /// With constant friction F the level converges to F at the rate k_F b (p = 1).
 #[test]
-fn the_coulomb_observer_learns_at_its_rate() {
+fn coulomb_observer_converges_at_its_rate() {
     let (gain, b, friction) = (0.01, 457.0, 0.7);
     let observer = CoulombObserver::<f64>::new(gain, 1.0, b, 5.0, DT_S).unwrap();
     let mut state = State::default();
@@ -106,7 +106,7 @@ fn the_coulomb_observer_learns_at_its_rate() {
 ///
 /// This holds for exponents on both sides of 1 (guard at v = 0 for p < 1, at speed for p > 1).
 #[test]
-fn exponents_are_guarded() {
+fn guarded_nonlinearity_has_bounded_gain_and_correct_derivative() {
     let (gain, b) = (0.01, 457.0);
     for exponent in [0.3, 0.5, 0.9, 1.0, 1.5, 2.0, 3.0] {
         let observer = CoulombObserver::<f64>::new(gain, exponent, b, 1e6, DT_S).unwrap();
@@ -141,14 +141,14 @@ fn exponents_are_guarded() {
 ///
 /// It used to overflow, so that phi was not finite.
 #[test]
-fn a_guard_beyond_every_speed_is_refused() {
+fn observer_gain_whose_guard_exceeds_every_speed_is_refused() {
     let error = CoulombObserver::<f32>::new(14.4, 0.991, 5.0, 0.3, 0.025).unwrap_err();
     assert_eq!(error.name(), "gain");
     assert!(CoulombObserver::<f32>::new(0.01, 0.991, 5.0, 0.3, 0.025).is_ok());
 }
 
 #[test]
-fn what_it_learns_is_limited() {
+fn learned_level_is_limited() {
     let observer = CoulombObserver::<f32>::new(0.01, 1.0, 457.0, 2.0, DT_S).unwrap();
     let mut state = State::default();
     for _ in 0..100_000 {
@@ -163,7 +163,7 @@ fn what_it_learns_is_limited() {
 /// A sine about zero starts at zero, any other at its minimum; a triangle starts low, a square
 /// high.
 #[test]
-fn references_start_as_the_thesis_s_do() {
+fn references_start_with_the_phases_of_the_thesis() {
     let at = |wave, low, high| Reference::new(wave, low, high, 0.25).unwrap().at(0.0);
     assert!(at(Wave::Sine, -1.04, 1.04).value.abs() < 1e-12);
     assert!(at(Wave::Sine, -1.04, 1.04).rate > 0.0);
@@ -174,7 +174,7 @@ fn references_start_as_the_thesis_s_do() {
 
 /// Rates are the derivatives of the values, except at corners.
 #[test]
-fn rates_are_derivatives() {
+fn reference_rates_are_the_derivatives_of_the_values() {
     for wave in [Wave::Sine, Wave::Triangle] {
         let reference = Reference::new(wave, -1.0, 3.0, 0.5).unwrap();
         for i in 0..1000_u32 {

@@ -66,7 +66,7 @@ fn order(step_s: f64, end: impl Fn(f64) -> [f64; 2], exact: [f64; 2]) -> f64 {
 }
 
 #[test]
-fn on_the_reduced_model() {
+fn steppers_have_their_order_on_the_reduced_model() {
     for (swing, fifth, longest_s) in [(0.0, 5.0, 0.08), (0.01, 4.0, 0.04)] {
         let exact = reduced(&Rodas5P, 1e-3, swing);
         for step_s in [longest_s, 0.5 * longest_s] {
@@ -83,7 +83,7 @@ fn on_the_reduced_model() {
 /// Rodas3 meets the order conditions of differential-algebraic systems and keeps its order. The
 /// measured order of Rodas5P is one below its nominal five.
 #[test]
-fn on_the_full_model() {
+fn steppers_have_their_order_on_the_stiff_full_model() {
     for (swing, fifth, longest_s) in [(0.0, 4.0, 0.08), (0.01, 4.0, 0.04)] {
         let exact = full(&Rodas5P, 5e-4, swing);
         for step_s in [longest_s, 0.5 * longest_s] {

@@ -31,7 +31,7 @@ fn dry(volts: f64) -> Plant<f64, ConstantLaw> {
 
 /// Without friction a step is the exact solution for a constant input.
 #[test]
-fn without_friction_it_is_exact() {
+fn plant_without_friction_follows_the_exact_solution() {
     let plant = dry(0.0);
     let mut state = plant.start(LOAD_N, 0.0);
     for i in 1..=500 {
@@ -44,7 +44,7 @@ fn without_friction_it_is_exact() {
 
 /// With a constant level L the speed V falls to zero at t = ln(1 + aV/(bL))/a, and stays zero.
 #[test]
-fn dry_friction_stops_it_in_the_exact_time() {
+fn dry_friction_stops_the_plant_at_the_exact_time() {
     let (a, b, level) = (135.0, 457.0, 0.8);
     let plant = dry(level);
     let mut state = plant.start(LOAD_N, 0.0);
@@ -73,7 +73,7 @@ fn dry_friction_stops_it_in_the_exact_time() {
 
 /// During an hour at nine tenths of the level there is no motion, and friction equals the input.
 #[test]
-fn it_sticks_for_an_hour() {
+fn plant_below_the_breakaway_level_stays_at_rest_for_an_hour() {
     let plant = plant(&[]);
     let mut state = plant.start(LOAD_N, 600.0);
     // The journal at rest holds f_m times its load.
@@ -94,7 +94,7 @@ fn it_sticks_for_an_hour() {
 
 /// `v' = -a v + b (u - F)` holds in every step for the reported friction.
 #[test]
-fn the_reported_friction_is_what_acted() {
+fn reported_friction_satisfies_the_equation_of_motion() {
     let plant = plant(&[("stribeck_excess", &[0.1, 0.005, 1.0])]);
     let mut state = plant.start(LOAD_N, 10.0);
     let fall = -(-135.0 * DT_S / 2.0).exp_m1();
@@ -133,7 +133,7 @@ impl Visitor<f64> for Symmetric {
 
 /// For every law of the catalogue, u -> -u gives x -> -x.
 #[test]
-fn every_law_is_symmetric() {
+fn plant_with_any_law_is_symmetric_in_the_input() {
     for info in jbf_core::law::CATALOGUE {
         let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
         let worst = with_law(
@@ -175,7 +175,7 @@ fn runs_and_rests<L: Law<f64> + Copy>(law: L, effects: &[Info]) {
 
 /// Every effect of the catalogue works in the plant, with a compatible law.
 #[test]
-fn every_effect_runs_and_comes_to_rest() {
+fn plant_with_any_effect_moves_and_comes_to_rest() {
     let (of_drives, others): (Vec<Info>, Vec<Info>) = jbf_core::effect::CATALOGUE
         .iter()
         .partition(|info| info.needs.contains(&Need::NoFilm));
@@ -186,7 +186,7 @@ fn every_effect_runs_and_comes_to_rest() {
 
 /// With a compliant drive the shaft moves before the journal, by the twist under the input.
 #[test]
-fn a_soft_drive_gives_way() {
+fn shaft_of_a_compliant_drive_twists_before_the_journal_moves() {
     let plant = plant(&[("drive_compliance", &[60.0, 0.5, 1e-3])]);
     let mut state = plant.start(LOAD_N, 60.0);
     let push_v = 0.3;

@@ -30,7 +30,7 @@ fn difference(clock: Clock, omega_rad_s: f64) -> f64 {
 }
 
 #[test]
-fn the_difference_is_the_one_found_independently() {
+fn difference_between_reduced_and_full_model_equals_the_independent_value() {
     let omegas = [0.1, 0.25, 1.0, 2.0];
     for (clock, expected) in [
         (Clock::Thesis, [1.1e-5, 3.4e-5, 1.9e-4, 4.5e-4]),

@@ -113,7 +113,7 @@ fn runs() -> Vec<Run> {
 }
 
 #[test]
-fn runge_kutta_at_2_ms_matches_every_row() {
+fn runge_kutta_at_2_ms_matches_the_reference_to_1e_6() {
     for run in runs() {
         let got = run.friction::<f64>(&Rk4, LOOP_STEP_S);
         for (row, f) in run.rows.iter().zip(got) {
@@ -133,7 +133,7 @@ fn runge_kutta_at_2_ms_matches_every_row() {
 /// The remaining error at 2 ms comes from steps across the kink of |U| at a reversal. The steps
 /// here are short compared with the memory of the film.
 #[test]
-fn runge_kutta_converges_on_the_reference() {
+fn runge_kutta_with_short_steps_converges_to_the_reference() {
     for run in runs() {
         let got = run.friction::<f64>(&Rk4, LOOP_STEP_S / 64.0);
         for (row, f) in run.rows.iter().zip(got) {
@@ -153,7 +153,7 @@ fn runge_kutta_converges_on_the_reference() {
 /// int K x''`. Integrated by parts, with K falling from one to zero, it is at most `(h/2) max|x'|
 /// (1 + 1 + 1)`: the end, the start and the integral.
 #[test]
-fn euler_stays_within_its_theory() {
+fn euler_error_is_within_its_theoretical_bound() {
     for run in runs() {
         let bound = 1.5 * LOOP_STEP_S * run.fastest_change_1_s();
         let worst = |step_s| {
@@ -177,7 +177,7 @@ fn euler_stays_within_its_theory() {
 /// The motion is in one direction, always in mixed lubrication, so that neither |U| nor the
 /// asperity load has a kink.
 #[test]
-fn steppers_have_their_order() {
+fn euler_and_runge_kutta_have_their_order_on_a_smooth_motion() {
     fn ends(stepper: &impl Stepper, step_s: f64) -> [f64; 2] {
         let law = law::<f64>(Clock::Journal);
         let steady = law.steady(0.03).expect("a speed");
@@ -210,7 +210,7 @@ fn steppers_have_their_order() {
 /// In the shortest steps the film changes by less than a unit in the last place. A plain sum would
 /// then not change: at 0.1 ms its error is 4e-3.
 #[test]
-fn single_precision_follows_double_at_any_step() {
+fn single_precision_agrees_with_double_at_any_step() {
     for run in runs() {
         for step_s in [LOOP_STEP_S, LOOP_STEP_S / 20.0, LOOP_STEP_S / 100.0] {
             let double = run.friction::<f64>(&Rk4, step_s);

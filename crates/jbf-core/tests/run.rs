@@ -57,7 +57,7 @@ fn run(effects: &[(&str, &[f64])], columns: &Columns, max_step_s: f64) -> Vec<f6
 
 /// Without inner steps and without reversals a run equals the chain, sample by sample.
 #[test]
-fn a_run_is_the_chain() {
+fn run_without_inner_steps_equals_the_chain() {
     let sines = Sines::one_way(1.0);
     let columns = Columns::of(&sines, 0.005, 500);
     let stepped = readings(&chain::<f64>(&[]), 0.005, 499, |t| sines.at(t));
@@ -72,7 +72,7 @@ fn a_run_is_the_chain() {
 /// Reversals are between samples here. The lag would reveal a jump at a wrong instant: 0.02 s of 2
 /// F_d over tau is far above the tolerance.
 #[test]
-fn inner_steps_converge_across_reversals() {
+fn error_decreases_with_the_inner_step_across_reversals() {
     let sines = Sines {
         offset_m_s: 0.013,
         ..Sines::two_way(1.3)
@@ -93,7 +93,7 @@ fn inner_steps_converge_across_reversals() {
 
 /// Columns of different lengths end the run with the shortest; an empty one gives no result.
 #[test]
-fn the_shortest_column_ends_the_run() {
+fn run_ends_with_its_shortest_column() {
     let mut columns = Columns::of(&Sines::one_way(1.0), 0.01, 50);
     columns.0[3].truncate(20);
     assert_eq!(run(&[], &columns, 0.01).len(), 20);
@@ -105,7 +105,7 @@ fn the_shortest_column_ends_the_run() {
 ///
 /// A coarse record and a fine record give the same run.
 #[test]
-fn a_temperature_is_followed_between_its_samples() {
+fn temperature_is_interpolated_between_its_samples() {
     let sines = Sines::one_way(1.0);
     let effect: [(&str, &[f64]); 1] = [("dry_temperature_dependence", &[-0.03, 20.0])];
     let warming = |dt_s: f64, count: u32| {
@@ -127,7 +127,7 @@ fn a_temperature_is_followed_between_its_samples() {
 /// The steps of a run follow its warmest sample, as for a film of that oil. Without a temperature,
 /// or at the reference temperature, there is no additional requirement.
 #[test]
-fn warm_oil_asks_for_short_steps() {
+fn warm_oil_requires_shorter_inner_steps() {
     let effects: [(&str, &[f64]); 1] = [("vogel_viscosity", &[800.0, -95.0, 40.0])];
     let chain = chain::<f64>(&effects);
     let mut columns = Columns::of(&Sines::two_way(1.0), 0.01, 400);
@@ -150,7 +150,7 @@ fn warm_oil_asks_for_short_steps() {
 ///
 /// The following samples are as if the speed were small there.
 #[test]
-fn a_reversal_may_lie_at_a_sample() {
+fn speed_of_rounding_size_is_a_reversal_at_its_sample() {
     let turning = |speed_m_s: f64| {
         let mut columns = Columns::of(&Sines::two_way(1.0), 0.02, 400);
         let velocity = &mut columns.0[1];
@@ -173,7 +173,7 @@ fn a_reversal_may_lie_at_a_sample() {
 
 /// The predicted cost counts the actual steps: one per sample, and the inner ones.
 #[test]
-fn the_cost_of_a_run_is_its_inner_steps() {
+fn predicted_cost_of_a_run_is_its_number_of_inner_steps() {
     let chain = chain::<f64>(&[]);
     let columns = Columns::of(&Sines::two_way(1.0), 0.01, 401);
     let film_s = inner_step_s(&chain, &columns.record(), 1.0);
@@ -200,7 +200,7 @@ impl Visitor<f64> for Counted<'_> {
 
 /// A law without memory takes one step per sample, with the same readings as with many steps.
 #[test]
-fn laws_without_memory_take_one_step_a_sample() {
+fn laws_without_memory_take_one_step_per_sample() {
     let motion = Sines::two_way(std::f64::consts::TAU / 40.0);
     for name in ["coulomb", "stribeck"] {
         let info = CATALOGUE.iter().find(|law| law.name == name);
@@ -246,7 +246,7 @@ impl Visitor<f64> for Along<'_> {
 /// That is 16 steps of 0.4 s instead of 200, and the friction hardly differs. For other records all
 /// steps are taken.
 #[test]
-fn samples_far_apart_are_not_walked_in_milliseconds() {
+fn widely_spaced_samples_are_stepped_only_as_finely_as_the_record_resolves() {
     let slow = Sines::two_way(std::f64::consts::TAU / 40.0);
     for name in ["lugre", "seven_parameter"] {
         let info = CATALOGUE

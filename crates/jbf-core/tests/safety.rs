@@ -72,22 +72,22 @@ fn torture<T: Real>(stepper: &impl Stepper, seed: u64) {
 }
 
 #[test]
-fn euler_in_double_precision_stays_inside() {
+fn euler_in_double_precision_keeps_the_journal_inside_the_bearing() {
     torture::<f64>(&Euler, 1);
 }
 
 #[test]
-fn euler_in_single_precision_stays_inside() {
+fn euler_in_single_precision_keeps_the_journal_inside_the_bearing() {
     torture::<f32>(&Euler, 2);
 }
 
 #[test]
-fn runge_kutta_in_double_precision_stays_inside() {
+fn runge_kutta_in_double_precision_keeps_the_journal_inside_the_bearing() {
     torture::<f64>(&Rk4, 3);
 }
 
 #[test]
-fn runge_kutta_in_single_precision_stays_inside() {
+fn runge_kutta_in_single_precision_keeps_the_journal_inside_the_bearing() {
     torture::<f32>(&Rk4, 4);
 }
 
@@ -126,7 +126,7 @@ fn torture_full<T: Real>(stepper: &impl StiffStepper, seed: u64) {
 }
 
 #[test]
-fn the_full_model_stays_inside() {
+fn full_model_keeps_the_journal_inside_the_bearing() {
     torture_full::<f64>(&Rodas3, 5);
     torture_full::<f32>(&Rodas3, 6);
     torture_full::<f64>(&Rodas5P, 7);
@@ -134,7 +134,7 @@ fn the_full_model_stays_inside() {
 
 /// A step that is too coarse is counted once, and the film recovers from it.
 #[test]
-fn a_step_too_coarse_is_counted_and_forgotten() {
+fn too_coarse_step_is_counted_and_the_film_recovers() {
     let law = common::law::<f64>(Clock::Journal);
     let mut state = law.start(104.0);
     law.advance_with(&Rk4, &mut state, [0.02; 3], 1.0, 0.002);
@@ -157,7 +157,7 @@ fn a_step_too_coarse_is_counted_and_forgotten() {
 
 /// Input that is not finite leaves the film unchanged, and is counted.
 #[test]
-fn lost_numbers_leave_the_film_alone() {
+fn input_that_is_not_finite_leaves_the_film_unchanged() {
     let law = common::law::<f64>(Clock::Journal);
     for bad in [f64::NAN, f64::INFINITY] {
         let mut state = law.start(104.0);
@@ -174,7 +174,7 @@ fn lost_numbers_leave_the_film_alone() {
 /// A step could be held at the wall itself there, where the film would not flow and the journal
 /// would stay.
 #[test]
-fn soft_asperities_do_not_trap_the_journal() {
+fn film_recovers_with_asperities_too_soft_for_the_load() {
     for k0 in [1.0, 1e3, 1e5] {
         let p = Parameters {
             k0,

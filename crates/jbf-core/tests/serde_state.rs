@@ -53,7 +53,7 @@ fn go_on_alike<C: Compensator<f64>>(compensator: &C, mut one: C::State, mut othe
 }
 
 #[test]
-fn the_learning_compensator() {
+fn stored_learning_compensator_resumes_its_values() {
     let state = driven(learning(CONTROL));
     let kept: Film<f64> = stored(&state.learned);
     assert_eq!(kept, state.learned);
@@ -63,7 +63,7 @@ fn the_learning_compensator() {
 }
 
 #[test]
-fn the_coulomb_observer() {
+fn stored_coulomb_observer_continues_unchanged() {
     let state = driven(coulomb());
     let kept = stored(&state);
     assert_eq!(kept, state);
@@ -72,7 +72,7 @@ fn the_coulomb_observer() {
 }
 
 #[test]
-fn the_observed_model() {
+fn stored_corrections_of_the_observed_model_are_resumed() {
     let state = driven(observed(CONTROL));
     let kept: Corrections<f64> = stored(&state.learned);
     assert_eq!(kept, state.learned);
@@ -82,13 +82,13 @@ fn the_observed_model() {
 }
 
 #[test]
-fn a_lap() {
+fn stored_period_of_the_repetitive_compensator_continues_unchanged() {
     let state = driven(repetitive());
     go_on_alike(&repetitive(), state, stored(&state));
 }
 
 #[test]
-fn single_precision_keeps_its_bits() {
+fn stored_single_precision_values_keep_their_bits() {
     let learned = Film {
         k0: 650_000.1_f32,
         gamma: 33.3,
@@ -99,7 +99,7 @@ fn single_precision_keeps_its_bits() {
 }
 
 #[test]
-fn the_counter_goes_on_where_it_was() {
+fn stored_encoder_counter_continues_at_its_angle() {
     let encoder: Encoder<f64> = Encoder::new(2387.3, 16, 68.0, DT_S).unwrap();
     let mut here = Counter::default();
     for i in 0..10_000_u32 {

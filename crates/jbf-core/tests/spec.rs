@@ -42,7 +42,7 @@ fn built(
 }
 
 #[test]
-fn it_is_the_chain_built_by_hand() {
+fn chain_from_names_equals_the_chain_from_types() {
     let effects: [(&str, &[f64]); 2] = [("sensor_lag", &[0.1]), ("coulomb_drag", &[0.8])];
     let (named, rig) = built("journal", &TABLE_4_2, &effects).expect("valid");
     let sines = Sines::two_way(1.0);
@@ -55,7 +55,7 @@ fn it_is_the_chain_built_by_hand() {
 }
 
 #[test]
-fn what_is_wrong_is_named() {
+fn invalid_part_of_a_specification_is_refused_by_name() {
     let refused = |law: &str, values: &[f64], effects: &[(&str, &[f64])]| {
         built(law, values, effects).expect_err("refused").name()
     };

@@ -25,7 +25,7 @@ fn law(table: f64) -> Journal<f64> {
 }
 
 #[test]
-fn stribeck_curves_of_the_four_tables() {
+fn stribeck_curves_of_the_four_tables_agree_with_the_reference() {
     let points = rows::<5>(include_str!("data/steady.csv"));
     assert_eq!(points.len(), 44);
     for [table, speed, eps, phi, f] in points {
@@ -52,7 +52,7 @@ fn stribeck_curves_of_the_four_tables() {
 ///
 /// The share of the film is of the order of U, so f_m - f decreases with U.
 #[test]
-fn friction_at_a_creep_is_f_m() {
+fn friction_at_vanishing_speed_is_f_m() {
     for (table, ..) in TABLES {
         let left = |speed| 0.26 - law(table).steady(speed).expect("a speed").coefficient;
         assert!(left(1e-12).abs() < 1e-7, "table {table}: {}", left(1e-12));
@@ -64,7 +64,7 @@ fn friction_at_a_creep_is_f_m() {
 }
 
 #[test]
-fn a_long_run_settles_on_the_steady_state() {
+fn long_run_settles_at_the_steady_state() {
     for (table, load_n, ..) in TABLES {
         for speed in [0.005, 0.02, 0.0601, 0.127] {
             let law = law(table);
@@ -89,7 +89,7 @@ fn a_long_run_settles_on_the_steady_state() {
 /// Table 4.2 prints 0.9727 where (3.20) gives 0.97235: an error of the thesis, which
 /// [`Journal::with_eps_tr`] reproduces.
 #[test]
-fn transition_eccentricities_as_printed() {
+fn transition_eccentricities_agree_with_the_printed_tables() {
     for (table, load_n, p, printed) in TABLES {
         let load_number: f64 = Bearing::THESIS.load_number(load_n, p.u_tr_m_s);
         let eps_tr: f64 = transition_eccentricity(load_number);
@@ -106,7 +106,7 @@ fn transition_eccentricities_as_printed() {
 
 /// A given eps_tr applies to the constructor's load, and returns with it.
 #[test]
-fn a_given_eps_tr_survives_a_change_of_load() {
+fn given_transition_eccentricity_returns_with_its_load() {
     let law = law(4.2).with_eps_tr(0.9727).expect("inside the bearing");
     let mut state = law.start(104.0);
     law.set_load(&mut state, 50.0);
@@ -116,7 +116,7 @@ fn a_given_eps_tr_survives_a_change_of_load() {
 }
 
 #[test]
-fn rest_has_no_single_friction() {
+fn steady_friction_at_rest_is_refused() {
     let error = law(4.2).steady(0.0).expect_err("set-valued");
     assert_eq!(
         error.to_string(),

@@ -81,7 +81,7 @@ fn acts_alike<P: Place<f64>>() {
 }
 
 #[test]
-fn an_effect_acts_alike_from_outside_at_every_stage() {
+fn user_effect_equals_the_catalogue_effect_at_every_stage() {
     acts_alike::<Drive>();
     acts_alike::<Oil>();
     acts_alike::<Load>();
@@ -94,7 +94,7 @@ fn an_effect_acts_alike_from_outside_at_every_stage() {
 
 /// Effects of different stages act in the order of the chain, in whatever order they are written.
 #[test]
-fn all_stages_at_once_in_any_order() {
+fn order_of_user_effects_does_not_change_the_readings() {
     let named = catalogue(&[
         page::<Drive>(),
         page::<Oil>(),
@@ -122,7 +122,7 @@ fn all_stages_at_once_in_any_order() {
 }
 
 #[test]
-fn nothing_of_ones_own_changes_nothing() {
+fn empty_set_of_user_effects_changes_no_bit() {
     assert_eq!(run(()), run(Effects::NONE));
     assert_eq!(run(Effects::NONE.with(())), run(()));
     assert_eq!(run(None::<Other>), run(()));
@@ -145,7 +145,7 @@ fn nothing_of_ones_own_changes_nothing() {
 
 /// At an infinite null an effect is rejected; it must be omitted.
 #[test]
-fn an_infinite_null_is_refused() {
+fn effect_at_an_infinite_null_is_refused() {
     let error = Bristle::new(&[f64::INFINITY]).expect_err("vanishes");
     assert_eq!(error.name(), "sigma");
     assert!(Bristle::new(&[-1.0]).is_err() && Bristle::new(&[]).is_err());
@@ -153,7 +153,7 @@ fn an_infinite_null_is_refused() {
 
 /// The longest step of a typed set is the shortest of those of its effects.
 #[test]
-fn the_longest_step_is_the_shortest_of_all() {
+fn longest_step_of_a_set_is_the_shortest_of_its_effects() {
     let set = (typed::<Other>(), typed::<Drive>());
     assert_eq!(EffectSet::<f64>::longest_step_s(&set), 0.005);
     assert_eq!(EffectSet::<f64>::longest_step_s(&()), f64::INFINITY);

@@ -16,7 +16,7 @@ use jbf_core::{Friction, Motion};
 
 /// Files and Python use these names, each of them unique.
 #[test]
-fn places_to_start_from_have_the_names_that_files_know() {
+fn start_rules_and_bounds_have_their_names_in_files() {
     let names = [
         (Start::Catalogue, "catalogue"),
         (Start::Kinetic, "kinetic"),
@@ -79,7 +79,7 @@ impl Law<f64> for Rigid {
 
 /// A bristle that a law does not deflect gives its level along the motion, and zero at rest.
 #[test]
-fn a_bristle_that_does_not_bend_gives_the_level_along_the_motion() {
+fn rigid_bristle_gives_its_level_along_the_motion() {
     let speeds = [0.1, 0.2, 0.1, 0.0, 0.0, -0.1, -0.3, 0.0];
     let got = readings(&chain_round(Rigid(0.2), &[]), 0.01, 7, |t| {
         let mut motion = Motion::at_rest(100.0);
@@ -107,7 +107,7 @@ fn read(effects: &[(&str, &[f64])], time_s: &[f64], force_n: &[f64]) -> Vec<f64>
 ///
 /// At a slope `s` it lags by `s tau (1 - exp(-t / tau))`.
 #[test]
-fn a_lag_alone_follows_straight_lines_between_samples() {
+fn lag_of_linear_segments_follows_its_differential_equation() {
     let tau_s = 0.1;
     for step_s in [0.005, 0.05, 0.25] {
         let time_s: Vec<f64> = (0..40).map(|i| 3.0 + step_s * f64::from(i)).collect();
@@ -126,7 +126,7 @@ fn a_lag_alone_follows_straight_lines_between_samples() {
 
 /// A drifting zero counts its time from the first sample, independent of the clock.
 #[test]
-fn a_drift_counts_from_the_first_sample() {
+fn drift_is_zero_at_the_first_sample() {
     let time_s: Vec<f64> = (0..12).map(|i| 50.0 + 0.5 * f64::from(i)).collect();
     let got = read(&[("sensor_drift", &[0.2])], &time_s, &[1.0; 12]);
     for (t, got) in time_s.iter().zip(&got) {
@@ -138,7 +138,7 @@ fn a_drift_counts_from_the_first_sample() {
 ///
 /// The last entry connects to the first, and the table repeats in both directions.
 #[test]
-fn a_table_against_the_angle_repeats() {
+fn table_over_the_angle_is_periodic() {
     let table = Table::new([1.0, 3.0, 2.0, 6.0], Axis::Angle, 0.5, 0.0).expect("a table");
     let levels = [
         (0.0, 1.0),
@@ -159,7 +159,7 @@ fn a_table_against_the_angle_repeats() {
 
 /// A table against the speed ignores the sign, and holds its last entry beyond its end.
 #[test]
-fn a_table_against_the_speed_ends() {
+fn table_over_the_speed_holds_its_last_entry() {
     let table = Table::new([1.0, 3.0, 2.0], Axis::Speed, 0.5, 0.0).expect("a table");
     let levels = [
         (0.0, 1.0),
@@ -181,7 +181,7 @@ fn a_table_against_the_speed_ends() {
 ///
 /// With gamma zero only dry friction remains.
 #[test]
-fn viscous_friction_is_in_proportion_to_the_gamma_that_was_learned() {
+fn viscous_friction_is_proportional_to_the_learned_gamma() {
     let sent = |gamma: f64, velocity_rad_s: f64| {
         let learned = Learned {
             gamma,

@@ -249,7 +249,7 @@ fn posterior_in_milliseconds_is_the_same_motion() {
 }
 
 #[test]
-fn one_reading_and_no_reading_give_a_finite_motion() {
+fn motion_is_finite_with_one_reading_or_none() {
     fn of_order<const N: usize>() {
         for variance in [1e-4, INF] {
             let one = smooth::<N>(

@@ -81,7 +81,7 @@ macro_rules! tests {
         })*
 
         #[test]
-        fn every_property_is_tested() {
+        fn every_property_has_a_seeded_test() {
             assert_eq!(ALL.len(), [$(stringify!($name)),*].len());
             let thousands: u32 = ALL.iter().map(|p| p.thousands).sum();
             assert!(thousands >= 1000, "{thousands} thousand");

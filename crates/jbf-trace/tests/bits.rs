@@ -6,7 +6,7 @@ use jbf_trace::{check, traces, Hash, Trace, TABLE};
 use std::collections::BTreeMap;
 
 #[test]
-fn every_trace_is_the_tables() {
+fn every_trace_has_the_hash_of_the_table() {
     let mut wrong = Vec::new();
     let mut new = Vec::new();
     let found = check(|trace, expected| match expected {
@@ -30,7 +30,7 @@ fn every_trace_is_the_tables() {
 
 /// Hashes are meaningful: they differ from each other and from that of no data.
 #[test]
-fn traces_are_of_something() {
+fn hashes_of_traces_differ_between_effects() {
     let mut seen: BTreeMap<u64, Vec<Trace>> = BTreeMap::new();
     traces::<f64>("f64", &mut |t| seen.entry(t.hash).or_default().push(*t));
     assert!(!seen.contains_key(&Hash::default().0));
@@ -60,7 +60,7 @@ fn first(trace: &Trace) -> &'static str {
 }
 
 #[test]
-fn one_bit_changes_the_hash() {
+fn hash_changes_with_one_bit_of_input() {
     let of = |number: f64| {
         let mut hash = Hash::default();
         hash.take(1.0);

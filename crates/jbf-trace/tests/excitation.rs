@@ -40,6 +40,6 @@ impl LoopVisitor<f32> for Look {
 }
 
 #[test]
-fn reversals_saturation_and_a_broken_encoder_are_met_by_every_loop() {
+fn every_loop_trace_contains_reversals_saturation_and_encoder_faults() {
     each(&mut Look).expect("every loop can be built");
 }

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_still_counter_is_frozen_under_a_voltage_that_moves() {
+    fn constant_counter_is_frozen_if_the_voltage_moves_the_shaft() {
         let mut state = State::default();
         for step in 1..=2 {
             let (status, blind) =
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_weak_voltage_never_freezes() {
+    fn constant_counter_is_accepted_below_the_moving_voltage() {
         let mut state = State::default();
         for step in 1..100 {
             let (status, _) = SIGHT.step(&mut state, &sample(step, false), 0.99, false, Status::OK);
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_and_a_bad_target_blind_for_the_patience() {
+    fn jump_or_invalid_target_invalidates_measurements_for_the_patience() {
         for (jumped, target) in [(true, Status::OK), (false, Status::NOT_FINITE)] {
             let mut state = State::default();
             let (status, blind) = SIGHT.step(&mut state, &sample(0, jumped), 0.0, false, target);
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_doubt_doubles_and_a_count_ends_it() {
+    fn repeated_doubts_last_twice_as_long_until_the_counter_changes() {
         let mut state = State::default();
         let mut lasted = [0; 3];
         for time in &mut lasted {

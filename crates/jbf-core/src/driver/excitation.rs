@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sine_is_the_librarys() {
+    fn sine_agrees_with_libm_to_rounding() {
         for i in -400_000_i32..400_000 {
             let x = 0.001_234_567 * f64::from(i) * (1.0 + 1e-3 * f64::from(i.abs()));
             let error = (sine(x) - libm::sin(x)).abs();
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn kinks_are_the_zeros() {
+    fn kinks_of_a_biased_sine_are_its_zeros() {
         let motion = Sine::with_bias(0.1, 3.0, 0.05).expect("valid");
         let mut t = 0.0;
         for _ in 0..1000 {

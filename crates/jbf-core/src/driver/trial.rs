@@ -254,7 +254,7 @@ mod tests {
     /// A step is sound up to three quarters of the gap to the edge, whatever its error is. A step
     /// out of the bearing and a step that is not a number are not sound.
     #[test]
-    fn a_sound_step_leaves_a_quarter_of_the_gap() {
+    fn step_is_accepted_only_if_a_quarter_of_the_gap_remains() {
         let law = Journal::new(
             &Bearing::THESIS,
             104.0,

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn two_equations_are_solved_whichever_pivot_is_larger() {
+    fn two_by_two_system_is_solved_with_either_pivot() {
         for j in [[[1.0, 2.0], [3.0, 4.0]], [[6.9, 2.0], [-30.0, 4.0]]] {
             let right = [0.3, -0.7];
             let x = TwoByTwo::new(&j, 7.0).solve(&right);
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_order_system_is_solved() {
+    fn second_order_system_is_solved_to_rounding() {
         let j = [
             [0.0, 0.0, 1.0, 0.0],
             [0.0, 0.0, 0.0, 1.0],

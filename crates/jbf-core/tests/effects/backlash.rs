@@ -19,7 +19,7 @@ fn signal(gap_rad: f64, sines: &Sines, steps: u32) -> Vec<f64> {
 ///
 /// The drive then crosses the gap until `A (1 + cos t) = gap R`, and so on after each reversal.
 #[test]
-fn nothing_resists_until_the_gap_is_crossed() {
+fn friction_is_zero_after_a_reversal_until_the_gap_is_crossed() {
     let gap = 0.4;
     let sines = Sines::two_way(1.0);
     let since = PI - (gap * Bearing::THESIS.radius_m / 0.127 - 1.0).acos();
@@ -40,7 +40,7 @@ fn nothing_resists_until_the_gap_is_crossed() {
 
 /// Motion without a reversal is not affected, and at the first motion the flank is in contact.
 #[test]
-fn one_way_motion_does_not_feel_it() {
+fn motion_in_one_direction_is_unaffected() {
     for sines in [
         Sines::one_way(1.0),
         Sines::one_way(1.0).mirrored(),
@@ -52,7 +52,7 @@ fn one_way_motion_does_not_feel_it() {
 
 /// A swing shorter than the gap does not move the journal after its first stroke.
 #[test]
-fn a_swing_within_the_gap_is_lost() {
+fn swing_shorter_than_the_gap_does_not_move_the_journal() {
     let omega = 25.0;
     let sines = Sines {
         offset_m_s: 0.0,
@@ -79,7 +79,7 @@ fn a_swing_within_the_gap_is_lost() {
 ///
 /// Its derivative with respect to the gap is that of the ramp that replaces the jump.
 #[test]
-fn the_reading_has_no_step_in_the_gap() {
+fn reading_of_a_record_is_continuous_in_the_gap() {
     let sines = Sines::two_way(1.0);
     let samples: Vec<Motion<f64>> = (0..400).map(|i| sines.at(0.02 * f64::from(i))).collect();
     let column = |pick: fn(&Motion<f64>) -> f64| samples.iter().map(pick).collect::<Vec<_>>();

@@ -8,7 +8,7 @@ use jbf_core::Bearing;
 const F_C_N: f64 = 6.0;
 
 #[test]
-fn comes_again_with_every_pitch_of_the_way() {
+fn force_is_periodic_in_the_position_with_the_pitch() {
     let sines = Sines::two_way(1.0);
     for (a, pitch, phi) in [(0.7, 0.011, 0.4), (3.0, 0.2, -2.0)] {
         let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[a, pitch, phi])]);
@@ -24,7 +24,7 @@ fn comes_again_with_every_pitch_of_the_way() {
 
 /// At rest the drive holds against it; the holding level of friction does not change.
 #[test]
-fn is_there_at_rest() {
+fn force_acts_at_rest_without_changing_the_holding_level() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[2.0, 0.01, 0.5])]);
     let held = |t: f64| constant::<f64>(0.0, t).with_angle_rad(1.1);
     let expected = 2.0 * (TAU * 1.1 * Bearing::THESIS.radius_m / 0.01 - 0.5).sin();
@@ -37,7 +37,7 @@ fn is_there_at_rest() {
 
 /// Over whole pitches its work is zero.
 #[test]
-fn does_no_work() {
+fn work_over_whole_pitches_is_zero() {
     let (pitch, speed) = (0.01, 0.02);
     let chain = chain_round(newtons(F_C_N, 0.0), &[("cogging", &[2.0, pitch, 0.5])]);
     let steps = 2000;
@@ -49,7 +49,7 @@ fn does_no_work() {
 
 /// Far from position zero single precision still resolves the position within a pitch.
 #[test]
-fn does_not_lose_its_place_in_single_precision() {
+fn force_in_single_precision_agrees_with_double_far_from_zero() {
     use crate::common::chain;
     let effects: [(&str, &[f64]); 1] = [("cogging", &[2.0, 0.01, 0.5])];
     let sines = Sines::two_way(1.0);
@@ -62,7 +62,7 @@ fn does_not_lose_its_place_in_single_precision() {
 
 /// The force arises in the motor: it is not transmitted by a gear and does not affect its friction.
 #[test]
-fn is_not_transmitted() {
+fn force_does_not_change_the_friction_of_a_gear() {
     let gear: (&str, &[f64]) = ("torque_proportional", &[0.5]);
     let teeth: (&str, &[f64]) = ("cogging", &[2.0, 0.01, 0.5]);
     let sines = Sines::two_way(1.0);

@@ -7,7 +7,7 @@ use core::f64::consts::TAU;
 const F_C_N: f64 = 6.0;
 
 #[test]
-fn adds_its_wave_to_the_first() {
+fn second_wave_is_added_to_the_first() {
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     let pair: [(&str, &[f64]); 2] = [
         ("cogging", &[1.5, 0.02, 0.4]),

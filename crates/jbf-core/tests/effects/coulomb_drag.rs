@@ -4,7 +4,7 @@ use crate::common::motion::Sines;
 use crate::common::{chain, readings};
 
 #[test]
-fn adds_its_force_with_the_sign_of_the_motion() {
+fn force_is_constant_with_the_sign_of_the_motion() {
     let sines = Sines::two_way(1.0);
     let motion = |t: f64| sines.at(t).with_load_n(104.0 + 30.0 * (3.0 * t).sin());
     let bare = readings(&chain::<f64>(&[]), 0.01, 700, motion);

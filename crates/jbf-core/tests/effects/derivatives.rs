@@ -132,7 +132,7 @@ fn peak(signal: &[f64]) -> f64 {
 }
 
 #[test]
-fn slopes_match_central_differences() {
+fn derivatives_of_every_effect_match_differences() {
     for info in CATALOGUE {
         for which in 0..2 {
             let p = start_values(info, which);
@@ -169,7 +169,7 @@ fn slopes_match_central_differences() {
 ///
 /// A fit that starts at the null needs this derivative to find that an effect is missing.
 #[test]
-fn slopes_at_a_null_match_one_sided_differences() {
+fn derivatives_at_a_finite_null_match_one_sided_differences() {
     let mut seen = 0;
     for info in CATALOGUE {
         for (k, parameter) in info.parameters.iter().enumerate() {

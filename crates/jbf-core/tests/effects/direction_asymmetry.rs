@@ -7,7 +7,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn scales_dry_and_viscous_friction_by_the_direction() {
+fn dry_and_viscous_friction_are_scaled_by_the_direction() {
     let law = newtons(F_C_N, F_V_N_S_M);
     let sines = Sines::two_way(1.0);
     for a in [0.05, -0.4, 0.9] {

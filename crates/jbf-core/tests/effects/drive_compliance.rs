@@ -38,7 +38,7 @@ fn extremes(signal: &[f64]) -> Vec<(usize, f64)> {
 
 /// In steady rotation the journal lags by n R F / k, and the damper has no effect.
 #[test]
-fn trails_by_the_static_twist() {
+fn journal_lags_by_the_static_twist_in_steady_rotation() {
     let f = 0.1;
     let speed = 0.05;
     let got = angles(f, 0.1, 1e-3, 20_000, |t| constant(speed, t));
@@ -54,7 +54,7 @@ fn trails_by_the_static_twist() {
 ///
 /// The midpoint rule lengthens the period by (w dt)^2/24 and preserves the amplitude.
 #[test]
-fn swings_freely_with_its_own_period() {
+fn journal_without_friction_oscillates_with_its_natural_period() {
     let period = TAU * (J / K).sqrt();
     let dt = period / 200.0;
     let got = angles(0.0, 1e-5, dt, 4100, let_go);
@@ -72,7 +72,7 @@ fn swings_freely_with_its_own_period() {
 
 /// With dry friction the amplitude decreases by 2 n R F / k per half period, and then it sticks.
 #[test]
-fn dry_friction_eats_a_fixed_bite_each_half_swing() {
+fn amplitude_falls_by_a_constant_per_half_period_with_dry_friction() {
     let f = 0.005;
     let bite = 2.0 * ARM_M * f * LOAD_N / K;
     let dt = TAU * (J / K).sqrt() / 2000.0;
@@ -94,7 +94,7 @@ fn dry_friction_eats_a_fixed_bite_each_half_swing() {
 
 /// A torque below the sliding friction never moves the journal, and the load cell shows it.
 #[test]
-fn sticks_without_drift_and_shows_the_twist_torque() {
+fn journal_sticks_below_the_sliding_friction_and_the_cell_reads_the_torque() {
     let f = 0.2;
     let slip = ARM_M * f * LOAD_N;
     for share in [0.1, 0.5, 0.999] {

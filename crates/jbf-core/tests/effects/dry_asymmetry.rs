@@ -10,7 +10,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn has_a_level_of_its_own_each_way_and_one_slope() {
+fn dry_level_differs_by_direction_but_the_viscous_slope_does_not() {
     let sines = Sines::two_way(1.0);
     for a in [0.3, -0.8] {
         let chain = chain_round(newtons(F_C_N, F_V_N_S_M), &[("dry_asymmetry", &[a])]);
@@ -26,7 +26,7 @@ fn has_a_level_of_its_own_each_way_and_one_slope() {
 
 /// In motion the effect equals a constant force; at rest it is zero.
 #[test]
-fn in_motion_is_a_force_one_way_and_at_rest_none() {
+fn effect_equals_a_constant_force_in_motion_and_is_zero_at_rest() {
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     let pair: [(&str, &[f64]); 2] = [("dry_asymmetry", &[0.3]), ("sensor_offset", &[0.3 * F_C_N])];
     let [one, other] = pair.map(|effect| {
@@ -42,7 +42,7 @@ fn in_motion_is_a_force_one_way_and_at_rest_none() {
 
 /// The Stribeck peak is dry friction and is scaled by the same factor.
 #[test]
-fn scales_the_peak_as_it_scales_the_level() {
+fn stribeck_peak_is_scaled_like_the_dry_level() {
     let values = [6.0, 10.0, 0.03, 1.0, 0.0];
     let law = || Stribeck::build(None, None, &values, Clock::Journal).expect("a sound law");
     let sines = Sines::two_way(1.0);

@@ -7,7 +7,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn the_level_follows_the_thermometer_and_the_viscous_part_does_not() {
+fn dry_level_depends_on_temperature_but_viscous_friction_does_not() {
     let sines = Sines::two_way(1.0);
     for (a, reference) in [(-0.02, 30.0), (0.015, 20.0)] {
         let effect: [(&str, &[f64]); 1] = [("dry_temperature_dependence", &[a, reference])];
@@ -25,7 +25,7 @@ fn the_level_follows_the_thermometer_and_the_viscous_part_does_not() {
 
 /// Beyond the zero of the line dry friction is zero and does not become a driving force.
 #[test]
-fn a_level_never_falls_below_zero() {
+fn dry_level_is_zero_beyond_the_zero_of_its_line() {
     let effect: [(&str, &[f64]); 1] = [("dry_temperature_dependence", &[-0.02, 20.0])];
     let chain = chain_round(newtons(F_C_N, 0.0), &effect);
     let sines = Sines::two_way(1.0);

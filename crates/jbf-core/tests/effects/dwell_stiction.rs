@@ -26,7 +26,7 @@ fn speed(i: usize) -> f64 {
 }
 
 #[test]
-fn grows_with_the_rest_and_is_torn_off_by_sliding() {
+fn stiction_grows_during_a_rest_and_decays_with_the_distance_slid() {
     for [a, t_0, m, s_0] in [
         [0.08, 3.0, 0.7, 2e-3],
         [0.3, 0.5, 1.0, 2e-2],

@@ -6,7 +6,7 @@ use crate::common::motion::Sines;
 use crate::common::{chain, readings};
 
 #[test]
-fn a_faster_clock_is_a_slower_motion() {
+fn faster_clock_gives_the_readings_of_a_slower_motion() {
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     let dt = 2e-3;
     for factor in [0.3, 0.5, 2.0, 2.7] {
@@ -27,7 +27,7 @@ fn a_faster_clock_is_a_slower_motion() {
 
 /// The steady state does not depend on the speed of the clock.
 #[test]
-fn the_steady_state_stays() {
+fn steady_state_does_not_depend_on_the_clock() {
     let speed = |t: f64| crate::common::motion::constant::<f64>(0.05, t);
     let end = |effects: &[(&str, &[f64])]| readings(&chain(effects), 0.01, 20_000, speed)[20_000];
     let bare = end(&[]);

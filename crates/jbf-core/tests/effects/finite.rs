@@ -48,18 +48,18 @@ fn check<T: Real>(seed: u64) {
 }
 
 #[test]
-fn finite_everywhere_in_double_precision() {
+fn every_effect_is_finite_in_double_precision() {
     check::<f64>(3);
 }
 
 #[test]
-fn finite_everywhere_in_single_precision() {
+fn every_effect_is_finite_in_single_precision() {
     check::<f32>(4);
 }
 
 /// A lost sample or a step of zero length does not change a run.
 #[test]
-fn a_lost_sample_changes_nothing() {
+fn invalid_sample_or_step_does_not_change_a_run() {
     for info in CATALOGUE {
         let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
         let chain = chain::<f64>(&[(info.name, &values)]);

@@ -6,7 +6,7 @@ use crate::common::{chain_round, newtons, readings};
 const F_C_N: f64 = 6.0;
 
 #[test]
-fn weighs_as_the_sine_of_the_angle() {
+fn weight_is_proportional_to_the_sine_of_the_angle() {
     let sines = Sines::two_way(1.0);
     for (g, theta_0) in [(3.0, 0.4), (110.0, -2.0)] {
         let chain = chain_round(newtons(F_C_N, 0.0), &[("gravity", &[g, theta_0])]);
@@ -26,7 +26,7 @@ fn weighs_as_the_sine_of_the_angle() {
 
 /// The link of a joint behind another joint turns with both.
 #[test]
-fn weighs_as_the_sine_of_the_sum_of_two_joint_angles() {
+fn weight_behind_another_joint_depends_on_the_sum_of_both_angles() {
     let sines = Sines::two_way(1.0);
     let other = |t: f64| 0.8 * (0.3 * t).sin();
     for drive in [&[][..], &[("backlash", &[1e-12_f64][..])]] {

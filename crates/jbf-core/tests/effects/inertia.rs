@@ -5,7 +5,7 @@ use crate::common::motion::Sines;
 use crate::common::{chain_round, readings, LOAD_N};
 
 #[test]
-fn adds_the_mass_times_the_acceleration() {
+fn force_is_the_mass_times_the_acceleration() {
     let (f, omega) = (0.1, 3.0);
     let sines = Sines::two_way(omega);
     for mass_kg in [0.9, 4.0, 100.0] {

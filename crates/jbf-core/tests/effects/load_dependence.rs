@@ -11,7 +11,7 @@ use jbf_core::{Bearing, Clock};
 ///
 /// This holds for either clock, with and without the inertia of the journal.
 #[test]
-fn one_table_becomes_the_other() {
+fn exponents_of_two_tables_convert_the_law_of_one_load_to_the_other() {
     let share: f64 = 83.5 / LOAD_N;
     let exponent = |from: f64, to: f64| (to / from).ln() / share.ln();
     let (from, to) = (Parameters::TABLE_4_2, Parameters::TABLE_4_3);
@@ -46,7 +46,7 @@ fn one_table_becomes_the_other() {
 
 /// Under the rig's own load the exponents have no influence.
 #[test]
-fn one_load_says_nothing() {
+fn exponents_have_no_influence_at_the_load_of_the_rig() {
     let law = Journal::new(
         &Bearing::THESIS,
         LOAD_N,

@@ -50,7 +50,7 @@ mod zero_load_dependence;
 
 /// Every effect has a closed form: a file with its name here, named above, that contains a test.
 #[test]
-fn every_effect_has_a_closed_form() {
+fn every_effect_of_the_catalogue_has_a_test_of_its_closed_form() {
     let here = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/effects");
     for info in jbf_core::effect::CATALOGUE {
         let name = info.name;

@@ -44,18 +44,18 @@ fn check<T: Real>() {
 }
 
 #[test]
-fn null_is_absent_to_the_bit_in_double_precision() {
+fn effect_at_its_null_changes_no_bit_in_double_precision() {
     check::<f64>();
 }
 
 #[test]
-fn null_is_absent_to_the_bit_in_single_precision() {
+fn effect_at_its_null_changes_no_bit_in_single_precision() {
     check::<f32>();
 }
 
 /// An effect that requires a temperature changes nothing, to the bit, if none was recorded.
 #[test]
-fn without_a_temperature_its_effects_are_absent() {
+fn temperature_effects_change_no_bit_if_no_temperature_is_recorded() {
     let sines = Sines::two_way(1.0);
     let nowhere = |t: f64| {
         let mut motion: Motion<f64> = sines.at(t);
@@ -76,7 +76,7 @@ fn without_a_temperature_its_effects_are_absent() {
 
 /// Away from its null every effect changes the readings, so that the test above can fail.
 #[test]
-fn away_from_its_null_every_effect_shows() {
+fn every_effect_changes_the_readings_away_from_its_null() {
     for info in CATALOGUE {
         let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();
         let motion = Sines::two_way(1.0).resting(3.0, 1.0);

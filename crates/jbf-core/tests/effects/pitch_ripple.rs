@@ -9,7 +9,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn scales_friction_with_the_place_within_a_pitch() {
+fn friction_is_scaled_by_the_position_within_a_pitch() {
     let sines = Sines::two_way(1.0);
     for (a, pitch, phi) in [(0.1, 0.011, 0.4), (0.9, 0.2, -2.0)] {
         let law = newtons(F_C_N, F_V_N_S_M);
@@ -27,7 +27,7 @@ fn scales_friction_with_the_place_within_a_pitch() {
 
 /// With a pitch of one turn the effect equals `position_ripple`.
 #[test]
-fn at_the_pitch_of_a_turn_is_the_ripple_once_a_turn() {
+fn pitch_of_one_turn_equals_the_position_ripple() {
     let turn = TAU * Bearing::THESIS.radius_m;
     let sines = Sines::two_way(1.0);
     let pair: [(&str, &[f64]); 2] = [
@@ -45,7 +45,7 @@ fn at_the_pitch_of_a_turn_is_the_ripple_once_a_turn() {
 
 /// At rest there is no force; the holding level varies with the position.
 #[test]
-fn at_rest_it_changes_what_holds_and_nothing_else() {
+fn holding_level_varies_with_the_position_but_the_reading_at_rest_is_zero() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("pitch_ripple", &[0.5, 0.01, 0.0])]);
     let state = chain.start(&held::<f64>(1.1, 0.0));
     let factor = 1.0 + 0.5 * (TAU * 1.1 * Bearing::THESIS.radius_m / 0.01).cos();

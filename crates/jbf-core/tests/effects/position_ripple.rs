@@ -6,7 +6,7 @@ use crate::common::{chain_round, newtons, readings, LOAD_N};
 use std::f64::consts::TAU;
 
 #[test]
-fn once_a_turn_and_largest_at_theta_0() {
+fn ripple_has_one_maximum_per_turn_at_theta_0() {
     let (depth, theta_0, f) = (0.3, 0.8, 0.1);
     let chain = chain_round(ConstantLaw(f), &[("position_ripple", &[depth, theta_0])]);
     // 1000 steps per turn, two turns.
@@ -34,7 +34,7 @@ fn once_a_turn_and_largest_at_theta_0() {
 
 /// At every angle, and for dry and viscous friction alike.
 #[test]
-fn follows_the_cosine_of_the_angle() {
+fn dry_and_viscous_friction_follow_the_cosine_of_the_angle() {
     let (f_c, f_v) = (6.0, 40.0);
     let sines = Sines::two_way(1.0);
     for (a, theta_0) in [(0.1, -1.3), (0.9, 2.0)] {

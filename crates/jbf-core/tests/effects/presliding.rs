@@ -30,7 +30,7 @@ fn reversal(dt_s: f64, forward: u32, back: u32) -> Vec<f64> {
 }
 
 #[test]
-fn start_and_reversal_are_exponentials_in_distance() {
+fn friction_after_a_start_or_reversal_is_exponential_in_the_distance() {
     let length = F / SIGMA_1_M;
     for dt_s in [1e-3, 0.01, 0.07] {
         let forward = (40.0 * length / (SPEED_M_S * dt_s)).ceil() as u32;
@@ -58,7 +58,7 @@ fn start_and_reversal_are_exponentials_in_distance() {
 
 /// A contact at rest keeps its deflection and does not creep back.
 #[test]
-fn rest_keeps_the_deflection() {
+fn deflection_is_kept_at_rest() {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
     let got = readings(&chain, 0.01, 1000, |t| {
         constant::<f64>(
@@ -80,7 +80,7 @@ fn rest_keeps_the_deflection() {
 
 /// A run that begins in motion begins with fully deflected bristles.
 #[test]
-fn a_run_that_begins_in_motion_begins_sliding() {
+fn bristles_are_fully_deflected_if_a_run_begins_in_motion() {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
     for speed in [SPEED_M_S, -SPEED_M_S] {
         let got = readings(&chain, 0.01, 10, |t| constant::<f64>(speed, t));
@@ -92,7 +92,7 @@ fn a_run_that_begins_in_motion_begins_sliding() {
 
 /// With a law in newtons only the dry part deflects: with Coulomb's law it is Dahl's, exponent 1.
 #[test]
-fn on_coulombs_law_it_is_dahls() {
+fn presliding_with_coulombs_law_equals_dahls_law() {
     let (kinetic_n, stiffness_n_m, viscous_n_s_m) = (6.0, 3e4, 400.0);
     let coulomb =
         Coulomb::build(None, None, &[kinetic_n, 9.0, viscous_n_s_m], Clock::Journal).unwrap();
@@ -116,7 +116,7 @@ fn on_coulombs_law_it_is_dahls() {
 ///
 /// Only the distance slid after it deflects the bristles backward.
 #[test]
-fn a_turn_between_unlike_speeds_is_where_the_line_crosses_zero() {
+fn reversal_within_a_step_is_at_the_zero_of_the_interpolated_speed() {
     let chain = chain_round(ConstantLaw(F), &[("presliding", &[SIGMA_1_M])]);
     let dt_s = 0.01;
     for share in [0.2, 0.5, 0.75, 0.9] {

@@ -5,7 +5,7 @@ use crate::common::motion::constant;
 use crate::common::{chain_round, readings, LOAD_N};
 
 #[test]
-fn grows_with_the_square_of_the_speed() {
+fn drag_grows_with_the_square_of_the_speed() {
     let f = 0.1;
     for c in [0.7, 50.0, 1e4] {
         let chain = chain_round(ConstantLaw(f), &[("quadratic_drag", &[c])]);

@@ -7,7 +7,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn falls_with_the_distance_slid() {
+fn dry_friction_decays_exponentially_with_the_distance_slid() {
     let dt = 0.01;
     for (a, s_0) in [(0.2, 1.0), (-0.5, 0.05), (3.0, 0.3)] {
         let chain = chain_round(newtons(F_C_N, F_V_N_S_M), &[("running_in", &[a, s_0])]);
@@ -28,7 +28,7 @@ fn falls_with_the_distance_slid() {
 /// The speed is a triangle with its corners and zeros at samples, so that the distance is a
 /// parabola.
 #[test]
-fn both_ways_count_and_rests_do_not() {
+fn distance_accumulates_in_both_directions_but_not_at_rest() {
     let (a, s_0, dt) = (0.8, 0.02, 0.01);
     let chain = chain_round(newtons(F_C_N, 0.0), &[("running_in", &[a, s_0])]);
     // Up to 0.1 m/s and back to zero in 1 s, then in the other direction, then 1 s of rest.

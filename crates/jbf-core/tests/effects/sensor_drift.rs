@@ -5,7 +5,7 @@ use crate::common::motion::Sines;
 use crate::common::{chain_round, readings, LOAD_N};
 
 #[test]
-fn adds_a_straight_line_in_time() {
+fn drift_is_linear_in_time() {
     let f = 0.1;
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     for d in [0.005, -2.0] {

@@ -35,7 +35,7 @@ fn read<T: Real>(half_width_n: T, forces_n: &[T]) -> Vec<T> {
 /// The reading follows the branch F - w, then stays constant from a peak until the force is 2 w
 /// lower, then follows the branch F + w.
 #[test]
-fn goes_from_branch_to_branch_across_the_gap() {
+fn reading_follows_the_branches_and_is_constant_within_the_gap() {
     let (w, slope, n) = (0.4, 40.0, 628);
     let force = |t: f64| slope * 0.1 * t.sin();
     let chain = chain_round(newtons(1e-6, slope), &[("sensor_hysteresis", &[w])]);
@@ -62,7 +62,7 @@ fn goes_from_branch_to_branch_across_the_gap() {
 
 /// A jump larger than the gap leaves a difference of w on either side, from its first instant on.
 #[test]
-fn passes_a_jump_at_a_sample_exactly() {
+fn jump_larger_than_the_gap_is_followed_at_its_sample() {
     let (f, w, dt) = (0.1, 1.5, 0.05);
     let chain = chain_round(ConstantLaw(f), &[("sensor_hysteresis", &[w])]);
     let speed = |t: f64| match (t / dt).round() as i32 {
@@ -89,7 +89,7 @@ fn passes_a_jump_at_a_sample_exactly() {
 
 /// A zero of no duration changes nothing: friction exists on both sides of it.
 #[test]
-fn an_instant_moves_nothing() {
+fn zero_of_no_duration_does_not_move_the_reading() {
     let (f, w, dt) = (0.1, 1.5, 0.05);
     let chain = chain_round(ConstantLaw(f), &[("sensor_hysteresis", &[w])]);
     let touches = |t: f64| if (t - 1.0).abs() < 1e-9 { 0.0 } else { 0.1 };
@@ -102,7 +102,7 @@ fn an_instant_moves_nothing() {
 
 /// A change smaller than the gap is not visible, and the reading never differs by more than w.
 #[test]
-fn hides_what_is_smaller_than_the_gap() {
+fn change_smaller_than_the_gap_is_not_read() {
     let ripple: Vec<f64> = (0..200)
         .map(|i| 5.0 + 0.3 * (0.1 * f64::from(i)).sin())
         .collect();
@@ -118,7 +118,7 @@ fn hides_what_is_smaller_than_the_gap() {
 ///
 /// The same forces at any rate give the same readings, and opposite forces give opposite readings.
 #[test]
-fn knows_no_time_and_is_odd() {
+fn hysteresis_is_rate_independent_and_odd() {
     let forces: Vec<f64> = (0..300)
         .map(|i| 9.0 * (0.07 * f64::from(i)).sin() + 4.0 * (0.19 * f64::from(i)).cos())
         .collect();
@@ -140,7 +140,7 @@ fn knows_no_time_and_is_odd() {
 /// The derivative with respect to the width is that of the branch on which the force moves. This
 /// also holds where the force is constant and only its derivative continues.
 #[test]
-fn at_its_null_the_slope_is_the_branch() {
+fn derivative_at_zero_width_is_that_of_the_branch() {
     let w = Dual::<2>::parameter(0.0, 0);
     let steps = [
         (3.0, 1.0),
@@ -170,7 +170,7 @@ fn at_its_null_the_slope_is_the_branch() {
 ///
 /// Between the ends the derivative is held.
 #[test]
-fn slopes_are_those_of_the_end_that_moves() {
+fn derivative_at_positive_width_is_that_of_the_moving_end() {
     let w = Dual::<2>::parameter(0.5, 0);
     let steps = [(3.0, 1.0), (4.0, 2.0), (3.5, 5.0), (2.0, 6.0), (2.4, 7.0)];
     let forces = steps.map(|(value, slope)| Dual::<2> {
@@ -194,7 +194,7 @@ fn slopes_are_those_of_the_end_that_moves() {
 ///
 /// The branches of a nonlinear cell are the transformed branches of the linear one.
 #[test]
-fn is_crossed_before_the_cell_bends() {
+fn hysteresis_acts_before_the_nonlinearity_of_the_cell() {
     let (w, c) = (0.6, 4e-3);
     let sines = Sines::two_way(1.0);
     let play: (&str, &[f64]) = ("sensor_hysteresis", &[w]);

@@ -8,7 +8,7 @@ use crate::common::{chain, chain_round, readings, LOAD_N};
 ///
 /// The ideal jump is at the middle of the ramp. The two responses differ by (dt/tau)^2/24.
 #[test]
-fn answers_a_step_with_an_exponential() {
+fn response_to_a_step_between_samples_is_exponential() {
     let (f, tau, dt) = (0.1, 0.3, 0.005);
     let chain = chain_round(ConstantLaw(f), &[("sensor_lag", &[tau])]);
     let got = readings(&chain, dt, 400, |t| {
@@ -34,7 +34,7 @@ fn answers_a_step_with_an_exponential() {
 /// The response is then the ideal one except for rounding. The same applies to the start and end of
 /// a motion.
 #[test]
-fn answers_a_jump_at_a_sample_exactly() {
+fn response_to_a_jump_at_a_sample_is_exact() {
     let (f, tau, dt) = (0.1, 0.3, 0.05);
     let chain = chain_round(ConstantLaw(f), &[("sensor_lag", &[tau])]);
     let speed = |t: f64| match (t / dt).round() as i32 {
@@ -55,7 +55,7 @@ fn answers_a_jump_at_a_sample_exactly() {
 
 /// A lag shorter than any step is a shift by tau, not noise: r = F - tau F'.
 #[test]
-fn a_short_lag_shifts() {
+fn lag_shorter_than_a_step_shifts_the_reading() {
     let (tau, dt) = (1e-7, 0.01);
     let sines = Sines::one_way(1.0);
     let bare = readings(&chain::<f64>(&[]), dt, 300, |t| sines.at(t));
@@ -70,7 +70,7 @@ fn a_short_lag_shifts() {
 
 /// A lag longer than the run hardly changes the first reading.
 #[test]
-fn a_long_lag_holds_the_first_reading() {
+fn lag_longer_than_the_run_holds_the_first_reading() {
     let sines = Sines::one_way(1.0);
     let with = readings(&chain::<f64>(&[("sensor_lag", &[100.0])]), 0.01, 100, |t| {
         sines.at(t)

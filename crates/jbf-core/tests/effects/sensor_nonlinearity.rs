@@ -13,7 +13,7 @@ fn read<T: Real>(cubic_1_n2: T, force_n: T) -> T {
 }
 
 #[test]
-fn adds_its_cube_to_every_reading() {
+fn cubic_term_is_added_to_every_reading() {
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     let plain = readings(&chain_round(newtons(6.0, 40.0), &[]), 0.01, 700, |t| {
         sines.at::<f64>(t)
@@ -33,7 +33,7 @@ fn adds_its_cube_to_every_reading() {
 ///
 /// A nonlinear cell with lag settles at the transformed force.
 #[test]
-fn bends_before_the_filter_and_the_zero() {
+fn nonlinearity_acts_before_lag_and_offset() {
     let (f, c, b, tau, dt) = (0.1, 5e-3, 0.7, 0.3, 0.05);
     let effects: [(&str, &[f64]); 3] = [
         ("sensor_nonlinearity", &[c]),
@@ -56,7 +56,7 @@ fn bends_before_the_filter_and_the_zero() {
 
 /// The reading never decreases with the force, and is always finite.
 #[test]
-fn stays_monotone_and_finite() {
+fn characteristic_is_monotone_odd_and_finite() {
     for c in [-1e6, -3e-3, -1e-12, 0.0, 1e-12, 3e-3, 1e6] {
         let mut last = f64::NEG_INFINITY;
         for k in -400..=400 {
@@ -78,7 +78,7 @@ fn stays_monotone_and_finite() {
 }
 
 #[test]
-fn knows_its_slopes() {
+fn derivatives_are_those_of_the_characteristic_on_both_sides_of_its_turning_point() {
     let c = Dual::<2>::parameter(2e-3, 0);
     let force = Dual::<2>::parameter(-8.0, 1);
     let r = read(c, force);
@@ -95,7 +95,7 @@ fn knows_its_slopes() {
 
 /// Each instant within a step is transformed separately.
 #[test]
-fn remembers_nothing() {
+fn instants_of_a_step_are_transformed_separately() {
     let cell = SensorNonlinearity::new(&[0.01]).expect("within bounds");
     let rig = Rig {
         radius_m: 1.0,

@@ -5,7 +5,7 @@ use crate::common::motion::Sines;
 use crate::common::{chain_round, readings, LOAD_N};
 
 #[test]
-fn adds_its_zero_to_every_reading() {
+fn offset_is_added_to_every_reading() {
     let f = 0.1;
     let sines = Sines::two_way(1.0).resting(3.0, 1.0);
     for b in [0.3, -7.0] {

@@ -13,7 +13,7 @@ fn felt(u_c: f64, n: f64, speed: f64) -> f64 {
 }
 
 #[test]
-fn thins_along_the_curve_of_cross() {
+fn effective_speed_follows_the_curve_of_cross() {
     for u_c in [0.02, 0.12, 3.0] {
         for n in [0.3, 1.0, 1.2, 4.0] {
             assert!((felt(u_c, n, u_c) / u_c - 0.5).abs() < 1e-15);

@@ -7,7 +7,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn raises_one_peak_and_lowers_the_other() {
+fn peak_is_raised_in_one_direction_and_lowered_in_the_other() {
     let sines = Sines::two_way(1.0);
     for (c, v_s, n) in [(2.0, 0.03, 1.0), (-1.0, 0.01, 2.0), (0.5, 0.1, 0.5)] {
         let law = newtons(F_C_N, F_V_N_S_M);
@@ -24,7 +24,7 @@ fn raises_one_peak_and_lowers_the_other() {
 
 /// If the peak exceeds the level, friction in the other direction is zero and never drives.
 #[test]
-fn no_way_is_pushed() {
+fn friction_never_drives_if_the_peak_exceeds_the_level() {
     let sines = Sines::two_way(1.0);
     let chain = chain_round(
         newtons(F_C_N, 0.0),
@@ -37,7 +37,7 @@ fn no_way_is_pushed() {
 
 /// At rest, where both directions are possible, neither peak is present.
 #[test]
-fn at_rest_holds_as_without_it() {
+fn holding_level_at_rest_is_unchanged() {
     let chain = chain_round(
         newtons(F_C_N, 0.0),
         &[("stribeck_asymmetry", &[2.0, 0.03, 1.0])],

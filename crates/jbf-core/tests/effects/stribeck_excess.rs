@@ -5,7 +5,7 @@ use crate::common::motion::constant;
 use crate::common::{chain_round, readings, LOAD_N};
 
 #[test]
-fn falls_along_the_exponential_of_its_exponent() {
+fn excess_decays_exponentially_with_a_power_of_the_speed() {
     let f = 0.1;
     for v_s in [0.01, 0.3] {
         for n in [0.5, 1.0, 1.5, 2.0, 6.0] {

@@ -29,7 +29,7 @@ fn values(a: [f64; 6]) -> [f64; 8] {
 }
 
 #[test]
-fn scales_the_dry_level_with_the_place_and_nothing_else() {
+fn dry_level_depends_on_the_position_but_viscous_friction_does_not() {
     // From 0 to 0.254 m: this includes positions beyond the upper end of the stroke.
     let sines = Sines::two_way(1.0);
     for a in [
@@ -57,7 +57,7 @@ fn level_n(a: [f64; 6], x: f64) -> f64 {
 
 /// The terms are orthogonal to the dry level and to each other.
 #[test]
-fn the_waves_have_no_mean_and_nothing_in_common() {
+fn terms_have_zero_mean_and_are_orthogonal() {
     let n = 2000;
     let unit = |k: usize| core::array::from_fn(|i| if i == k { 0.5 } else { 0.0 });
     let wave = |k: usize, i: usize| {
@@ -76,7 +76,7 @@ fn the_waves_have_no_mean_and_nothing_in_common() {
 
 /// There is neither a step nor a corner at the ends.
 #[test]
-fn is_smooth_over_the_ends() {
+fn level_and_slope_are_continuous_at_the_ends_of_the_stroke() {
     let a = [0.3, -0.2, 0.05, 0.1, -0.07, 0.04];
     let h = 1e-6;
     for end in [MIDDLE_M - HALF_M, MIDDLE_M + HALF_M] {
@@ -91,7 +91,7 @@ fn is_smooth_over_the_ends() {
 
 /// If the terms would make friction negative, it is zero.
 #[test]
-fn the_level_is_never_below_zero() {
+fn level_is_zero_if_the_terms_would_make_it_negative() {
     assert_eq!(level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], 0.0), 0.0);
     assert!((level_n([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], MIDDLE_M) - 3.0 * F_C_N).abs() < 1e-12);
 }

@@ -18,7 +18,7 @@ fn mirrored(info: &Info, values: &[f64]) -> Vec<f64> {
 }
 
 #[test]
-fn mirrored_motion_gives_mirrored_friction() {
+fn mirrored_motion_gives_mirrored_friction_with_every_effect() {
     let mut random = Random::new(2);
     for info in CATALOGUE {
         for _ in 0..20 {
@@ -42,7 +42,7 @@ fn mirrored_motion_gives_mirrored_friction() {
 
 /// Without a mirrored theta_0 the ripple is not odd: the exception is necessary.
 #[test]
-fn a_ripple_is_not_odd_in_the_motion_alone() {
+fn ripple_is_not_odd_unless_its_phase_is_mirrored() {
     let rippled = chain::<f64>(&[("position_ripple", &[0.5, 1.0])]);
     let motion = Sines::two_way(1.0);
     let there = readings(&rippled, 0.01, 200, |t| motion.at(t));

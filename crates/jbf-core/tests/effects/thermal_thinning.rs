@@ -5,7 +5,7 @@ use crate::common::motion::constant;
 use crate::common::{chain_round, LOAD_N};
 
 #[test]
-fn warms_along_the_closed_form() {
+fn temperature_rise_follows_its_closed_form() {
     let (f, speed, rate_1_j, tau) = (0.1, 0.05, 0.03, 20.0);
     let chain = chain_round(ConstantLaw(f), &[("thermal_thinning", &[rate_1_j, tau])]);
     let end = rate_1_j * tau * (f * LOAD_N * speed);
@@ -31,7 +31,7 @@ fn warms_along_the_closed_form() {
 ///
 /// The steady point moves down the Stribeck curve to the effective speed of the film.
 #[test]
-fn warm_oil_acts_as_a_lower_speed() {
+fn warm_film_has_the_steady_friction_of_a_lower_speed() {
     use crate::common::{chain, law};
     let (rate_1_j, tau, speed) = (2.0, 5.0, 0.05);
     let chain = chain::<f64>(&[("thermal_thinning", &[rate_1_j, tau])]);

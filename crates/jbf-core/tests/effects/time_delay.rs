@@ -6,7 +6,7 @@ use crate::common::{chain, chain_round, readings, LOAD_N};
 
 /// A delay of whole steps shifts the bare readings by this number of steps.
 #[test]
-fn whole_steps_shift_the_record() {
+fn delay_of_whole_steps_shifts_the_readings() {
     let sines = Sines::two_way(1.0);
     let bare = readings(&chain::<f64>(&[]), 0.01, 700, |t| sines.at(t));
     for steps in [1, 7, 40] {
@@ -23,7 +23,7 @@ fn whole_steps_shift_the_record() {
 
 /// For a delay below one step the reading is interpolated linearly between the neighbours.
 #[test]
-fn part_of_a_step_lies_between_the_neighbours() {
+fn delay_below_one_step_interpolates_between_neighbours() {
     let sines = Sines::one_way(1.0);
     let bare = readings(&chain::<f64>(&[]), 0.01, 300, |t| sines.at(t));
     let late = readings(&chain::<f64>(&[("time_delay", &[0.003])]), 0.01, 300, |t| {
@@ -37,7 +37,7 @@ fn part_of_a_step_lies_between_the_neighbours() {
 
 /// A jump remains a jump, while a low-pass filter of the same delay smooths it.
 #[test]
-fn a_jump_stays_a_jump() {
+fn delayed_jump_is_not_smoothed() {
     let (f, tau, dt) = (0.1, 0.2, 0.01);
     let late = chain_round(ConstantLaw(f), &[("time_delay", &[tau])]);
     let got = readings(&late, dt, 200, |t| {
@@ -57,7 +57,7 @@ fn a_jump_stays_a_jump() {
 ///
 /// Filter and delay commute.
 #[test]
-fn delay_and_low_pass_commute() {
+fn delay_and_lag_commute() {
     let sines = Sines::one_way(1.0);
     let lag: (&str, &[f64]) = ("sensor_lag", &[0.1]);
     let lagged = readings(&chain::<f64>(&[lag]), 0.01, 400, |t| sines.at(t));

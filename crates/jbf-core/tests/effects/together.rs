@@ -28,7 +28,7 @@ fn run<T: Real>(which: &[&Info], beside: &[(&str, &[f64])]) -> Vec<T> {
 ///
 /// A low-pass filter, implemented here, of the force with drag equals the chain with both effects.
 #[test]
-fn the_instrument_sees_the_drag() {
+fn lag_of_the_instrument_filters_the_force_with_drag() {
     let (tau, dt) = (0.1_f64, 0.01_f64);
     let sines = Sines::one_way(1.0);
     let drag: (&str, &[f64]) = ("coulomb_drag", &[2.0]);
@@ -58,7 +58,7 @@ fn the_instrument_sees_the_drag() {
 ///
 /// Neither effect of a pair is lost.
 #[test]
-fn pairs_run_in_the_order_of_the_chain() {
+fn order_of_names_of_two_effects_does_not_change_the_readings() {
     for (i, a) in CATALOGUE.iter().enumerate() {
         for b in &CATALOGUE[i + 1..] {
             let mut beside = [company(a), company(b)].concat();
@@ -102,7 +102,7 @@ fn agree(double: &[f64], single: &[f32]) {
 }
 
 #[test]
-fn all_at_once_stay_finite_and_agree_in_both_precisions() {
+fn all_effects_together_are_finite_and_agree_in_both_precisions() {
     agree(
         &all_round(law::<f64>(Clock::Journal)),
         &all_round(law::<f32>(Clock::Journal)),

@@ -15,7 +15,7 @@ fn carried_n(t: f64) -> f64 {
 }
 
 #[test]
-fn loses_one_share_of_what_it_carries_both_ways() {
+fn loss_is_a_share_of_the_transmitted_force_in_both_directions() {
     let sines = Sines::two_way(1.0);
     let chain = chain_round(
         newtons(F_C_N, 0.0),
@@ -46,7 +46,7 @@ fn loses_one_share_of_what_it_carries_both_ways() {
 
 /// At rest the drive holds up to the sum of both levels; a share of 1 locks it against its weight.
 #[test]
-fn at_rest_it_holds_by_the_load() {
+fn holding_level_at_rest_grows_with_the_transmitted_force() {
     for share in [0.0, 0.5, 1.0] {
         let effects: [(&str, &[f64]); 2] =
             [("gravity", &WEIGHT), ("torque_proportional", &[share])];
@@ -61,7 +61,7 @@ fn at_rest_it_holds_by_the_load() {
 
 /// Drag is not transmitted.
 #[test]
-fn excludes_drag() {
+fn drag_is_not_transmitted() {
     let sines = Sines::two_way(1.0);
     let beside: [(&str, &[f64]); 1] = [("coulomb_drag", &[3.0])];
     let with = [beside.as_slice(), &[("torque_proportional", &[SHARE])]].concat();
@@ -75,7 +75,7 @@ fn excludes_drag() {
 
 /// On an inclined axis the weight is constant and adds to the inertial force of the mass.
 #[test]
-fn includes_a_constant_weight() {
+fn constant_weight_is_transmitted() {
     let (sines, weight) = (Sines::two_way(1.0), 4.0);
     let chain = chain_round(
         newtons(F_C_N, 0.0),
@@ -96,7 +96,7 @@ fn includes_a_constant_weight() {
 
 /// With a bristle this level also deflects: after a reversal it rises as the law's own does.
 #[test]
-fn bends_with_a_bristle() {
+fn loss_is_deflected_by_presliding_like_dry_friction() {
     let sines = Sines::two_way(1.0);
     let effects: [(&str, &[f64]); 3] = [
         ("gravity", &[30.0, -1.2]),

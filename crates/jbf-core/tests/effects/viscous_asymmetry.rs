@@ -7,7 +7,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn has_a_slope_of_its_own_each_way() {
+fn viscous_slope_differs_by_direction() {
     let sines = Sines::two_way(1.0);
     for b in [5.0, -39.0] {
         let law = newtons(F_C_N, F_V_N_S_M);

@@ -7,7 +7,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn adds_a_share_of_the_load_to_the_viscous_slope() {
+fn viscous_slope_grows_in_proportion_to_the_load() {
     let sines = Sines::two_way(1.0);
     for c in [0.02, 1.5, -0.1] {
         let law = newtons(F_C_N, F_V_N_S_M);

@@ -7,7 +7,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn the_slope_follows_the_thermometer_and_the_level_does_not() {
+fn viscous_slope_depends_on_temperature_but_the_dry_level_does_not() {
     let sines = Sines::two_way(1.0);
     for [b, c, reference] in [[700.0, -95.0, 20.0], [-300.0, -110.0, 30.0]] {
         let effect: [(&str, &[f64]); 1] = [("viscous_temperature_dependence", &[b, c, reference])];

@@ -8,7 +8,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn flattens_the_viscous_part_alone() {
+fn viscous_friction_saturates_with_speed_and_dry_friction_is_unchanged() {
     let sines = Sines::two_way(1.0);
     for v_c in [0.01, 0.127, 40.0] {
         let law = newtons(F_C_N, F_V_N_S_M);

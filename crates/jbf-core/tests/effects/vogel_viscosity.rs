@@ -20,7 +20,7 @@ fn factor(b_k: f64, celsius: f64) -> f64 {
 }
 
 #[test]
-fn thins_as_vogel_says() {
+fn viscosity_factor_follows_vogels_equation() {
     for (b, celsius) in [(800.0, 20.0), (800.0, 90.0), (1200.0, -10.0), (0.0, 5.0)] {
         let expected = (b / (celsius - C_C) - b / (REFERENCE_C - C_C)).exp();
         assert!((factor(b, celsius) / expected - 1.0).abs() < 1e-13);
@@ -33,7 +33,7 @@ fn thins_as_vogel_says() {
 /// The oil has 46 mm^2/s at 40 C and 6.8 mm^2/s at 100 C. The reference is `log log (nu + 0.7) = A
 /// - B log T` (ASTM D341) between and about these temperatures.
 #[test]
-fn agrees_with_walther_on_an_oil_of_grade_46() {
+fn viscosity_of_a_grade_46_oil_agrees_with_walther_within_3_percent() {
     let walther = |celsius: f64| {
         let double = |nu: f64| (nu + 0.7_f64).log10().log10();
         let place = |c: f64| (c + 273.15_f64).log10();
@@ -55,7 +55,7 @@ fn agrees_with_walther_on_an_oil_of_grade_46() {
 ///
 /// The thinner oil has another viscosity and another transition speed with the same product.
 #[test]
-fn two_oils_are_one_model() {
+fn warm_film_equals_that_of_a_thinner_oil() {
     let (b, warm) = (850.0, 63.0);
     let thin = (b / (warm - C_C) - b / (REFERENCE_C - C_C)).exp();
     let table = Parameters::TABLE_4_2;

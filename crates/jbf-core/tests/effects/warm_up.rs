@@ -7,7 +7,7 @@ const F_C_N: f64 = 6.0;
 const F_V_N_S_M: f64 = 40.0;
 
 #[test]
-fn falls_by_the_clock() {
+fn friction_decays_exponentially_with_time() {
     let sines = Sines::two_way(1.0);
     for (a, tau) in [(0.3, 2.0), (-0.5, 40.0)] {
         let law = newtons(F_C_N, F_V_N_S_M);
@@ -25,7 +25,7 @@ fn falls_by_the_clock() {
 
 /// Time at rest counts as well, in contrast to running-in over the distance slid.
 #[test]
-fn a_rest_counts() {
+fn time_at_rest_counts() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("warm_up", &[0.5, 3.0])]);
     let later = |t: f64| constant::<f64>(if t < 5.0 { 0.0 } else { 0.05 }, t);
     let last = readings(&chain, 0.01, 600, later)[600];

@@ -6,7 +6,7 @@ use crate::common::{chain_round, newtons, readings};
 const F_C_N: f64 = 6.0;
 
 #[test]
-fn adds_a_share_of_the_load_to_the_force() {
+fn force_includes_a_share_of_the_load_also_at_rest() {
     let sines = Sines::two_way(1.0);
     for k in [0.01, -0.4] {
         let chain = chain_round(newtons(F_C_N, 0.0), &[("zero_load_dependence", &[k])]);

@@ -8,7 +8,7 @@ use jbf_core::Clock;
 
 /// A long slide at one speed ends on the steady curve, for every law and in both directions.
 #[test]
-fn a_long_slide_ends_on_the_steady_curve() {
+fn friction_after_a_long_slide_is_on_the_steady_curve() {
     for law in in_newtons() {
         let values = starts(law);
         for v in [1e-4, 3e-3, 0.02, 0.5, -0.02] {
@@ -42,7 +42,7 @@ fn a_long_slide_ends_on_the_steady_curve() {
 }
 
 #[test]
-fn the_stribeck_curve_is_its_formula() {
+fn steady_stribeck_friction_equals_its_formula() {
     let (fc, fs, vs, fv): (f64, f64, f64, f64) = (7.0, 11.0, 0.02, 30.0);
     for delta in [0.5, 1.0, 2.0] {
         for v in [1e-5, 0.004, 0.02, 0.3] {
@@ -68,7 +68,7 @@ fn the_stribeck_curve_is_its_formula() {
 ///
 /// This holds for every speed and step.
 #[test]
-fn dahl_turns_round_in_its_closed_form() {
+fn dahl_friction_after_a_reversal_follows_its_closed_form() {
     let (fc, sigma) = (8.0, 2e5);
     let speed = 0.01;
     for exponent in [0.3, 0.999, 1.0, 1.0004, 1.5, 3.0] {
@@ -108,7 +108,7 @@ fn dahl_turns_round_in_its_closed_form() {
 /// LuGre at constant speed from rest: `sigma_0 z = level (1 - exp(-sigma_0 s/level))`, plus
 /// damping.
 #[test]
-fn lugre_bends_in_its_closed_form() {
+fn lugre_friction_from_rest_follows_its_closed_form() {
     let (fc, fs, vs, s0, s1, vd, fv): (f64, f64, f64, f64, f64, f64, f64) =
         (6.0, 9.0, 0.01, 1e5, 200.0, 0.05, 12.0);
     let values = [fc, fs, vs, s0, s1, vd, fv];
@@ -131,7 +131,7 @@ fn lugre_bends_in_its_closed_form() {
 
 /// Static friction holds a slider behind a compliant drive up to F_s; then it slides at F_c.
 #[test]
-fn coulomb_sticks_to_f_s_and_slides_at_f_c() {
+fn coulomb_friction_behind_a_compliant_drive_sticks_to_f_s_and_slides_at_f_c() {
     let law = <Coulomb<f64> as Named<f64>>::build(None, None, &[6.0, 9.0, 0.0], Clock::Journal)
         .expect("valid");
     let mut effects = Effects::NONE;
@@ -168,7 +168,7 @@ fn coulomb_sticks_to_f_s_and_slides_at_f_c() {
 ///
 /// A reversal without dwell is not a rest.
 #[test]
-fn coulomb_static_friction_needs_a_rest_and_a_soft_drive() {
+fn coulomb_static_friction_has_no_influence_under_a_rigid_drive() {
     let there = along::<f64>("coulomb", &[6.0, 9.0, 1.0], 0.01, 500, sine(0.05, 2.0));
     let other = along::<f64>("coulomb", &[6.0, 90.0, 1.0], 0.01, 500, sine(0.05, 2.0));
     assert_eq!(there, other);

@@ -24,7 +24,7 @@ fn lifted(values: &[f64], which: usize) -> Vec<Dual<1>> {
 }
 
 #[test]
-fn slopes_match_central_differences() {
+fn derivatives_of_every_law_match_central_differences() {
     for law in in_newtons() {
         let mut values = starts(law);
         if law.name == "dahl" {

@@ -14,7 +14,7 @@ const SPEED: f64 = 0.01;
 ///
 /// This holds for every step.
 #[test]
-fn it_turns_round_in_its_closed_form() {
+fn friction_after_a_reversal_follows_its_closed_form() {
     for share in [0.0, 0.3, 0.7, 0.999] {
         for steps in [7, 50, 1000] {
             let dt = 0.05 / f64::from(steps);
@@ -67,7 +67,7 @@ fn drift(name: &str, values: &[f64], level: f64) -> f64 {
 }
 
 #[test]
-fn small_swings_below_breakaway_leave_nothing_behind() {
+fn swings_below_the_breakaway_cause_no_drift() {
     let own = drift("elasto_plastic", &[F_C, SIGMA, 0.7, 0.0], 0.6);
     assert!(own < 1e-5 * F_C, "{own}");
     for (name, values) in [
@@ -81,14 +81,14 @@ fn small_swings_below_breakaway_leave_nothing_behind() {
 
 /// Beyond the breakaway the model drifts: its known limitation.
 #[test]
-fn small_swings_beyond_breakaway_drift() {
+fn swings_beyond_the_breakaway_cause_drift() {
     let own = drift("elasto_plastic", &[F_C, SIGMA, 0.3, 0.0], 0.9);
     assert!(own > 0.01 * F_C, "{own}");
 }
 
 /// With a breakaway close to the level it is a spring and a slider; if very stiff, Coulomb's law.
 #[test]
-fn its_limits_are_other_laws() {
+fn limits_are_a_spring_with_slider_and_coulombs_law() {
     let (dt, steps) = (2.03e-3, 3000);
     let run =
         |name: &str, values: &[f64], a: f64| along::<f64>(name, values, dt, steps, sine(a, 3.0));
@@ -108,7 +108,7 @@ fn its_limits_are_other_laws() {
 ///
 /// A varying load changes the level: the law is combined with `dry_load_dependence`.
 #[test]
-fn under_a_load_it_follows_its_equation() {
+fn friction_under_a_varying_load_follows_its_differential_equation() {
     let (share, mu) = (0.6, 0.4);
     let law = ElastoPlastic::build(None, None, &[F_C, SIGMA, share, 0.0], Clock::Journal);
     let mut effects = Effects::NONE;

@@ -29,7 +29,7 @@ fn passive(name: &str, p: &[f64]) -> bool {
 }
 
 #[test]
-fn a_closed_loop_takes_work() {
+fn closed_loop_dissipates_work_for_passive_laws() {
     let mut random = Random::new(5);
     // The seven-parameter model may return a little: its level falls late, with a deflected spring.
     for law in in_newtons().filter(|law| law.name != "seven_parameter") {
@@ -52,7 +52,7 @@ fn a_closed_loop_takes_work() {
 
 /// Dahl's loop in sliding is nearly the rectangle 4 F_c A.
 #[test]
-fn a_wide_loop_is_a_rectangle() {
+fn work_of_a_wide_dahl_loop_is_that_of_a_rectangle() {
     let (work, _) = loop_work("dahl", &[8.0, 1e8, 1.0, 0.0], 0.05);
     assert!((work / (4.0 * 8.0 * 0.05) - 1.0).abs() < 2e-3, "{work}");
 }

@@ -49,17 +49,17 @@ fn check<T: Real>(seed: u64, lift: impl Fn(usize, f64) -> T, slopes: impl Fn(T) 
 }
 
 #[test]
-fn finite_everywhere_in_double_precision() {
+fn every_law_is_finite_in_double_precision() {
     check::<f64>(21, |_, v| v, |_| true);
 }
 
 #[test]
-fn finite_everywhere_in_single_precision() {
+fn every_law_is_finite_in_single_precision() {
     check::<f32>(22, |_, v| v as f32, |_| true);
 }
 
 #[test]
-fn finite_everywhere_with_derivatives() {
+fn every_law_has_finite_derivatives() {
     check::<Dual<8>>(
         23,
         |i, v| Dual::parameter(v, i),
@@ -69,7 +69,7 @@ fn finite_everywhere_with_derivatives() {
 
 /// Distances and speeds so small that their products with the law's parameters round to zero.
 #[test]
-fn finite_at_speeds_below_the_smallest_normal_number() {
+fn every_law_is_finite_at_subnormal_speeds() {
     for law in in_newtons() {
         for soft in [false, true] {
             let value = |p: &Parameter| {
@@ -103,7 +103,7 @@ fn refused(name: &str, values: &[f64]) -> String {
 }
 
 #[test]
-fn a_wrong_value_is_refused_by_name() {
+fn invalid_parameter_of_a_law_is_refused_by_name() {
     for law in in_newtons() {
         for (i, p) in law.parameters.iter().enumerate() {
             for bad in [f64::NAN, f64::INFINITY, -1.0, 2.0 * p.upper] {
@@ -122,7 +122,7 @@ fn a_wrong_value_is_refused_by_name() {
 }
 
 #[test]
-fn the_steady_curve_refuses_rest() {
+fn steady_curve_at_rest_is_refused() {
     for law in in_newtons() {
         for bad in [0.0, f64::NAN, f64::INFINITY] {
             let mut out = [0.0];
@@ -143,7 +143,7 @@ fn the_steady_curve_refuses_rest() {
 }
 
 #[test]
-fn the_catalogue_is_in_order() {
+fn laws_of_the_catalogue_have_unique_names_and_valid_starts() {
     let names: Vec<_> = CATALOGUE.iter().map(|law| law.name).collect();
     assert_eq!(names[0], "journal", "the default stands first");
     for law in CATALOGUE {

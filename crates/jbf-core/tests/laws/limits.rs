@@ -7,7 +7,7 @@ const STEPS: u32 = 3000;
 const DT_S: f64 = 2.03e-3;
 
 #[test]
-fn a_very_stiff_dahl_is_coulomb() {
+fn stiff_dahl_law_equals_coulombs_law() {
     let stiff = along::<f64>(
         "dahl",
         &[8.0, 1e12, 1.0, 30.0],
@@ -20,7 +20,7 @@ fn a_very_stiff_dahl_is_coulomb() {
 }
 
 #[test]
-fn a_very_stiff_lugre_is_stribeck() {
+fn stiff_lugre_law_equals_the_stribeck_law() {
     let values = [8.0, 12.0, 0.01, 1e12, 0.0, 0.1, 30.0];
     let stiff = along::<f64>("lugre", &values, DT_S, STEPS, sine(0.02, 3.0));
     let values = [8.0, 12.0, 0.01, 2.0, 30.0];
@@ -29,7 +29,7 @@ fn a_very_stiff_lugre_is_stribeck() {
 }
 
 #[test]
-fn lugre_without_fall_and_damping_is_dahl() {
+fn lugre_law_without_stribeck_effect_and_damping_equals_dahls_law() {
     let values = [8.0, 8.0, 0.01, 1e5, 0.0, 0.1, 30.0];
     let lugre = along::<f64>("lugre", &values, DT_S, STEPS, sine(2e-4, 3.0));
     let dahl = along::<f64>("dahl", &[8.0, 1e5, 1.0, 30.0], DT_S, STEPS, sine(2e-4, 3.0));
@@ -37,7 +37,7 @@ fn lugre_without_fall_and_damping_is_dahl() {
 }
 
 #[test]
-fn a_stiff_seven_parameter_without_fall_is_coulomb() {
+fn stiff_seven_parameter_law_without_stribeck_effect_equals_coulombs_law() {
     let values = [1e12, 8.0, 30.0, 1e-6, 0.01, 0.0, 1.0];
     let seven = along::<f64>("seven_parameter", &values, DT_S, STEPS, sine(0.02, 3.0));
     let rigid = along::<f64>("coulomb", &[8.0, 9.0, 30.0], DT_S, STEPS, sine(0.02, 3.0));
@@ -46,7 +46,7 @@ fn a_stiff_seven_parameter_without_fall_is_coulomb() {
 
 /// With a Dahl exponent towards zero the law is a spring that slips: the elasto-plastic contact.
 #[test]
-fn a_ductile_dahl_is_elasto_plastic() {
+fn dahl_law_with_an_exponent_near_zero_is_a_spring_with_slider() {
     let dahl = along::<f64>("dahl", &[8.0, 1e5, 0.01, 0.0], DT_S, STEPS, sine(2e-4, 3.0));
     let values = [1e5, 8.0, 0.0, 1e-6, 0.01, 0.0, 1.0];
     let seven = along::<f64>("seven_parameter", &values, DT_S, STEPS, sine(2e-4, 3.0));

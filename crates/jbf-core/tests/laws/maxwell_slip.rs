@@ -54,7 +54,7 @@ fn virgin(exponent: f64, place_m: f64) -> f64 {
 
 /// The elements follow the closed curve from above, within the share of F_c due to their number.
 #[test]
-fn the_virgin_curve_is_dahls() {
+fn virgin_curve_agrees_with_dahls_within_the_share_of_an_element() {
     let leaves = [
         (0.03, 0.011),
         (0.1, 0.008),
@@ -77,7 +77,7 @@ fn the_virgin_curve_is_dahls() {
 
 /// At a reversal every element sticks: the slope is sigma_0 for every shape.
 #[test]
-fn a_reversal_is_as_stiff_as_said() {
+fn stiffness_at_a_reversal_is_sigma_0() {
     for exponent in [0.01, 0.3, 1.0 - 1e-4, 1.0, 1.0 + 1e-4, 2.0] {
         let small = 1e-3 * F_C / SIGMA;
         let [bent, back] = at_places("maxwell_slip", &values(exponent), &[1e-2, 1e-2 - small])[..]
@@ -92,7 +92,7 @@ fn a_reversal_is_as_stiff_as_said() {
 
 /// Masing: after a reversal at x_0, F_0 the force is `F_0 - 2 V((x_0 - x)/2)`, V the virgin curve.
 #[test]
-fn a_branch_is_the_virgin_curve_twice_as_large() {
+fn branch_after_a_reversal_follows_masings_rule() {
     for exponent in [0.1, 0.5, 1.0] {
         for turn in [0.3, 0.9, 4.0] {
             let turn = turn * F_C / SIGMA;
@@ -114,7 +114,7 @@ fn a_branch_is_the_virgin_curve_twice_as_large() {
 ///
 /// After it the force continues as without the loops. Dahl's law drifts.
 #[test]
-fn inner_loops_close_and_are_wiped_out() {
+fn inner_loops_close_and_leave_no_memory() {
     let unit = F_C / SIGMA;
     let places = |of: &[f64]| of.iter().map(|x| x * unit).collect::<Vec<_>>();
     let with = places(&[1.5, -0.2, 0.8, 0.3, 0.6, 0.3, 0.8, -0.2, -0.9]);
@@ -137,7 +137,7 @@ fn inner_loops_close_and_are_wiped_out() {
 
 /// Inner loops also close in single precision, where positions of many reversals accumulate.
 #[test]
-fn inner_loops_close_in_single_precision() {
+fn inner_loops_close_in_single_precision_after_50_reversals() {
     let unit = F_C / SIGMA;
     let law = values(0.5).map(|x| x as f32);
     let mut places = vec![1.5 * unit];
@@ -151,7 +151,7 @@ fn inner_loops_close_in_single_precision() {
 
 /// A load oscillating below F_c causes no ratchetting: each cycle equals the one before.
 #[test]
-fn it_does_not_ratchet() {
+fn load_cycles_below_f_c_cause_no_ratchetting() {
     let unit = F_C / SIGMA;
     let mut places = vec![1.2 * unit];
     for _ in 0..100 {
@@ -167,7 +167,7 @@ fn it_does_not_ratchet() {
 ///
 /// The breakaway of that elasto-plastic law is its level.
 #[test]
-fn its_limits_are_other_laws() {
+fn limits_are_coulombs_law_and_the_elasto_plastic_law() {
     let (dt, steps) = (2.03e-3, 3000);
     let run =
         |name: &str, values: &[f64], a: f64| along::<f64>(name, values, dt, steps, sine(a, 3.0));
@@ -188,7 +188,7 @@ fn its_limits_are_other_laws() {
 /// The reference has explicit elements, each stuck or at its share of the current level, in steps a
 /// hundred times finer.
 #[test]
-fn under_a_stribeck_level_it_is_gms() {
+fn law_with_stribeck_excess_equals_generalised_maxwell_slip() {
     let (exponent, a, v_s) = (1.0, 3.0, 2e-4);
     let law = MaxwellSlip::build(None, None, &values(exponent), Clock::Journal).expect("valid");
     let mut effects = Effects::NONE;
@@ -244,7 +244,7 @@ fn under_a_stribeck_level_it_is_gms() {
 /// The reference is Dahl's curve with Masing's rules and a stack of reversals, along a motion that
 /// reverses at many amplitudes.
 #[test]
-fn it_follows_a_stack_of_turns() {
+fn friction_follows_masings_rules_for_a_stack_of_reversals() {
     let exponent = 0.5;
     let at =
         |t: f64| 4e-5 * ((1.3 * t).sin() + 0.7 * (3.1 * t + 1.0).sin()) * (0.3 * t).sin().powi(2);

@@ -10,7 +10,7 @@ fn lacking(effect: &str, law: &str) -> Option<Need> {
 }
 
 #[test]
-fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
+fn only_effects_of_drives_are_refused_by_a_bearing() {
     let refused: Vec<_> = effect::CATALOGUE
         .iter()
         .filter(|effect| lacking(effect.name, "journal").is_some())
@@ -44,7 +44,7 @@ fn every_effect_goes_with_a_bearing_or_with_a_law_in_newtons() {
 }
 
 #[test]
-fn effects_that_mean_nothing_are_refused() {
+fn effects_that_do_not_apply_to_a_law_are_refused() {
     for law in law::CATALOGUE.iter().filter(|l| !l.has_film) {
         assert_eq!(lacking("thermal_thinning", law.name), Some(Need::Film));
         assert_eq!(lacking("vogel_viscosity", law.name), Some(Need::Film));

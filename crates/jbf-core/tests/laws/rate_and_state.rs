@@ -34,7 +34,7 @@ fn steady_friction_changes_by_a_minus_b_per_e_fold_of_the_speed() {
 }
 
 #[test]
-fn friction_jumps_by_a_and_then_follows_over_the_slip_distance() {
+fn friction_after_a_speed_step_jumps_by_a_and_settles_over_the_slip_distance() {
     for (slow, fast) in [(1e-4, 1e-3), (1e-3, 1e-4), (2e-3, 3e-3)] {
         // The change takes the first step, of a hundred-thousandth of the slip distance.
         let dt = 1e-5 * D_C / f64::max(slow, fast);
@@ -55,7 +55,7 @@ fn friction_jumps_by_a_and_then_follows_over_the_slip_distance() {
 
 /// At constant speed the age does not depend on the step.
 #[test]
-fn any_step_of_constant_speed_is_exact() {
+fn age_at_constant_speed_does_not_depend_on_the_step() {
     for steps in [1, 3, 50] {
         let (speed, span) = (1e-3, 0.06);
         let dt = span / f64::from(steps);
@@ -133,7 +133,7 @@ fn long_steps_are_stable_and_accurate_to_a_quarter_of_b() {
 }
 
 #[test]
-fn without_both_effects_it_is_coulomb() {
+fn law_without_both_effects_equals_coulombs_law() {
     let run =
         |name: &str, values: &[f64]| along::<f64>(name, values, 2.03e-3, 3000, sine(0.02, 3.0));
     let own = run("rate_and_state", &[F_0, 0.0, 0.0, D_C, V_0, 30.0]);
@@ -143,7 +143,7 @@ fn without_both_effects_it_is_coulomb() {
 
 /// Extreme ages and speeds within single precision.
 #[test]
-fn it_stays_finite_and_not_negative_in_single_precision() {
+fn friction_is_finite_and_not_negative_in_single_precision() {
     for a in [0.0_f32, 1e-30, 0.1, 1e7] {
         for b in [0.0_f32, 0.1, 1e7] {
             for slip in [2e-12_f32, 1e3] {

@@ -34,7 +34,7 @@ fn breakaway(rest_s: f64) -> f64 {
 ///
 /// At the stop from a speed well above v_s hardly any Stribeck friction remains.
 #[test]
-fn breakaway_rises_with_dwell() {
+fn breakaway_rises_with_the_duration_of_a_rest() {
     let arrival = F_S / (1.0 + (0.05 / V_S).powi(2));
     let mut last = 0.0;
     for rest in [0.2, 0.5, 1.5, 5.0, 50.0] {
@@ -52,7 +52,7 @@ fn breakaway_rises_with_dwell() {
 
 /// When the speed jumps from slow to fast, friction drops `tau_L` later, exact to the sample.
 #[test]
-fn the_drop_comes_late_by_the_delay() {
+fn friction_drops_after_the_delay_if_the_speed_jumps() {
     for dt in [1e-4, 1e-3, 2e-3] {
         let jump = 0.5;
         let at = |t: f64| moving::<f64>(t, if t < jump - 1e-9 { 1e-3 } else { 0.1 }, 0.0);
@@ -74,7 +74,7 @@ fn the_drop_comes_late_by_the_delay() {
 
 /// Before breakaway the contact is a spring.
 #[test]
-fn it_starts_as_a_spring() {
+fn contact_is_a_spring_before_breakaway() {
     let force = along::<f64>("seven_parameter", &VALUES, 1e-3, 200, |t| {
         moving(t, if t > 0.0 { 1e-5 } else { 0.0 }, 0.0)
     });

@@ -24,7 +24,7 @@ fn error(name: &str, per_period: u32, amplitude: f64) -> f64 {
 }
 
 #[test]
-fn lugre_is_of_second_order() {
+fn error_of_a_lugre_run_is_of_second_order_in_the_step() {
     let errors = [500, 1000, 2000].map(|n| error("lugre", n, 2e-4));
     assert!(errors[0] < 0.05, "{errors:?}");
     for pair in errors.windows(2) {
@@ -33,7 +33,7 @@ fn lugre_is_of_second_order() {
 }
 
 #[test]
-fn dahl_errs_by_the_way_alone() {
+fn error_of_a_dahl_run_is_that_of_the_interpolated_distance() {
     // The error is that of the distance with linear speed; the law adds none.
     let errors = [500, 1000].map(|n| error("dahl", n, 2e-4));
     assert!(
@@ -43,7 +43,7 @@ fn dahl_errs_by_the_way_alone() {
 }
 
 #[test]
-fn curves_have_no_step_at_all() {
+fn laws_without_memory_have_no_step_error() {
     assert_eq!(error("stribeck", 100, 0.02), 0.0);
     assert_eq!(error("coulomb", 100, 0.02), 0.0);
 }

@@ -5,7 +5,7 @@ use crate::common::motion::Sines;
 use crate::common::random::Random;
 
 #[test]
-fn mirrored_motion_gives_mirrored_friction() {
+fn mirrored_motion_gives_mirrored_friction_with_every_law() {
     let mut random = Random::new(11);
     for law in in_newtons() {
         for _ in 0..30 {

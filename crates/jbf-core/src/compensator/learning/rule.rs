@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn in_velocity_control_the_shaft_that_is_slow_has_more_friction() {
+    fn velocity_rule_raises_friction_if_the_shaft_is_too_slow() {
         // Too slow forwards, too slow backwards; an error of the opposite sign has the opposite
         // effect.
         assert_eq!(lesson(Rule::Velocity, 1.0, -0.5), 0.5);
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn in_position_control_it_learns_up_towards_the_goal_and_down_away_from_it() {
+    fn position_rule_raises_friction_towards_the_target_and_lowers_it_away_from_it() {
         let rule = Rule::THESIS_POSITION;
         assert_eq!(lesson(rule, 1.0, -0.2), 0.2);
         assert_eq!(lesson(rule, 0.0, -0.2), 0.2);

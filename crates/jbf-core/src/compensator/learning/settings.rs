@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn gains_are_the_thesiss_in_proportion() {
+    fn learning_gains_are_those_of_the_thesis_in_proportion_to_the_start() {
         let listed = settings(Rule::THESIS_POSITION, Learned::THESIS).gain;
         assert!((listed.k0 - 12_500.0).abs() < 1e-9 && (listed.gamma - 0.5).abs() < 1e-15);
         let begin = Learned {
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn each_setting_is_checked_by_name() {
+    fn invalid_learning_setting_is_refused_by_name() {
         let good = settings(Rule::Velocity, Learned::THESIS);
         let k0 = Learned::THESIS.k0;
         assert!(good.check(k0).is_ok());

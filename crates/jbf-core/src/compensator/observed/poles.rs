@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn the_observers_error_dies_as_its_poles_say() {
+    fn observer_error_decays_at_the_rate_of_its_poles() {
         let dt_s = 0.002;
         for (damping, bandwidth) in [(135.0, 60.0), (135.0, 300.0), (10.0, 60.0)] {
             let keep = libm::exp(-damping * dt_s);

@@ -127,7 +127,7 @@ mod tests {
     const PLAIN: Settings = Settings::new(&Drive::THESIS, 60.0, 0.05, 0.002);
 
     #[test]
-    fn a_position_loop_is_stiffened_to_its_frequency() {
+    fn position_loop_gets_poles_of_the_requested_frequency() {
         let law = BaseLaw::position(&Drive::THESIS);
         let s = PLAIN.beside(&law, 30.0);
         // Both feedbacks together have poles of natural frequency 30 rad/s.
@@ -141,13 +141,13 @@ mod tests {
     }
 
     #[test]
-    fn a_velocity_loop_is_left_as_it_is() {
+    fn velocity_loop_gets_no_additional_stiffness() {
         let s = PLAIN.beside(&BaseLaw::velocity(&Drive::THESIS), 30.0);
         assert_eq!(s, PLAIN.with_law_forward_v_s_rad(0.295));
     }
 
     #[test]
-    fn each_setting_is_checked_by_name() {
+    fn invalid_observer_setting_is_refused_by_name() {
         assert!(PLAIN.check().is_ok());
         for (bad, name) in [
             (

@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn jacobians_match_dual_numbers() {
+    fn film_jacobians_match_dual_numbers() {
         let law = full();
         let film = law.reduced();
         let loaded = film.nominal();

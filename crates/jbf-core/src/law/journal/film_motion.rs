@@ -230,7 +230,7 @@ mod tests {
     /// At the centre the load squeezes the film straight down, `eps' = (2/pi) Fb`. Beyond the edge
     /// a stage has the slope at the edge in its direction.
     #[test]
-    fn a_stage_sees_the_centre_and_the_edge() {
+    fn film_slope_is_defined_at_the_centre_and_held_beyond_the_edge() {
         let law = Journal::<f64>::new(
             &Bearing::THESIS,
             104.0,

@@ -158,7 +158,7 @@ mod tests {
 
     /// Compares joined derivatives with those carried through each operation, for all inputs.
     #[test]
-    fn joined_slopes_are_those_of_every_operation() {
+    fn combined_film_derivatives_equal_those_carried_through_each_operation() {
         for (eps, phi, ub) in [
             (0.99, 0.02, 0.7),
             (0.98, 0.12, 0.0),
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn joined_friction_is_that_of_every_operation() {
+    fn combined_friction_derivatives_equal_those_carried_through_each_operation() {
         for (eps, speed) in [(0.99, -0.03), (0.975, 0.1), (0.4, 0.1), (0.0, 0.2)] {
             let asperities = Asperities {
                 k0: D::parameter(7.5e5, 0),
@@ -213,7 +213,7 @@ mod tests {
 
     /// The value does not depend on whether derivatives are carried.
     #[test]
-    fn values_are_those_of_plain_numbers() {
+    fn friction_has_the_same_bits_with_and_without_derivatives() {
         let plain = Journal::new(
             &Bearing::THESIS,
             104.0,

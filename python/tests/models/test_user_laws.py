@@ -6,6 +6,7 @@ from pathlib import Path
 import jbf
 import numpy as np
 import pytest
+from input_errors import input_error
 from jbf import InputError, Parameter, Rig, Run, export
 from jbf.estimation.campaign import Campaign
 from jbf.models.chain import chain
@@ -110,15 +111,14 @@ def test_automatic_law_selection_chooses_the_user_law_that_generated_the_data(la
 
 
 def test_effects_that_do_not_apply_to_a_user_law_are_refused(law: str) -> None:
-    with pytest.raises(InputError, match="is one of your own, and the effect changes parts"):
-        jbf.Model(Rig(), law=law, effects=["presliding"])
-    with pytest.raises(InputError, match="does not apply: the law smooth_coulomb"):
-        jbf.Model(Rig(), law=law, effects=["coulomb_drag"])
+    for effect in ("presliding", "coulomb_drag"):
+        error = input_error(jbf.Model, Rig(), law=law, effects=[effect])
+        assert effect in str(error)
 
 
 def test_export_of_a_model_with_a_user_law_is_refused(law: str) -> None:
-    with pytest.raises(InputError, match="is written in Python, which no target runs"):
-        export.rust(jbf.Model(Rig(), law=law, parameters=TRUE))
+    error = input_error(export.rust, jbf.Model(Rig(), law=law, parameters=TRUE))
+    assert law in str(error)
 
 
 @pytest.mark.parametrize(
@@ -133,8 +133,7 @@ def test_export_of_a_model_with_a_user_law_is_refused(law: str) -> None:
 def test_registration_of_an_invalid_law_is_refused(options: dict, fragment: str) -> None:
     with pytest.raises(InputError, match=fragment):
         jbf.register_law(smooth_coulomb, **({"parameters": PARAMETERS} | options))
-    with pytest.raises(InputError, match="is no law of your own"):
-        jbf.forget_law("smooth_coulomb")
+    input_error(jbf.forget_law, "smooth_coulomb")
 
 
 def test_argument_of_a_user_law_that_is_not_a_parameter_is_required_as_a_column() -> None:

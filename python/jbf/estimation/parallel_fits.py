@@ -33,15 +33,9 @@ def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
     One fit at a time is used where the matrices of long records fill the memory. User-defined
     functions are not run in parallel either, since they may have an internal state.
     """
-<<<<<<< HEAD:python/jbf/estimation/parallel_fits.py
     user_defined = isinstance(find_law(law), UserLaw)
     user_defined = user_defined or any(isinstance(find_effect(n), UserEffect) for n in effects)
     if user_defined or campaign.samples.count > MOST_SEARCHED:
-=======
-    own = isinstance(find_law(law), UserLaw)
-    own = own or any(isinstance(find_effect(name), UserEffect) for name in effects)
-    if own or campaign.samples.count > MOST_SEARCHED:
->>>>>>> 618f9110 (Name modules and functions by their concept):python/jbf/diagnosis/side_by_side.py
         return 1
     variable = os.environ.get("RAYON_NUM_THREADS", "")
     threads = int(variable) if variable.isdecimal() else 0

@@ -261,7 +261,7 @@ free-threaded:
 	$(FREE)/bin/python -m pytest -q python/tests/cli/test_parallel_calls.py && \
 	$(FREE)/bin/python -m pytest -q --parallel-threads=4 $(addprefix python/tests/, \
 		estimation/test_trajectory_fit.py models/test_batch.py models/test_model.py \
-		estimation/test_held_out.py estimation/test_predictive_density.py diagnosis/test_level.py)
+		estimation/test_held_out.py estimation/test_held_out_comparison.py diagnosis/test_level.py)
 
 # Needs qemu-system-arm and the target thumbv7em-none-eabihf; says so where one is missing.
 firmware: $(TOOLS)

@@ -22,7 +22,7 @@ from typing import Any
 
 import jbf
 from jbf.diagnosis.power import Power
-from jbf.estimation.wild_bootstrap import recorded_by
+from jbf.estimation.bootstrap import recorded_by
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 

@@ -136,7 +136,7 @@ STEPS: list[tuple[str, str]] = [
     ),
     ("Comparison", "noise layer;\nwhere the base law fails"),
     ("candidates", "score test -> rank ->\nconverge -> search peaks"),
-    ("evidence, left_out", "likelihood gain minus threshold;\nruns left out of the fit"),
+    ("evidence, held_out", "likelihood gain less penalty;\nheld-out runs"),
     ("selection", "add the leader; take out,\nexchange; ties"),
     ("residual_structure", "patterns, tones, replicates,\nbursts, constancy"),
     ("verdict, policy", "adequate, missing,\nambiguous, unexplained"),

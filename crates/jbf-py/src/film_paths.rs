@@ -4,7 +4,7 @@
 //! earlier parameters.
 //!
 //! The key of a path contains every number that it depends on, to the bit, so that the cache
-//! changes no result (python/tests/estimation/test_film_rate.py).
+//! changes no result (python/tests/estimation/test_transients.py).
 
 use jbf_core::film_path::{FilmStep, Place};
 use jbf_core::{Bearing, Clock};

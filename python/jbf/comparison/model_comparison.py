@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from jbf.comparison.comparison import Comparison
 from jbf.errors import InputError
+from jbf.estimation.held_out_comparison import independent_units
 from jbf.estimation.settings import DEFAULT
-from jbf.estimation.units import independent_units
 from jbf.results import Result
 
 Array = npt.NDArray[np.float64]

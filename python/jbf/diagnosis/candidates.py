@@ -17,21 +17,20 @@ from jbf.diagnosis.confirmation import Confirmation
 from jbf.diagnosis.fit_state import Fitted, Reached
 from jbf.diagnosis.level import Level, calibrated, score_test, with_decoys
 from jbf.diagnosis.policy import DEFAULT, Policy
-from jbf.estimation.approach import Approach, approach
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.determined import idle_effects
-from jbf.estimation.held_out_ranges import Beyond, runs_beyond
-from jbf.estimation.initial_state import has_unknown_start
-from jbf.estimation.jumps import spreads_jumps
-from jbf.estimation.left_out import (
+from jbf.estimation.held_out import (
     HeldOutPart,
     errors_by_run,
     held_out_halves,
     held_out_parts,
     indispensable_runs,
 )
+from jbf.estimation.held_out_comparison import Beyond, runs_beyond
+from jbf.estimation.identifiability import idle_effects
+from jbf.estimation.initial_state import has_unknown_start
+from jbf.estimation.jumps import spreads_jumps
 from jbf.estimation.likelihood import effective_share, likelihood_gain
-from jbf.estimation.minimum import search_peaks, settle
+from jbf.estimation.minimum import Approach, approach, search_peaks, settle
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution

@@ -1,6 +1,6 @@
 """Simulation study of the diagnosis on the user's rig: complete diagnoses of similar campaigns.
 
-The fitted model records the same motions again (`estimation.wild_bootstrap`): a number of campaigns
+The fitted model records the same motions again (`estimation.bootstrap`): a number of campaigns
 with the effects that were found, and the same number with no missing effect. Each is diagnosed like
 the measured campaign.
 """
@@ -16,7 +16,7 @@ from typing import Any
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.recipe import diagnose
 from jbf.errors import InputError, JbfError
-from jbf.estimation.wild_bootstrap import recorded_by
+from jbf.estimation.bootstrap import recorded_by
 from jbf.models.model import Model
 from jbf.records.arguments import check_callable, checked_integer, list_of_runs, of_kind
 from jbf.records.run import Run

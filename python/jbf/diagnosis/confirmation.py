@@ -10,13 +10,12 @@ import numpy.typing as npt
 from scipy import special
 
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.left_out import HeldOutPart, errors_by_run
-from jbf.estimation.predictive import mean_square, surprise
+from jbf.estimation.held_out import HeldOutPart, errors_by_run
+from jbf.estimation.held_out_comparison import independent_units, mean_square, surprise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import common_samples
 from jbf.estimation.settings import HeldOutSettings
 from jbf.estimation.solution import Solution
-from jbf.estimation.units import independent_units
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.refine import with_motion_errors
+from jbf.estimation.generalised_least_squares import with_motion_errors
 
 Names = tuple[str, ...]
 

@@ -11,10 +11,10 @@ from jbf.estimation.likelihood import (
     effective_share,
     likelihood_gain,
     next_step_gain,
+    noise_at,
     robust_gain,
     share_of_gain,
 )
-from jbf.estimation.noise_at import noise_at
 from jbf.estimation.samples import common_samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.diagnosis.level import Directions
-from jbf.estimation.approach import Approach
 from jbf.estimation.fit import Fit, finish
-from jbf.estimation.left_out import HeldOutPart
+from jbf.estimation.held_out import HeldOutPart
+from jbf.estimation.minimum import Approach
 from jbf.estimation.problem import Problem, bounded
 from jbf.estimation.solution import Solution
 from jbf.models.driven import Driven

@@ -31,13 +31,12 @@ from scipy import special
 
 from jbf.diagnosis.decoys import decoy_gains
 from jbf.diagnosis.policy import Policy
-from jbf.estimation.blocks import Places, blocks_of
-from jbf.estimation.likelihood import effective_share, least_squares, promised_gain, score_gain
-from jbf.estimation.long_run import sure_inflation
+from jbf.estimation.least_squares import least_squares, triangular
+from jbf.estimation.likelihood import effective_share, promised_gain, score_gain
 from jbf.estimation.problem import Problem
-from jbf.estimation.rows import triangular
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
+from jbf.estimation.variance import Places, blocks_of, sure_inflation
 
 Array = npt.NDArray[np.float64]
 

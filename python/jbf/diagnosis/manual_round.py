@@ -18,7 +18,7 @@ from jbf.diagnosis.selection import try_candidates
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, fit
-from jbf.estimation.run_start import settled_again, settled_campaign
+from jbf.estimation.transients import settled_again, settled_campaign
 from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 from jbf.records.run import Run

@@ -35,7 +35,7 @@ from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
 from jbf.estimation.initial_state import memories
-from jbf.estimation.run_start import settled_campaign
+from jbf.estimation.transients import settled_campaign
 from jbf.models.catalogue import find_clock, find_law
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import AUTO, Clock

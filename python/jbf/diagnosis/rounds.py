@@ -23,11 +23,11 @@ from jbf.diagnosis.selection import (
 from jbf.diagnosis.terms import best_term_update
 from jbf.diagnosis.terms.shifts import DELAY
 from jbf.errors import Unfinished
-from jbf.estimation.left_out import errors_by_run
+from jbf.estimation.held_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.noise_floor import noise_floor
-from jbf.estimation.run_start import settled_again
 from jbf.estimation.samples import common_samples
+from jbf.estimation.transients import settled_again
 from jbf.models.catalogue import can_be_added
 
 

@@ -23,7 +23,7 @@ from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.residual_structure.constancy import disagreement
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import effective_share, likelihood_gain
-from jbf.estimation.scales import scales
+from jbf.estimation.starting_values import scales
 from jbf.models.catalogue import Parameter, find_effect
 from jbf.models.parameter_value import ParameterValue
 

@@ -21,11 +21,10 @@ from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.selection import start_model
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_rate import check_film
+from jbf.estimation.held_out import held_out_parts
 from jbf.estimation.initial_state import memories
-from jbf.estimation.left_out import held_out_parts
-from jbf.estimation.run_start import settled_campaign
 from jbf.estimation.samples import Samples
+from jbf.estimation.transients import check_film, settled_campaign
 from jbf.models.catalogue import find_law, laws
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock

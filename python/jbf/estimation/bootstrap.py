@@ -1,11 +1,15 @@
-"""Parametric bootstrap of a fit (Efron, Annals of Statistics 7, 1979).
+"""Simulated recordings of the fitted runs, and standard errors from fits to them.
 
-A fit takes its standard errors from the curvature of the likelihood. They are correct where
-predictions are nearly linear in the parameters and the noise is that of the friction. Neither
-holds for a drive that rings: its likelihood has many adjacent maxima, and it amplifies errors of
-the recorded motion. Here the fitted model simulates the same runs many times, with the recorded
-noise on friction, speed and angle. Each simulated set is fitted as the measured runs were, and
-the scatter of the estimates gives the errors.
+Standard errors from the curvature of the likelihood are correct where predictions are nearly linear
+in the parameters and the noise is that of the friction. Neither holds for a drive that rings: its
+likelihood has many adjacent maxima, and it amplifies errors of the recorded motion.
+
+Notes
+-----
+`bootstrap` is parametric (Efron 1979): the fitted model simulates the runs with Gaussian noise of
+the estimated size on friction, speed and angle. `simulated_runs` is a wild bootstrap: its noise is
+the residual of the model with random signs by block (Wu 1986; for blocks: Shao 2010). Size, tails
+and correlation time of the residual are kept, as are the times at which it is large.
 """
 
 from __future__ import annotations
@@ -19,13 +23,17 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.determined import undetermined
 from jbf.estimation.fit import Fit
+from jbf.estimation.identifiability import undetermined
+from jbf.estimation.likelihood import effective_share, noise_at
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem, named_values
+from jbf.estimation.solution import Solution
+from jbf.estimation.variance import blocks_of
 from jbf.models.catalogue import Parameter
+from jbf.models.model import Model
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.arguments import check_callable, checked_integer, of_kind
 from jbf.records.motion.roughness import encoder_step
@@ -34,7 +42,6 @@ from jbf.results import Result
 from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
-
 LEAST_REPEATS = 19
 """Minimum number of repeats: with fewer, the central 68 % does not give a width.
 
@@ -275,3 +282,54 @@ def with_error(value: ParameterValue, answers: Array, page: Parameter) -> Parame
     error = max(float(0.5 * (high - low)), value.stderr)
     note = undetermined(page, value.value, error)
     return replace(value, stderr=None if note else error, note=note, held=note is not None)
+
+
+def recorded_by(model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: int) -> list[Run]:
+    """Simulate new recordings of the runs by a model, or by a model with only some of its effects.
+
+    Parameters
+    ----------
+    hidden
+        Effects of the model that the simulated friction contains.
+    draw
+        Number of the simulation, used as the seed.
+    """
+    campaign = Campaign.prepare(model.rig, runs)
+    problem = Problem(campaign, model.law, model.clock, model.effects)
+    values = np.array([model.parameters[name].value for name in problem.names])
+    samples = problem.samples_at(values)
+    solution = problem.solution(values, samples, noise_at(problem, samples, values))
+    less = Problem(campaign, model.law, model.clock, hidden)
+    friction = less.predict(np.array([model.parameters[name].value for name in less.names]))
+    random = np.random.default_rng([draw, len(hidden)])
+    errors = _errors(solution, campaign, random)
+    return [
+        simulated_readings(p, f + e, random)
+        for p, f, e in zip(campaign.prepared, friction, errors, strict=True)
+    ]
+
+
+def _errors(solution: Solution, campaign: Campaign, random: np.random.Generator) -> list[Array]:
+    """Simulated noise of the runs, N, one array a run: innovations with random signs."""
+    # The innovation of a sample that does not count is meaningless; it is drawn from the others.
+    plain = replace(
+        solution.samples, weight=tuple(c.astype(float) for c in solution.samples.counted)
+    )
+    innovations = plain.plain_innovations(solution.residuals, solution.noise)
+    counted = np.concatenate([e[c] for e, c in zip(innovations, plain.counted, strict=True)])
+    starts = blocks_of(
+        replace(plain, weight=tuple(np.ones(len(e)) for e in innovations)),
+        effective_share(solution),
+    )
+    lengths = np.diff(np.append(starts, sum(map(len, innovations))))
+    signs = np.repeat(random.choice([-1.0, 1.0], len(starts)), lengths)
+    ends = np.cumsum([len(e) for e in innovations])[:-1].astype(np.intp)
+    found = []
+    for e, sign, at, p in zip(
+        innovations, np.split(signs, ends), plain.counted, campaign.prepared, strict=True
+    ):
+        # The innovation of a sample that does not count is meaningless; it is drawn from the
+        # others.
+        filled = np.where(at, e, random.choice(counted, len(e)))
+        found.append(solution.noise.coloured(sign * filled, p.step_s))
+    return found

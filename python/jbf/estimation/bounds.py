@@ -1,15 +1,24 @@
-"""Bounds of parameters that a user imposes on a fit."""
+"""Bounds of parameters: those that a user imposes on a fit, and estimates that end at a bound."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+
+import numpy as np
 
 from jbf.errors import InputError
 from jbf.models.catalogue import Parameter, find_parameter
 from jbf.records.arguments import by_name, described
 from jbf.records.toml_file import number
 
+AT_BOUND = 1e-6
+"""Tolerance within which a value counts as at its bound.
+
+It is a fraction of the logarithmic distance between the bounds, or of the value or its error. It is
+a numerical tolerance.
+"""
 Bounds = dict[str, tuple[float, float]]
 """Full parameter name to its lower and upper bound."""
 
@@ -65,3 +74,24 @@ def bounded_pages(pages: Mapping[str, Parameter], bounds: Bounds) -> dict[str, P
         name: bounded_page(page, *bounds[name]) if name in bounds else page
         for name, page in pages.items()
     }
+
+
+def bound_note(page: Parameter, value: float, error: float) -> str | None:
+    """Return a note if a value is at one of its bounds, otherwise None."""
+    for side, bound, wish in (("lower", page.lower, "less"), ("upper", page.upper, "more")):
+        if at_bound(page, value, bound, error):
+            return f"at its {side} bound {bound:g}: the runs ask for {wish}"
+    return None
+
+
+def at_bound(page: Parameter, value: float, bound: float, error: float) -> bool:
+    """Whether a value is at a bound.
+
+    A linear parameter is compared with its own size and error. The distance between its bounds is
+    often many times the value of any machine.
+    """
+    if page.log:
+        off = abs(np.log(value) - np.log(bound))
+        return bool(off < AT_BOUND * (np.log(page.upper) - np.log(page.lower)))
+    sizes = [abs(value), abs(bound), error if math.isfinite(error) else 0.0]
+    return abs(value - bound) <= AT_BOUND * max(sizes)

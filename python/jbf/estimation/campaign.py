@@ -1,4 +1,9 @@
-"""A rig and its runs, prepared once for many fits."""
+"""A rig and its runs, prepared once for many fits.
+
+Typical magnitudes of a campaign as robust quantiles.
+
+Neither inertia at a reversal nor a bad sample determines a scale.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.estimation.converter import curve_rms, noise_before
 from jbf.estimation.noise_floor import noise_upper_bound
 from jbf.estimation.prepared import NoMotion, Prepared, coasting
+from jbf.estimation.quantisation import curve_rms, noise_before
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, MotionSettings, Settings
 from jbf.estimation.work import Work
@@ -35,7 +40,6 @@ from jbf.records.weight_angle import check_weight_angles
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
 SMOOTHS_FORCE = frozenset((
     "sensor_hysteresis", "sensor_lag", "time_delay", "backlash", "drive_compliance",
 ))  # fmt: skip
@@ -60,6 +64,11 @@ NOISE_SPAN = 3.29
 """Interval between the 5 % and 95 % quantiles of white noise, in standard deviations.
 
 It follows from the estimator.
+"""
+HUM = 0.02
+"""Fraction of the top speed below which a speed is not used for a scale.
+
+It only starts a search.
 """
 
 
@@ -258,6 +267,12 @@ class Campaign:
         noise_rms = noise_before(self.step_n, np.concatenate(moves))
         return curve_rms(self.step_n, min(noise_rms, residual_rms))
 
+    @property
+    def moving(self) -> list[Mask]:
+        """Mask of the samples that count and are in motion, one a run."""
+        pairs = zip(self.prepared, self.samples.counted, strict=True)
+        return [_moving(p, counted) for p, counted in pairs]
+
     def without(self, masks: Sequence[Mask]) -> Campaign:
         """Return the campaign with additional samples excluded, one mask a run."""
         return replace(self, samples=self.samples.within([~m for m in masks]))
@@ -315,3 +330,11 @@ def _without_motion(run: Run, error: NoMotion) -> Finding:
     return Finding(
         "no_motion", "velocity_m_s", run.name, float(len(run)), "samples", "left out", words
     )
+
+
+def _moving(p: Prepared, counted: Mask) -> Mask:
+    """Mask of samples in motion; noise near zero speed has neither a direction nor a travel."""
+    speed = np.abs(p.motion.velocity)
+    top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
+    found: Mask = counted & (speed > HUM * top)
+    return found

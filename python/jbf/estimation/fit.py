@@ -13,21 +13,19 @@ import numpy.typing as npt
 from jbf.errors import InputError, Stopped, Unfinished
 from jbf.estimation.bounds import bounded_pages, checked_bounds
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.curvature import doubtful_errors
+from jbf.estimation.delay_scan import exact_delay
 from jbf.estimation.estimates import Estimates
-from jbf.estimation.exact_delay import exact_delay
-from jbf.estimation.film_rate import check_film
+from jbf.estimation.generalised_least_squares import with_motion_errors
+from jbf.estimation.identifiability import correlations, parameter_values, put_back
 from jbf.estimation.likelihood import log_likelihood
 from jbf.estimation.minimum import minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.problem import Problem, named_values
-from jbf.estimation.put_back import put_back
-from jbf.estimation.refine import with_motion_errors
+from jbf.estimation.robust_fit import best_weighting
 from jbf.estimation.solution import Solution
-from jbf.estimation.spread import spread
-from jbf.estimation.uncertainty import correlations, parameter_values
-from jbf.estimation.weighting import best_weighting
+from jbf.estimation.standard_errors import doubtful_errors, spread
+from jbf.estimation.transients import check_film
 from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
 from jbf.models.chain import check_rig
 from jbf.models.delayed_reading import TAU

@@ -1,12 +1,15 @@
-"""Samples next to a jump whose time is itself fitted, or whose influence lasts.
+"""Samples next to a jump of the friction whose time is uncertain.
 
 Friction jumps at a reversal of the motion. The record does not determine the sign of the samples
 there, and they do not count (`Samples`). An effect that moves the jump (a delayed record, or
 backlash to be crossed first) moves this uncertainty with it. The model then has a ramp over one
 sample where the record has a jump within it. The error is about half of the change over the
-sample: a fit weights the sample by it, and tests exclude the sample. If an effect spreads a jump
-over time, its samples are weighted by the error of the jump's time (`reversals`). Tests exclude
-them where this error is a large part of the noise.
+sample: a fit weights the sample by it, and tests exclude the sample.
+
+If an effect spreads a jump over time, the error of the jump's time is spread with it. This error is
+the standard error of the speed over the acceleration. The prediction error in newtons is the change
+of the reading during that time; it weights the samples in a fit. Tests exclude them where it is a
+large part of the noise.
 """
 
 from __future__ import annotations
@@ -18,13 +21,17 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.reversals import instant_errors_n
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, JumpSettings
 from jbf.models.catalogue import Parameter, find_effect
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+MOST = 0.29
+"""Standard deviation of a uniform position between two samples, relative to their distance.
+
+It follows from the estimator.
+"""
 
 
 def moves_jumps(effects: Iterable[str]) -> bool:
@@ -122,3 +129,43 @@ def _share(error_n: Array, noise_rms: float) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         share: Array = np.where(error_n > 0.0, noise_rms / np.hypot(noise_rms, error_n), 1.0)
     return share
+
+
+def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:
+    """Standard error of a prediction (N) after each reversal, due to the error of its time.
+
+    Shape (n,); zero elsewhere, and from where the error falls below `least_n`.
+    """
+    motion, time_s = p.motion, p.run.time_s
+    found = np.zeros(len(prediction))
+    if len(prediction) < 3:
+        return found
+    rate_n_s = np.abs(np.gradient(prediction, time_s))
+    befores, afters = _reversals(p)
+    for k, (before, after) in enumerate(zip(befores, afters, strict=True)):
+        between_s = float(time_s[after] - time_s[before])
+        slope = float(abs(motion.velocity[after] - motion.velocity[before])) / between_s
+        error = float(np.max(motion.velocity_error_m_s[before : after + 1]))
+        error_s = min(error / slope, MOST * between_s)
+        last = befores[k + 1] if k + 1 < len(befores) else len(prediction)
+        behind_n = error_s * rate_n_s[before + 1 : last + 1]
+        # The error decays from where the sign is known again.
+        small = np.flatnonzero(behind_n[after - before - 1 :] < least_n)
+        if len(small):
+            behind_n = behind_n[: after - before - 1 + int(small[0])]
+        found[before + 1 : before + 1 + len(behind_n)] = behind_n
+    return found
+
+
+def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
+    """Last samples before each reversal, and first samples after it.
+
+    Only reversals without a rest in between are included.
+    """
+    motion = p.motion
+    known = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity != 0.0))
+    turned = np.flatnonzero(np.diff(np.sign(motion.velocity[known])) != 0.0)
+    befores, afters = known[turned], known[turned + 1]
+    rests = np.concatenate(([0], np.cumsum(motion.resting)))
+    moving = rests[afters] == rests[befores]
+    return befores[moving].tolist(), afters[moving].tolist()

@@ -1,4 +1,4 @@
-"""Log-likelihood gain of one solution over another, and score tests.
+"""Log-likelihood gain of one solution over another, score tests, and noise at given values.
 
 Gains are 2 x the difference of log likelihood. A score test predicts the gain of a step before the
 step is made.
@@ -12,22 +12,15 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.long_run import sure_inflation
-from jbf.estimation.noise import Noise
-from jbf.estimation.problem import Problem
-from jbf.estimation.robust import clipped_square, robust_size
-from jbf.estimation.rows import triangular
+from jbf.estimation.least_squares import unexplained_square
+from jbf.estimation.noise import WHITE, Noise, estimate_noise
+from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples, common_samples
 from jbf.estimation.settings import DEFAULT, NoiseSettings
 from jbf.estimation.solution import Solution
+from jbf.estimation.variance import clipped_square, robust_size, sure_inflation
 
 Array = npt.NDArray[np.float64]
-
-INDEPENDENT = 1e-10
-"""Relative singular value above which a direction of a design is independent.
-
-It is a numerical tolerance.
-"""
 
 
 def likelihood_gain(richer: Solution, simpler: Solution) -> float:
@@ -173,37 +166,18 @@ def promised_gain(r: Array, j: Array, count: int) -> float:
     return count * float(np.log(max(float(r @ r), 1e-300) / left))
 
 
-def least_squares(design: Array, target: Array) -> Array:
-    """Shortest least-squares step in the columns of a design, each scaled to unit length."""
-    size = np.linalg.norm(design, axis=0)
-    size[size <= 0.0] = 1.0
-    left, axes = triangular(target, design / size)
-    step, *_ = np.linalg.lstsq(axes, left, rcond=INDEPENDENT)
-    return np.asarray(step / size)
+def noise_at(
+    problem: Problem, samples: Samples, values: Array, lines: Lines | None = None
+) -> Noise:
+    """Estimate the noise model of the residuals at some values, without the random effects of runs.
 
-
-def unexplained(design: Array, target: Array) -> Array:
-    """Part of a target that linear combinations of the columns of a design do not explain."""
-    # Scale by powers of two, which are exact, so that the squares of large columns do not overflow.
-    _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
-    design = np.ldexp(design, -power)
-    size = np.linalg.norm(design, axis=0)
-    design = design[:, size > 0.0] / size[size > 0.0]
-    step, *_ = np.linalg.lstsq(design, target, rcond=INDEPENDENT)
-    return np.asarray(target - design @ step)
-
-
-def spanned(design: Array) -> Array:
-    """Orthonormal columns that span those of a design, shape (n, rank)."""
-    _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
-    design = np.ldexp(design, -power)
-    size = np.linalg.norm(design, axis=0)
-    axes, sizes, _ = np.linalg.svd(design[:, size > 0.0] / size[size > 0.0], full_matrices=False)
-    span: Array = axes[:, sizes > INDEPENDENT * np.max(sizes, initial=0.0)]
-    return span
-
-
-def unexplained_square(design: Array, target: Array) -> float:
-    """Sum of squares of the part of a target that a design does not explain."""
-    left = unexplained(design, target)
-    return float(left @ left)
+    With many long runs, a selection of runs is used. `lines` holds the residuals and derivatives at
+    these values, if they are known.
+    """
+    which = problem.searched
+    samples = samples if len(which) == len(samples.runs) else samples.only(which)
+    residuals = problem.residuals(values, which) if lines is None else lines[0]
+    residuals = samples.without_deviations(residuals, WHITE)
+    masked = [r * c for r, c in zip(residuals, samples.counted, strict=True)]
+    most_n, settings = problem.campaign.most_noise_n, samples.settings.noise
+    return estimate_noise(masked, samples.steps_s, samples.counted, most_n, settings)

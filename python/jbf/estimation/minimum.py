@@ -1,28 +1,58 @@
-"""Minimum of the least squares of a model.
+"""Minimum of the least squares of a model, from its starting points to convergence.
 
-`settle` converges with coloured noise; `search_peaks` looks for a higher maximum of the likelihood
-where an effect causes many.
+`Approach` ranks the starting points and follows the best one, assuming white noise. It may be
+interrupted after a first look, which estimates the log-likelihood gain of a model for a quarter of
+the computation. `settle` converges with coloured noise; `search_peaks` looks for a higher maximum
+of the likelihood where an effect causes many.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.approach import TRIAL_EVALUATIONS, approach
+from jbf.estimation.least_squares import unexplained_square
+from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
-from jbf.estimation.noise_at import noise_at
-from jbf.estimation.peaks import other_peaks
-from jbf.estimation.problem import Problem
+from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples
-from jbf.estimation.search import SearchResult, search
+from jbf.estimation.search import Method, SearchResult, Visited, other_peaks, search
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect, find_law
 
 Array = npt.NDArray[np.float64]
+TRIAL_EVALUATIONS = 6
+"""Evaluations spent on each starting point before only the best one is followed.
 
+With half of them, an effect whose null is a flat region of the objective stays at its null. It
+bounds the computing time only.
+"""
+FOLLOWED = 2
+"""Number of starting points that receive these evaluations when candidates are ranked.
+
+It limits the effort only.
+"""
+MANY = 24
+"""Largest number of starting points that are all evaluated on all runs.
+
+It limits the effort only.
+"""
+LIKELY = 6
+"""Fraction (one in this number) of a larger set that is kept; at least `MANY` are kept.
+
+They are ranked on a single run: the one with the highest speed, which covers all speeds. It bounds
+the computing time only.
+"""
+LOOKED = 3
+"""Evaluations of a first look, which begins at the best starting point of the first seed.
+
+It limits the effort only.
+"""
 MAX_EVALUATIONS = 60
 """Maximum number of evaluations of a search that converges. It limits the effort only."""
 FOLLOWED_IN_A_FIT = 6
@@ -31,6 +61,201 @@ FOLLOWED_IN_A_FIT = 6
 Without a film they are searched to convergence, which is then inexpensive. The squares of a wrong
 law have many local minima. It limits the effort only.
 """
+NESTED_EVALUATIONS = 30
+"""Evaluations of a fit of the law without its effects. It limits the effort only."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """Result of a few steps of a fit compared with a smaller model, in log-likelihood gain.
+
+    Attributes
+    ----------
+    gain
+        Log-likelihood gain (2 x difference of log likelihood) reached so far.
+    promised
+        Log-likelihood gain predicted by the linear model at the best of the visited points.
+    """
+
+    values: Array
+    gain: float
+    promised: float
+    lines: Lines | None
+
+
+class Approach:
+    """Search from the best of all starting points, assuming white noise.
+
+    Parameters
+    ----------
+    seeds
+        Known values by name; starting values fill up each seed.
+    each
+        Follow the best starting point of each seed instead of the best of all.
+    stepped
+        One additional starting point: the end of a step from a smaller model. Starting values suit
+        a strong effect; a weak one may lie on the far side of a maximum of the objective.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        seeds: Sequence[Mapping[str, float]],
+        *,
+        each: bool = False,
+        stepped: Array | None = None,
+    ) -> None:
+        self.problem, self.few = problem, problem.thinned
+        self._groups = [problem.starts({**seed, **problem.fixed}) for seed in seeds]
+        self._each = each
+        self._stepped = [] if stepped is None else [stepped]
+        self._squares: dict[bytes, float] = {}
+        self._kept: dict[int, list[Array]] = {}
+        self.visited = Visited()
+
+    @cached_property
+    def _nearest(self) -> Array:
+        """Best starting point of the first seed, or the step from a smaller model."""
+        return min([*self._likely(0), *self._stepped], key=self._square)
+
+    @cached_property
+    def starts(self) -> list[Array]:
+        """Starting points, best first."""
+        groups = [self._likely(k) for k in range(len(self._groups))]
+        if self._each:
+            groups = [[min(group, key=self._square)] for group in groups]
+        every = itertools.chain(*groups, self._stepped)
+        return sorted(every, key=self._square)
+
+    def _likely(self, k: int) -> list[Array]:
+        """Starting points of seed k, reduced to the best ones on one run if there are many."""
+        if k not in self._kept:
+            self._kept[k] = self._likeliest(self._groups[k])
+        return self._kept[k]
+
+    def _likeliest(self, group: list[Array]) -> list[Array]:
+        few = self.few
+        runs = few.campaign.prepared
+        if len(group) <= MANY or len(runs) < 2:
+            return group
+        fastest = [float(np.max(np.abs(p.motion.velocity))) for p in runs]
+        which = [int(np.argmax(fastest))]
+        samples = few.campaign.samples.only(which)
+        squares = [samples.square(few.residuals(start, which)) for start in group]
+        order = np.argsort(squares, kind="stable")
+        return [group[i] for i in order[: max(MANY, len(group) // LIKELY)]]
+
+    def _square(self, values: Array) -> float:
+        """Sum of squares of weighted residuals, N^2, computed once for each starting point."""
+        key = values.tobytes()
+        if key not in self._squares:
+            self._squares[key] = self.few.square(values)
+        return self._squares[key]
+
+    def look(self, near: Solution) -> Look:
+        """Take a few steps from the best start of the first seed; compare with a smaller model."""
+        problem, few, visited = self.problem, self.few, self.visited
+        some = few.campaign.samples
+        search(few, some, self._nearest, WHITE, LOOKED, visited=visited)
+        # The subsequent search takes the same path and must not count as having joined this one.
+        visited.ended.clear()
+        places = list(visited.places.values())
+        lowest = min(places, key=lambda place: place.square)
+        promised = min(unexplained_square(place.jacobian, place.residual) for place in places)
+        before = few.campaign.samples.square([near.residuals[i] for i in problem.searched])
+        count = problem.campaign.samples.count
+        gain, most = (count * _log_ratio(before, left) for left in (lowest.square, promised))
+        lines = visited.lines_at(lowest.values) if few is problem else None
+        visited.lowest = None
+        if near.noise.colour > 0.0:
+            # Next to smooth noise, a small reduction by a sharp feature is a large gain.
+            if lines is None:
+                return Look(lowest.values, gain, np.inf, None)
+            before = float(np.sum(near.stacked()[0] ** 2))
+            r, j = near.samples.stacked(*lines, near.noise)
+            gain = max(gain, count * _log_ratio(before, float(r @ r)))
+            most = max(most, count * _log_ratio(before, unexplained_square(j, r)))
+        return Look(lowest.values, gain, most, lines)
+
+    def solution_of(self, look: Look, near: Solution) -> Solution:
+        """Return a first look as a solution, with the noise of the smaller model."""
+        problem, lines = self.problem, look.lines
+        samples = problem.samples_at(look.values, lines)
+        values = problem.wrapped(look.values)
+        return problem.solution(values, samples, near.noise, False, "not followed", lines)
+
+    def follow(
+        self,
+        evaluations: int,
+        least: float = np.inf,
+        followed: int = FOLLOWED,
+        steps: int = TRIAL_EVALUATIONS,
+        method: Method = "dogbox",
+    ) -> Solution:
+        """Continue the search.
+
+        Parameters
+        ----------
+        evaluations
+            Maximum number of evaluations; enough to rank candidates, or to converge.
+        least
+            Sum of squares, N^2, that the first steps must fall below; otherwise the search is not
+            continued.
+        followed, steps, method
+            Number of starting points tried, evaluations for each of them before only the best one
+            is followed, and method of these first searches.
+        """
+        problem, few, visited = self.problem, self.few, self.visited
+        some, starts = few.campaign.samples, self.starts
+        best = SearchResult(starts[0], False, "")
+        if len(starts) > 1:
+            trials = starts[:followed]
+            peaks = any(find_effect(name).peaks for name in problem.effects)
+            short = []
+            for start in trials:
+                short.append(search(few, some, start, WHITE, steps, method, visited))
+                if peaks:
+                    # Two searches that meet may separate again towards different maxima.
+                    visited.ended.clear()
+            best = min(short, key=lambda found: visited.square(few, some, found.values))
+        end = replace(best, converged=False, message="not followed")
+        if len(starts) == 1 or _square(problem, few, visited, best.values) < least:
+            if not best.converged or method != "dogbox":
+                # The search continues where an earlier one ended.
+                visited.ended.clear()
+                best = search(few, some, best.values, WHITE, evaluations, visited=visited)
+            # The minimum for all samples is near that for the thinned samples.
+            end = replace(best, converged=best.converged and few is problem)
+        values, lines = end.values, visited.lines_at(end.values) if few is problem else None
+        samples = problem.samples_at(values, lines)
+        noise = noise_at(problem, samples, values, lines)
+        values = problem.wrapped(values)
+        return problem.solution(values, samples, noise, end.converged, end.message, lines)
+
+
+def approach(
+    problem: Problem,
+    seeds: Sequence[Mapping[str, float]],
+    evaluations: int,
+    *,
+    followed: int = FOLLOWED,
+    steps: int = TRIAL_EVALUATIONS,
+    method: Method = "dogbox",
+) -> Solution:
+    """Run a complete approach: rank the starting points, then follow the best one."""
+    way = Approach(problem, seeds)
+    return way.follow(evaluations, followed=followed, steps=steps, method=method)
+
+
+def _log_ratio(before: float, after: float) -> float:
+    return float(np.log(max(before, 1e-300) / max(after, 1e-300)))
+
+
+def _square(problem: Problem, few: Problem, visited: Visited, values: Array) -> float:
+    """Sum of squares of weighted residuals over all samples, N^2."""
+    if few is problem:
+        return visited.square(problem, problem.campaign.samples, values)
+    return problem.square(values)
 
 
 def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> Solution:
@@ -81,10 +306,6 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
         if square(best) < square(near.values):
             near = settle(problem, problem.solution(best, samples, noise, False))
     return near
-
-
-NESTED_EVALUATIONS = 30
-"""Evaluations of a fit of the law without its effects. It limits the effort only."""
 
 
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:

@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.rows import MOST_SEARCHED
+from jbf.estimation.least_squares import MOST_SEARCHED
 from jbf.models.catalogue import find_effect, find_law
 from jbf.models.user_effects import UserEffect
 from jbf.models.user_laws import UserLaw

@@ -20,7 +20,6 @@ import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.scales import moving_samples
 from jbf.records.rig import Rig
 
 Array = npt.NDArray[np.float64]
@@ -69,7 +68,7 @@ def longest_pitch(campaign: Campaign) -> float:
 
     It is infinite for runs without travel.
     """
-    pairs = zip(campaign.prepared, moving_samples(campaign), strict=True)
+    pairs = zip(campaign.prepared, campaign.moving, strict=True)
     places = np.concatenate([p.motion.angle_rad[moving] for p, moving in pairs])
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     span = float(np.ptp(places)) * arm if len(places) else 0.0
@@ -141,7 +140,7 @@ def _remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
 
 
 def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
-    pairs = list(zip(campaign.prepared, moving_samples(campaign), strict=True))
+    pairs = list(zip(campaign.prepared, campaign.moving, strict=True))
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     place = np.concatenate([p.motion.angle_rad[m] for p, m in pairs]) * arm
     speed = np.concatenate([p.motion.velocity[m] for p, m in pairs])
@@ -208,6 +207,6 @@ def _sample_spacing(campaign: Campaign) -> float:
     arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
     steps = [
         np.abs(np.diff(p.motion.angle_rad))[m[1:] & m[:-1]]
-        for p, m in zip(campaign.prepared, moving_samples(campaign), strict=True)
+        for p, m in zip(campaign.prepared, campaign.moving, strict=True)
     ]
     return float(np.median(np.concatenate(steps))) * arm

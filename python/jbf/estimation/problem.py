@@ -19,12 +19,12 @@ from jbf.estimation.bounds import Bounds, bounded_pages
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.initial_state import has_unknown_start, memories, remembering
 from jbf.estimation.jumps import active_effects, moves_jumps, samples_near_jumps, spreads_jumps
+from jbf.estimation.least_squares import MOST_HELD, OnDemand, every_so_many, groups_of, triangular
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.rows import MOST_HELD, OnDemand, every_so_many, groups_of, triangular
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
-from jbf.estimation.starts import with_starts
+from jbf.estimation.starting_values import with_starts
 from jbf.models.catalogue import (
     Parameter,
     find_law,

@@ -17,10 +17,10 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
+from jbf.estimation.random_effects import BetweenRuns
 from jbf.estimation.settings import DEFAULT, Settings
 
 Array = npt.NDArray[np.float64]

@@ -2,11 +2,13 @@
 
 Searches of one problem share their evaluations. A search that continues where another ended does
 not evaluate that point again. A search that reaches a point visited by another one need not
-continue.
+continue. `other_peaks` finds further starting points where a parameter, such as a frequency that
+the samples cannot distinguish from others, causes many maxima of the likelihood.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -19,8 +21,6 @@ from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples
 
 Array = npt.NDArray[np.float64]
-Method = Literal["dogbox", "trf"]
-
 NEAR = 0.3
 """Largest relative difference of each parameter between two points that are close.
 
@@ -32,10 +32,15 @@ SAME = 0.1
 Both linear models must give at most this difference; the sums of squares then differ by about one
 hundredth. It is a numerical tolerance.
 """
-
-
 ENDED = 1e-6
 """Relative difference of sums of squares at which a search ends. It is a numerical tolerance."""
+REACH = 5.0
+"""Range of the scan, as a factor on the value upwards and downwards. It bounds a search only."""
+POINTS = 41
+"""Number of points of the scan. It is a numerical resolution."""
+CLIMBED = 2
+"""Number of maxima that are followed by a search. It limits the effort only."""
+Method = Literal["dogbox", "trf"]
 
 
 @dataclass(frozen=True)
@@ -205,3 +210,35 @@ def _one(a: Place, b: Place) -> bool:
     step = a.x - b.x
     most = SAME**2 * min(a.square, b.square)
     return all(float(np.sum((place.jacobian @ step) ** 2)) <= most for place in (a, b))
+
+
+def other_peaks(
+    square: Callable[[Array], float], values: Array, which: int, lower: float, upper: float
+) -> list[Array]:
+    """Best local minima of `square` along parameter number `which`, except the current one.
+
+    Parameters
+    ----------
+    square
+        Sum of squares as a function of the parameter values.
+    which
+        Index of the parameter.
+    lower, upper
+        Bounds of the parameter, a positive scale.
+    """
+    spread = np.log(REACH)
+    places = values[which] * np.exp(np.linspace(-spread, spread, POINTS))
+    places = places[(places > lower) & (places < upper)]
+
+    def moved(place: float) -> Array:
+        there: Array = values.copy()
+        there[which] = place
+        return there
+
+    found = np.array([square(moved(place)) for place in places])
+    around = np.pad(found, 1, constant_values=np.inf)
+    lowest = (found <= around[:-2]) & (found <= around[2:])
+    # Minima within the grid spacing are the current one.
+    lowest &= np.abs(np.log(places / values[which])) > spread / POINTS
+    best = sorted(np.flatnonzero(lowest), key=lambda k: found[k])[:CLIMBED]
+    return [moved(float(places[k])) for k in best]

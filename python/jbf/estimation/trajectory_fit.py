@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.estimation.determined import undetermined
 from jbf.estimation.estimates import Estimates
+from jbf.estimation.identifiability import undetermined
 from jbf.models.catalogue import Parameter, find_parameter, parameters_of
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.trajectory import Motion, is_record, motions_of, trajectories

@@ -5,7 +5,7 @@ import pytest
 from jbf import Rig, Run
 from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import errors_by_run
+from jbf.estimation.held_out import errors_by_run
 from scipy import stats
 
 OFFSET = "sensor_offset"

@@ -18,11 +18,11 @@ from jbf.diagnosis.residual_structure.constancy import (
     find_disagreement,
     run_specific_step,
 )
-from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.random_effects import BetweenRuns
 from jbf.estimation.solution import Solution
 from scipy import signal, stats
 from slides import VALUES, Array, numbers_in, slides, solution_with, white_noise

@@ -20,8 +20,8 @@ from jbf.diagnosis.terms.proposal import is_accepted
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.robust import robust_size
 from jbf.estimation.solution import Solution
+from jbf.estimation.variance import robust_size
 from linear_campaigns import fit_from_truth, reversing_runs
 from scipy import special, stats
 from term_models import model_of

@@ -9,9 +9,9 @@ from campaigns import campaign as simulated
 from jbf import Rig, diagnose
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.residual_structure import find_patterns, find_residual_structure
-from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise
+from jbf.estimation.random_effects import BetweenRuns
 from known_motions import quantised
 from slides import Array, friction_of, numbers_in, slide, slides, solution_with, white_noise
 

@@ -10,9 +10,9 @@ import pytest
 from jbf.diagnosis.candidates import Candidates
 from jbf.diagnosis.which_law import held_out_errors
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.generalised_least_squares import with_motion_errors
 from jbf.estimation.minimum import minimum
 from jbf.estimation.problem import Problem
-from jbf.estimation.refine import with_motion_errors
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "simulator"))
 

@@ -8,7 +8,7 @@ from jbf.diagnosis import Remainder
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.residual_structure.constancy import find_stroke_levels
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.units import stroke_of
+from jbf.estimation.held_out_comparison import stroke_of
 from scipy import signal, stats
 from slides import Array, friction_of, numbers_in, slides, solution_with, white_noise
 

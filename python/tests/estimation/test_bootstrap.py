@@ -15,15 +15,15 @@ from jbf.estimation.bootstrap import (
     bootstrap,
     check_repeats,
     innovation_sizes,
+    recorded_by,
     simulated_readings,
     simulated_recording,
     with_error,
 )
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.determined import undetermined
+from jbf.estimation.identifiability import undetermined
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.wild_bootstrap import recorded_by
 
 PAGE = Parameter("b", lower=-1e5, upper=1e5, null=0.0, starts=(0.3,))
 SCALE = Parameter("F_c", lower=0.0, upper=1e5, starts=(1.0,))

@@ -11,8 +11,8 @@ import pytest
 from by_hand import Array, coulomb
 from jbf import InputError, Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.converter import curve_rms, noise_before
 from jbf.estimation.prepared import Prepared
+from jbf.estimation.quantisation import curve_rms, noise_before
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
 from known_motions import integrated, reversing_force

@@ -22,10 +22,10 @@ from jbf import Rig, Run
 from jbf.diagnosis.terms import shifts
 from jbf.diagnosis.terms.delays import delays, explained_by_delays
 from jbf.diagnosis.terms.proposal import is_accepted
-from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.joint_lateness import drift_step
+from jbf.estimation.delays import drift_step
 from jbf.estimation.problem import Problem
+from jbf.estimation.random_effects import BetweenRuns
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding

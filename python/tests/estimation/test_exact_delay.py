@@ -13,13 +13,13 @@ from by_hand import LAW, Array, coulomb
 from delayed_runs import DELAY, fitted, value
 from jbf import Model, ParameterValue, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.exact_delay import LEAST_STEPS, exact_delay
+from jbf.estimation.delay_scan import LEAST_STEPS, exact_delay
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from jbf.estimation.spread import Spread, spread
+from jbf.estimation.standard_errors import Spread, spread
 from jbf.models.delayed_reading import TAU, DelayedChain
 from jbf.models.driven_motion import reversals
 from jbf.records.motion.estimated_motion import EstimatedMotion

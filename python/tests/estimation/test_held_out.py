@@ -13,9 +13,8 @@ from by_hand import LAW, Array, coulomb, four_runs, one_way, wandering
 from jbf import Parameter, Rig, Run, diagnose, forget_effect, register_effect
 from jbf.diagnosis.confirmation import Confirmation
 from jbf.diagnosis.policy import DEFAULT
-from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import (
+from jbf.estimation.held_out import (
     HeldOutPart,
     errors_by_run,
     held_out_by_run,
@@ -28,6 +27,7 @@ from jbf.estimation.left_out import (
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.random_effects import BetweenRuns
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution

@@ -12,16 +12,20 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_gaps import samples_affected_by_gaps
 from jbf.estimation.initial_state import Memory, memories, remembering
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
-from jbf.estimation.run_start import settled_again, settled_campaign, unsettled
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
+from jbf.estimation.transients import (
+    samples_affected_by_gaps,
+    settled_again,
+    settled_campaign,
+    unsettled,
+)
 from jbf.models.chain import core_motion
 
 NOISE_N = 0.05

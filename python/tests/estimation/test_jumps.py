@@ -16,6 +16,7 @@ from jbf import Model, Parameter, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.jumps import (
     active_effects,
+    instant_errors_n,
     jumps,
     moves_jumps,
     samples_near_jumps,
@@ -23,7 +24,6 @@ from jbf.estimation.jumps import (
 )
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
-from jbf.estimation.reversals import instant_errors_n
 from jbf.models.catalogue import parameters_of
 from jbf.records.motion.estimated_motion import EstimatedMotion
 from rigsim.motions import sine

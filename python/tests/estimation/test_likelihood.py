@@ -17,9 +17,10 @@ from coulomb_problems import (
     solution_of,
     values_of,
 )
-from jbf.estimation import likelihood, long_run
-from jbf.estimation.between_runs import BetweenRuns
-from jbf.estimation.robust import clipped_square, robust_size
+from jbf.estimation import likelihood
+from jbf.estimation import variance as long_run
+from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation.variance import clipped_square, robust_size
 from scipy import linalg, stats
 
 

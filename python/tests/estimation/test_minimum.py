@@ -9,17 +9,16 @@ from by_hand import LAW, Array, coulomb, four_runs
 from campaigns import campaign
 from coulomb_problems import HELD, STEP_S, autoregressive, coulomb_problem
 from jbf import Run
-from jbf.estimation.approach import approach
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import held_out_rms
+from jbf.estimation.held_out import held_out_rms
 from jbf.estimation.likelihood import likelihood_gain
-from jbf.estimation.minimum import minimum, search_peaks, settle
+from jbf.estimation.minimum import approach, minimum, search_peaks, settle
 from jbf.estimation.noise import Noise
-from jbf.estimation.peaks import other_peaks
 from jbf.estimation.problem import Problem
+from jbf.estimation.robust_fit import best_weighting, huber, student
+from jbf.estimation.search import other_peaks
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
-from jbf.estimation.weighting import best_weighting, huber, student
 
 NOISE_N = 0.1
 

@@ -16,11 +16,11 @@ from by_hand import Array, coulomb, four_runs, one_way
 from campaigns import campaign
 from coulomb_problems import STEP_S, arma_innovations, autoregressive, coulomb_problem, values_of
 from jbf import Rig, Run, fit
-from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
-from jbf.estimation.noise_at import noise_at
 from jbf.estimation.noise_floor import noise_floor, noise_upper_bound
+from jbf.estimation.random_effects import BetweenRuns
 from linear_campaigns import mass
 from scipy import optimize, signal
 

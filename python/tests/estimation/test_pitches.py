@@ -13,7 +13,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.pitches import known_pitches, longest_pitch, pitches
 from jbf.estimation.problem import Problem
 from jbf.estimation.settings import DEFAULT as SETTINGS
-from jbf.estimation.stroke import BEYOND, SHORTEST_M, stroke
+from jbf.estimation.starting_values import BEYOND, SHORTEST_M, stroke
 from jbf.records.drive import Drive
 
 STEP_S, NOISE_N = 0.01, 0.2

@@ -8,10 +8,10 @@ from by_hand import coulomb, four_runs
 from coulomb_problems import VALUES, coulomb_problem, values_of
 from jbf import InputError, Parameter, Rig, Run
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.least_squares import MOST_SEARCHED, every_so_many, triangular
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import BOUNDLESS, Problem, bounded, named_values
-from jbf.estimation.rows import MOST_SEARCHED, every_so_many, triangular
 
 OFFSET = "sensor_offset.b"
 

@@ -14,9 +14,9 @@ from jbf import Rig, Run
 from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.terms.quantiser import without_bias
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.converter import MOST_NOISE, bias_n, curve_rms, noise_before, origin_n
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.quantisation import MOST_NOISE, bias_n, curve_rms, noise_before, origin_n
 from jbf.estimation.solution import Solution
 from scipy import integrate, stats
 

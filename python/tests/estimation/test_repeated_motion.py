@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf.estimation.replicates import period_samples
+from jbf.estimation.noise_floor import period_samples
 
 
 def wave(count: int, period: int) -> Array:

@@ -11,12 +11,11 @@ import pytest
 from by_hand import Array
 from coulomb_problems import STEP_S, arma_innovations, samples_of
 from jbf import Rig, Run
-from jbf.estimation.between_runs import BetweenRuns
-from jbf.estimation.blocks import blocks_of
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise
-from jbf.estimation.random_effect import spread_between
+from jbf.estimation.random_effects import BetweenRuns, spread_between
 from jbf.estimation.samples import Samples
+from jbf.estimation.variance import blocks_of
 from scipy import linalg, stats
 
 COUNTED = (np.array([True, True, False, True]), np.array([True, False, True]))

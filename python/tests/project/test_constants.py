@@ -19,39 +19,38 @@ NUMERICAL = {
         diagnosis.power.distinction: NEVER MOST FURTHER
         diagnosis.check: SURE
         diagnosis.decoys: DRAWS SURE
-        diagnosis.experiment_design.excitations: MOST_SAMPLES RATES_RAD_S SHARES STOP_SHARES REST_S
-        diagnosis.experiment_design.excitations: USUAL_RATE_RAD_S
-        diagnosis.experiment_design.plan: ENOUGH MORE
-        diagnosis.power.detection_limits: LEVELS NEARLY_ALL BEYOND
-        diagnosis.experiment_design.next_run: LEAST_SAMPLES
-        diagnosis.power.strength: DRAWS
-        estimation.curvature: BENT
-        estimation.exact_delay: LEAST_STEPS CLIPPED BLURRED
+        diagnosis.excitations: RATES_RAD_S SHARES STOP_SHARES REST_S USUAL_RATE_RAD_S
+        diagnosis.plan: ENOUGH MORE
+        diagnosis.power: LEVELS NEARLY_ALL BEYOND FURTHER
+        diagnosis.separation: MOST_SAMPLES LEAST_SAMPLES
+        diagnosis.strength: DRAWS
+        estimation.delay_scan: LEAST_STEPS CLIPPED BLURRED
+        estimation.robust_fit: TUNING FREEDOM ELSEWHERE BETTER NO_WORSE SHARPER
+        estimation.standard_errors: BENT
         estimation.trajectory_fit: REST_SHARE
-        estimation.weighting: TUNING FREEDOM ELSEWHERE BETTER NO_WORSE SHARPER
     """,
     "text of a result": """
         diagnosis.residual_structure.bursts: APART_S NAMED
         diagnosis.residual_structure.constancy: NAMED MOST_REPORTED
         diagnosis.selection: LESS
-        estimation.determined: ONE_SIDED
+        estimation.identifiability: ONE_SIDED
     """,
     "tolerance of a numerical comparison or of an iteration": """
         diagnosis.residual_structure.bursts: NO_NOISE
         diagnosis.power.detection_limits: AGREES
         diagnosis.experiment_design.next_run: NO_NOISE
         diagnosis.terms.shifts: SETTLED
-        estimation.determined: AT_BOUND
-        estimation.joint_lateness: RANK
-        estimation.left_out: SHORT STRAIGHT NOTHING
-        estimation.likelihood: INDEPENDENT
+        estimation.bounds: AT_BOUND
+        estimation.delays: RANK
+        estimation.generalised_least_squares: SETTLED EXACT_RECORD
+        estimation.held_out: SHORT STRAIGHT NOTHING
+        estimation.identifiability: SAME_IN_NOISE SAME_IN_FRICTION
+        estimation.least_squares: INDEPENDENT
         estimation.problem: BOUNDLESS
-        estimation.put_back: SAME_IN_NOISE SAME_IN_FRICTION
-        estimation.random_effect: ROUNDING
-        estimation.refine: SETTLED EXACT_RECORD
+        estimation.random_effects: ROUNDING
         estimation.search: NEAR SAME ENDED
-        estimation.spread: INSENSITIVE SINGULAR TAKES_PART
-        estimation.stroke: SHORTEST_M
+        estimation.standard_errors: INSENSITIVE SINGULAR TAKES_PART
+        estimation.starting_values: SHORTEST_M
     """,
     "limits computing time or memory; an exceeded budget is reported": """
         diagnosis.candidates: RANKING_EVALUATIONS
@@ -59,16 +58,15 @@ NUMERICAL = {
         diagnosis.terms.proposal: EVALUATIONS
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
         diagnosis.terms.shifts: EVALUATIONS STEPS
-        estimation.approach: TRIAL_EVALUATIONS FOLLOWED MANY LIKELY LOOKED
-        estimation.left_out: EVALUATIONS
-        estimation.minimum: MAX_EVALUATIONS FOLLOWED_IN_A_FIT NESTED_EVALUATIONS
-        estimation.parallel_fits: MOST_AT_ONCE
-        estimation.peaks: CLIMBED
+        estimation.generalised_least_squares: ROUNDS EVALUATIONS
+        estimation.held_out: EVALUATIONS
+        estimation.least_squares: MOST_HELD MOST_SEARCHED GROUP
+        estimation.minimum: TRIAL_EVALUATIONS FOLLOWED MANY LIKELY LOOKED MAX_EVALUATIONS
+        estimation.minimum: FOLLOWED_IN_A_FIT NESTED_EVALUATIONS
         estimation.problem: SLOPES_COST
-        estimation.refine: ROUNDS EVALUATIONS
-        estimation.rows: MOST_HELD MOST_SEARCHED GROUP
-        estimation.run_start: RANKING_EVALUATIONS
-        estimation.weighting: ROUNDS
+        estimation.robust_fit: ROUNDS
+        estimation.search: CLIMBED
+        estimation.transients: RANKING_EVALUATIONS
         estimation.work: STEPS_A_SAMPLE ANY_STEPS
     """,
     "rejects impossible input": """
@@ -78,44 +76,44 @@ NUMERICAL = {
     """,
     "resolution of a grid, a derivative or a number of draws": """
         diagnosis.level: DRAWS
-        diagnosis.residual_structure.periodic: MOST_BINS PADDING
-        estimation.converter: HARMONICS
-        estimation.exact_delay: COARSE FINE
-        estimation.film_gaps: EDGE
-        estimation.lateness: FINE_S
-        estimation.peaks: POINTS
+        diagnosis.ripples: MOST_BINS PADDING
+        estimation.delays: FINE_S
+        estimation.delay_scan: COARSE FINE
+        estimation.generalised_least_squares: STEP INTENSITY_STEP
+        estimation.identifiability: SHARES
         estimation.pitches: MOST_BINS PADDING
         estimation.prepared: FINER
-        estimation.put_back: SHARES
-        estimation.refine: STEP INTENSITY_STEP
+        estimation.quantisation: HARMONICS
+        estimation.search: POINTS
+        estimation.transients: EDGE
     """,
     "range of a search, wider than any plausible result": """
-        diagnosis.power.detection_limits: EXPONENTS
-        estimation.converter: MOST_NOISE
-        estimation.exact_delay: REACH LEAST_REACH_STEPS
-        estimation.peaks: REACH
-        estimation.refine: LEAST_NOISE LEAST_INTENSITY
+        diagnosis.power: POWERS
+        estimation.delay_scan: REACH LEAST_REACH_STEPS
+        estimation.generalised_least_squares: LEAST_NOISE LEAST_INTENSITY
+        estimation.quantisation: MOST_NOISE
+        estimation.search: REACH
     """,
     "property of a distribution or an estimator, no choice": """
         diagnosis.terms.noise_variance: ERROR
         estimation.campaign: NOISE_SPAN
-        estimation.reversals: MOST
+        estimation.jumps: MOST
     """,
     "starting values of searches": """
         diagnosis.terms.noise_variance: START_FREEDOM
+        estimation.campaign: HUM
+        estimation.generalised_least_squares: SIMPLEX
         estimation.pitches: LINES BINS_A_PITCH KNOTS
-        estimation.refine: SIMPLEX
-        estimation.scales: HUM
-        estimation.starts: CELL_ERROR RULES LINEAR_RULES CAMPAIGN_RULES RULES_OF_ANY_LAW
+        estimation.starting_values: CELL_ERROR RULES LINEAR_RULES CAMPAIGN_RULES RULES_OF_ANY_LAW
     """,
     "definition of an effect": """
-        estimation.stroke: BEYOND
+        estimation.starting_values: BEYOND
     """,
 }
 """Constants outside the policy: why they decide nothing, and their names by module."""
 COMPARED = {
     ("estimation.bootstrap", 100.0),  # the bootstrap enters no verdict
-    ("estimation.reversals", 3.0),  # three values have a second difference
+    ("estimation.jumps", 3.0),  # three values have a second difference
     ("estimation.trajectory_fit", 1e6),  # a fit of simulated motions enters no verdict
 }
 """Numbers other than 0, 1, 2 and a half in comparisons."""

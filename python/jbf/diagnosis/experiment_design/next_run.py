@@ -25,7 +25,7 @@ from jbf.diagnosis.fit_state import Fitted
 from jbf.diagnosis.power.detection_limits import Power
 from jbf.diagnosis.power.distinction import detection_probability
 from jbf.diagnosis.power.strength import at_usual_strength
-from jbf.estimation.likelihood import unexplained_square
+from jbf.estimation.least_squares import unexplained_square
 from jbf.models.catalogue import find_effect
 from jbf.models.driven import Driven
 from jbf.records.run import PathLike, Run

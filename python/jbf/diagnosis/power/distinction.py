@@ -20,7 +20,7 @@ import numpy.typing as npt
 from scipy import optimize, special
 
 from jbf.diagnosis.power.strength import PresentRuns, Strength
-from jbf.estimation.likelihood import spanned
+from jbf.estimation.least_squares import spanned
 
 Array = npt.NDArray[np.float64]
 

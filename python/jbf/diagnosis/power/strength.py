@@ -13,10 +13,10 @@ import numpy.typing as npt
 
 from jbf.diagnosis.candidates import Candidates
 from jbf.estimation.likelihood import effective_share
-from jbf.estimation.long_run import sure_inflation
 from jbf.estimation.noise import estimate_noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import common_samples
+from jbf.estimation.variance import sure_inflation
 from jbf.models.catalogue import Parameter
 
 Array = npt.NDArray[np.float64]

@@ -26,10 +26,10 @@ from scipy import special
 
 from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import DEFAULT, Policy
-from jbf.estimation.long_run import score_square
+from jbf.estimation.held_out_comparison import Strokes, stroke_of
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from jbf.estimation.units import Strokes, stroke_of
+from jbf.estimation.variance import score_square
 from jbf.models.catalogue import find_effect
 from jbf.models.parameter_units import unit_of
 

@@ -23,11 +23,11 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.policy_residual import Ripples
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.long_run import long_run_variance
+from jbf.estimation.noise_floor import period_samples
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.replicates import period_samples
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
+from jbf.estimation.variance import long_run_variance
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]

@@ -23,7 +23,7 @@ from jbf.diagnosis.terms.shifts import (
     with_mean_delay,
 )
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.joint_lateness import drift_step, lateness_step
+from jbf.estimation.delays import drift_step, run_delay_step
 from jbf.estimation.jumps import samples_near_jumps
 from jbf.estimation.likelihood import independent_share
 from jbf.estimation.solution import Solution
@@ -87,7 +87,7 @@ def _estimates(model: Model) -> list[Shifted]:
     problem, solution, policy = model.problem, model.solution, model.policy
     start = Shifted(problem, solution, np.zeros(len(problem.campaign.prepared)), 0.0)
     estimates = []
-    if lateness_step(problem, solution).chance < policy.terms.chance:
+    if run_delay_step(problem, solution).p_value < policy.terms.chance:
         by_run = fit_delays_by_run(problem, start)
         estimates.append(by_run if _significant(by_run, policy) else with_mean_delay(by_run))
     if not known_delays(problem.campaign):
@@ -114,7 +114,7 @@ def _significant(found: Shifted, policy: Policy) -> bool:
             / drift_step(problem, solution).variance
         )
         # A delay common to all runs resembles a drift.
-        beside = drift_step(problem, solution, beside_delay=True)
+        beside = drift_step(problem, solution, with_delay=True)
         left = (found.drift + beside.drift) ** 2 / beside.variance
         return bool(
             special.chdtrc(1, square) < policy.terms.chance
@@ -122,8 +122,8 @@ def _significant(found: Shifted, policy: Policy) -> bool:
         )
     if np.ptp(found.late_s) == 0.0:
         return bool(found.late_s[0] < 0.0)
-    step = lateness_step(problem, solution)
-    return step.differ_chance(found.late_s) < policy.terms.chance
+    step = run_delay_step(problem, solution)
+    return step.differences_p_value(found.late_s) < policy.terms.chance
 
 
 def _gain(found: Shifted, other: Solution, share: float) -> float:
@@ -152,8 +152,8 @@ def _volume(found: Shifted) -> float:
     """Logarithm of the determinant of the covariance of delays that differ between runs."""
     if found.drift != 0.0 or np.ptp(found.late_s) == 0.0:
         return 0.0
-    step = lateness_step(found.problem, found.solution)
-    known = found.late_s[step.determined]
+    step = run_delay_step(found.problem, found.solution)
+    known = found.late_s[step.identifiable]
     if len(known) < 2:
         return 0.0
     variance = float(np.var(known, ddof=1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
-from jbf.estimation.refine import with_motion_errors_again
+from jbf.estimation.generalised_least_squares import with_motion_errors_again
 
 
 def errors_of_motion(model: Model) -> Proposal | None:

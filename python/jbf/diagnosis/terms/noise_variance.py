@@ -16,8 +16,8 @@ from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term, refitted
 from jbf.estimation.likelihood import effective_share
 from jbf.estimation.problem import Problem
-from jbf.estimation.robust import robust_size
 from jbf.estimation.solution import Solution
+from jbf.estimation.variance import robust_size
 from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]

@@ -10,14 +10,13 @@ from scipy import special
 
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.left_out import held_out_by_run
-from jbf.estimation.likelihood import effective_share
-from jbf.estimation.long_run import sure_inflation
-from jbf.estimation.noise_at import noise_at
+from jbf.estimation.held_out import held_out_by_run
+from jbf.estimation.likelihood import effective_share, noise_at
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
+from jbf.estimation.variance import sure_inflation
 
 EVALUATIONS = 8
 """Number of evaluations of a fit with a term. It limits the effort only."""

@@ -15,9 +15,9 @@ from scipy import optimize
 from jbf.diagnosis.policy import Policy
 from jbf.diagnosis.terms.proposal import Model, Proposal, independent_fraction, price_of_term
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.converter import bias_n, origin_n
-from jbf.estimation.noise_at import noise_at
+from jbf.estimation.likelihood import noise_at
 from jbf.estimation.problem import Problem
+from jbf.estimation.quantisation import bias_n, origin_n
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 

@@ -1,7 +1,7 @@
 """Random effects between runs: offset, drift and gain of the sensor, temperature of the oil.
 
 The deviation of a run from the campaign is a Gaussian random effect. Its standard deviation is
-estimated from the runs (`estimation.between_runs`).
+estimated from the runs (`estimation.random_effects`).
 """
 
 from __future__ import annotations
@@ -18,13 +18,12 @@ from jbf.diagnosis.terms.proposal import (
     price_of_term,
     refitted,
 )
-from jbf.estimation.between_runs import BetweenRuns
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
-from jbf.estimation.random_effect import spread_between
-from jbf.estimation.robust import robust_size
+from jbf.estimation.random_effects import BetweenRuns, spread_between
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
+from jbf.estimation.variance import robust_size
 from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]

@@ -9,16 +9,16 @@ import numpy.typing as npt
 
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.joint_lateness import drift_step, lateness_step
-from jbf.estimation.lateness import lateness
+from jbf.estimation.delay_scan import scan_delays
+from jbf.estimation.delays import drift_step, run_delay_step
+from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE
-from jbf.estimation.noise_at import noise_at
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
-from jbf.estimation.run_start import settled_campaign
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
+from jbf.estimation.transients import settled_campaign
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
@@ -134,8 +134,8 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
     now = replace(start, solution=replace(start.solution, noise=WHITE))
     white = True
     for _ in range(STEPS):
-        step = lateness_step(now.problem, now.solution)
-        if step.square <= SETTLED**2 * np.sum(step.determined):
+        step = run_delay_step(now.problem, now.solution)
+        if step.square <= SETTLED**2 * np.sum(step.identifiable):
             if not white:
                 break
             white = False
@@ -143,9 +143,9 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
             continue
         # Where delays differ between runs, a common delay is also attributed to the recording.
         known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
-        later_s = np.clip(step.late_s, -linear_s, linear_s) + known.get(TAU, 0.0)
+        later_s = np.clip(step.delays_s, -linear_s, linear_s) + known.get(TAU, 0.0)
         late_s = now.late_s + later_s
-        late_s[~step.determined] = step.mean_s(late_s)
+        late_s[~step.identifiable] = step.mean_s(late_s)
         apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
         if apart_s > settings.search_ranges_s[0][0] or not possible_clocks(
             first, late_s, start.drift
@@ -196,7 +196,7 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
 def with_mean_delay(shifted: Shifted) -> Shifted:
     """Shift all runs by the mean of their delays."""
     problem, solution = shifted.problem, shifted.solution
-    mean_s = lateness_step(problem, solution).mean_s(shifted.late_s)
+    mean_s = run_delay_step(problem, solution).mean_s(shifted.late_s)
     change_s = mean_s - shifted.late_s
     known = dict(zip(problem.names, solution.values.tolist(), strict=True))
     campaign = moved(problem, change_s, 0.0)
@@ -212,7 +212,7 @@ def _coloured(shifted: Shifted) -> Shifted:
 
 
 def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
-    """Shift the runs repeatedly to the delays with the smallest sums of squares (`lateness`).
+    """Shift the runs repeatedly to the delays with the smallest sums of squares (`scan_delays`).
 
     None if the delays do not differ, do not drift, and are not negative.
     """
@@ -220,13 +220,13 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
     for look in range(policy.delays.max_searches):
-        found = lateness(problem, solution, look, policy.terms.chance)
+        found = scan_delays(problem, solution, look, policy.terms.chance)
         if found is None:
             break
         # Where delays differ between runs, a common delay is also attributed to the recording.
         known = dict(zip(problem.names, solution.values.tolist(), strict=True))
         shared = known.get(TAU, 0.0) if found.spread_s > 0.0 else 0.0
-        later_s, drifted = late_s + np.array(found.late_s) + shared, drift + found.drift
+        later_s, drifted = late_s + np.array(found.delays_s) + shared, drift + found.drift
         if look > 0 and found.drift != 0.0 and found.spread_s == 0.0:
             # The drift was already corrected at the middle of the runs.
             later_s = late_s

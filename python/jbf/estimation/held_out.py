@@ -1,6 +1,7 @@
-"""Held-out error: prediction of runs that the fit did not use, each held out once.
+"""Held-out errors: prediction of samples that the fit did not use, each held out once.
 
-With many runs, several are held out at a time.
+Runs are held out in turn; with many runs, several at a time. A single run, and a run beyond the
+range of all others, is divided into parts of which alternate ones are held out.
 """
 
 from __future__ import annotations
@@ -12,9 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.held_out_ranges import alternate_parts
+from jbf.estimation.least_squares import triangular
 from jbf.estimation.problem import Problem
-from jbf.estimation.rows import triangular
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
@@ -22,7 +22,6 @@ from jbf.models.catalogue import find_effect
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
 EVALUATIONS = 12
 """Evaluations of a refit; it starts one Gauss-Newton step from the solution of all runs.
 
@@ -348,3 +347,9 @@ def _halves(problem: Problem, solution: Solution) -> list[HeldOutPart]:
         determined = np.ones(solution.free, dtype=bool)
         parts.append(HeldOutPart((0,), (half,), determined, tuple(problem.residuals(values))))
     return parts
+
+
+def alternate_parts(count: int, parts: int) -> Mask:
+    """Mask of the first, third, ... of a number of equal parts of a run, shape (count,)."""
+    found: Mask = (np.arange(count) * parts // max(count, 1)) % 2 == 0
+    return found

@@ -10,9 +10,9 @@ from input_errors import input_error
 from jbf import InputError, Lubricant, Rig, Run
 from jbf.diagnosis.which_law import followed
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_rate import check_film
 from jbf.estimation.problem import Problem
 from jbf.estimation.settings import DEFAULT as SETTINGS
+from jbf.estimation.transients import check_film
 from jbf.models.chain import chain
 
 

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.estimation.campaign import Campaign
+from jbf.estimation.delays import common_delay_step, delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
-from jbf.estimation.joint_lateness import delay_slope, delay_step
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared, coasting
 from jbf.estimation.problem import Problem
@@ -24,7 +24,6 @@ from jbf.records.findings.finding import Finding
 from jbf.records.motion.estimated_motion import EstimatedMotion
 
 Array = npt.NDArray[np.float64]
-
 ROUNDS = 8
 """Largest number of iterations of sensitivities and fits. It limits the effort only."""
 SETTLED = 0.01
@@ -337,7 +336,7 @@ def _delay(
     if TAU in problem.names:
         return 0.0
     white = replace(solution, samples=replace(solution.samples, motion=motion), noise=WHITE)
-    step_s, sd_s = delay_step(problem, white)
+    step_s, sd_s = common_delay_step(problem, white)
     settings = problem.campaign.settings.motion
     if late_s == clock_s and abs(step_s) < settings.min_delay_sigma * sd_s:
         return 0.0

@@ -20,8 +20,6 @@ MOST_NOISE = 3.0
 
 It bounds a search only.
 """
-
-
 HARMONICS = 3
 """Number of harmonics of the bias; higher ones matter only for noise below a tenth of a step.
 

@@ -9,22 +9,22 @@ import numpy as np
 import pytest
 from by_hand import LAW, coulomb, there_and_back
 from jbf import Fit, Parameter, ParameterValue, Rig, fit
+from jbf.estimation.bounds import bound_note
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.determined import (
+from jbf.estimation.fit import finish
+from jbf.estimation.identifiability import (
     HELD,
     NEVER_MOVED,
     NO_EFFECT,
     NOT_SEPARATE,
     at_null,
-    bound_note,
     idle_effects,
+    put_back,
     undetermined,
 )
-from jbf.estimation.fit import finish
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.put_back import put_back
-from jbf.estimation.spread import spread
+from jbf.estimation.standard_errors import spread
 
 RUNS = there_and_back(coulomb, noise_rms=0.1)
 """Two runs at 0.05 to 0.15 m/s without rests or reversals."""

@@ -11,13 +11,14 @@ from by_hand import Array
 from campaigns import campaign
 from jbf import InputError, Parameter, Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.scales import Scales, moving_samples, scales
-from jbf.estimation.starts import (
+from jbf.estimation.starting_values import (
     CAMPAIGN_RULES,
     LINEAR_RULES,
     RULES,
     RULES_BESIDE_THE_CATALOGUE,
     RULES_OF_ANY_LAW,
+    Scales,
+    scales,
     with_starts,
 )
 from jbf.models.catalogue import effects, laws, parameters_of
@@ -256,7 +257,7 @@ def test_rest_and_speeds_below_two_percent_of_the_top_do_not_count_as_motion() -
 
     def moving(second_half: Array) -> Array:
         run = Run.from_arrays(t, np.where(half, v, second_half), np.sign(v))
-        (mask,) = moving_samples(Campaign.prepare(Rig(), [run]))
+        (mask,) = Campaign.prepare(Rig(), [run]).moving
         assert mask[half].mean() > 0.9
         return mask[~half]
 

@@ -1,10 +1,10 @@
-"""Run-to-run deviations that are not effects, such as the load cell's zero or the oil temperature.
+"""Random effects: deviations between runs, such as the load cell's zero or the oil temperature.
 
 Each run deviates from the campaign by a zero-mean Gaussian amount whose spread is estimated from
-the runs: a random effect (Laird & Ware 1982). The residuals of a run are then correlated in the
-directions of these deviations. After whitening by this correlation, likelihood, score tests and
-standard errors have their usual form. Tests of the residual structure use residuals from which the
-best linear predictions of the deviations are subtracted.
+the runs (Laird & Ware 1982). The residuals of a run are then correlated in the directions of these
+deviations. After whitening by this correlation, likelihood, score tests and standard errors have
+their usual form. Tests of the residual structure use residuals from which the best linear
+predictions of the deviations are subtracted.
 """
 
 from __future__ import annotations
@@ -14,10 +14,32 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy import special
 
 from jbf.estimation.noise import Noise
 
 Array = npt.NDArray[np.float64]
+ROUNDING = 1e-9
+"""Fraction of the total precision below which the precision of other runs is a rounding error.
+
+It is a numerical tolerance.
+"""
+
+
+def spread_between(estimates: Array, precisions: Array) -> tuple[float, float, float]:
+    """Standard deviation between runs, its p-value, and the ratio of the variance to chance.
+
+    The standard deviation is zero where the runs agree.
+    """
+    mean = float(np.sum(precisions * estimates) / np.sum(precisions))
+    q, free = float(np.sum(precisions * (estimates - mean) ** 2)), len(estimates) - 1
+    # Residuals are never as white as assumed, so twice the chi-square is required.
+    chance = float(special.chdtrc(free, 0.5 * q))
+    whole = float(np.sum(precisions))
+    apart = whole - float(np.sum(precisions**2)) / whole
+    # If one run has all of the precision, the others do not determine a spread.
+    variance = (q - free) / apart if apart > ROUNDING * whole else 0.0
+    return float(np.sqrt(max(variance, 0.0))), chance, q / free
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.left_out import held_out_residuals
+from jbf.estimation.held_out import held_out_residuals
 from jbf.estimation.minimum import MAX_EVALUATIONS
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
@@ -21,7 +21,6 @@ from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
-
 TUNING = 1.345
 """Huber's constant: limit of the influence of a residual, in robust standard deviations.
 

@@ -1,6 +1,7 @@
-"""Processing of many samples without holding all rows in memory.
+"""Linear least squares by blocks of rows, with a limited use of memory.
 
-The derivatives of a recording of days alone would fill the memory of a machine.
+The derivatives of a recording of days alone would fill the memory of a machine. They are computed
+run by run, and reduced to triangular factors.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
-
 MOST_HELD = 2_000_000
 """Largest number of values (samples times parameters) that a solution holds.
 
@@ -27,6 +27,11 @@ GROUP = 16_000_000
 """Largest number of derivatives held at a time during the computation of a solution.
 
 It limits the effort only.
+"""
+INDEPENDENT = 1e-10
+"""Relative singular value above which a direction of a design is independent.
+
+It is a numerical tolerance.
 """
 
 
@@ -92,3 +97,39 @@ def triangular(r: Array, j: Array) -> tuple[Array, Array]:
     rows: Array = np.column_stack([j, r])
     factor = np.asarray(np.linalg.qr(rows, mode="r"), dtype=np.float64)
     return factor[:, -1], factor[:, :-1]
+
+
+def least_squares(design: Array, target: Array) -> Array:
+    """Shortest least-squares step in the columns of a design, each scaled to unit length."""
+    size = np.linalg.norm(design, axis=0)
+    size[size <= 0.0] = 1.0
+    left, axes = triangular(target, design / size)
+    step, *_ = np.linalg.lstsq(axes, left, rcond=INDEPENDENT)
+    return np.asarray(step / size)
+
+
+def unexplained(design: Array, target: Array) -> Array:
+    """Part of a target that linear combinations of the columns of a design do not explain."""
+    # Scale by powers of two, which are exact, so that the squares of large columns do not overflow.
+    _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
+    design = np.ldexp(design, -power)
+    size = np.linalg.norm(design, axis=0)
+    design = design[:, size > 0.0] / size[size > 0.0]
+    step, *_ = np.linalg.lstsq(design, target, rcond=INDEPENDENT)
+    return np.asarray(target - design @ step)
+
+
+def spanned(design: Array) -> Array:
+    """Orthonormal columns that span those of a design, shape (n, rank)."""
+    _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
+    design = np.ldexp(design, -power)
+    size = np.linalg.norm(design, axis=0)
+    axes, sizes, _ = np.linalg.svd(design[:, size > 0.0] / size[size > 0.0], full_matrices=False)
+    span: Array = axes[:, sizes > INDEPENDENT * np.max(sizes, initial=0.0)]
+    return span
+
+
+def unexplained_square(design: Array, target: Array) -> float:
+    """Sum of squares of the part of a target that a design does not explain."""
+    left = unexplained(design, target)
+    return float(left @ left)

@@ -1,9 +1,15 @@
-"""Long-run (HAC) variance of scores: the variance of sums over autocorrelated residuals.
+"""Variance of statistics of residuals that are not independent Gaussian noise.
 
 If the noise model is correct, innovations are white, and the variance of a score is its squared
 length. This fails for noise with a longer correlation time, heavy-tailed noise, or heteroscedastic
-noise related to the score. The variance is then estimated from the score of the record, summed over
-windows longer than the correlation time (Bartlett kernel; Newey & West 1987).
+noise related to the score.
+
+Notes
+-----
+The long-run (HAC) variance is estimated from the score of the record, summed over windows longer
+than the correlation time (Bartlett kernel; Newey & West 1987). Robust sizes bound the influence of
+outliers (Hampel 1974). Blocks longer than the correlation time change sign together in a sign
+randomisation.
 """
 
 from __future__ import annotations
@@ -14,9 +20,23 @@ import numpy as np
 import numpy.typing as npt
 from scipy import special
 
+from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, VarianceSettings
 
 Array = npt.NDArray[np.float64]
+Places = npt.NDArray[np.intp]
+
+
+def robust_size(values: Array) -> float:
+    """Standard deviation estimated from the median; zero without values, as for an excluded run."""
+    if not len(values):
+        return 0.0
+    return float(np.median(np.abs(values))) / 0.6745
+
+
+def clipped_square(errors: Array, size: float, clip_sigma: float) -> float:
+    """Sum of squares with errors clipped at `clip_sigma` standard deviations of `size`."""
+    return float(np.sum(np.minimum(errors**2, (clip_sigma * size) ** 2)))
 
 
 def score_square(
@@ -149,3 +169,23 @@ def long_run_variance(
     windows = sums[length:] - sums[:-length]
     variance: Array = windows.T @ windows * (n / (len(windows) * length))
     return variance
+
+
+def blocks_of(samples: Samples, share: float) -> Places:
+    """Start indices of blocks among the samples with weight, with all runs concatenated.
+
+    No block spans two runs.
+
+    Parameters
+    ----------
+    share
+        Number of independent samples per sample; smaller for a longer correlation time.
+    """
+    settings, found, before = samples.settings.blocks, [], 0
+    for weight, step in zip(samples.weight, samples.steps_s, strict=True):
+        count = int(np.count_nonzero(weight > 0.0))
+        shortest = round(settings.min_length_s / step)
+        length = max(shortest, round(0.5 * settings.min_memories / share), 1)
+        found.append(before + np.arange(0, count, length))
+        before += count
+    return np.concatenate(found).astype(np.intp)

@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from by_hand import Array
-from jbf.estimation.left_out import HeldOutPart
+from jbf.estimation.held_out import HeldOutPart
+from jbf.estimation.held_out_comparison import mean_square, surprise
 from jbf.estimation.noise import WHITE, Noise
-from jbf.estimation.predictive import mean_square, surprise
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution

@@ -1,23 +1,27 @@
-"""Uncertainty of the free parameters of a fit.
+"""Standard errors of the free parameters of a fit, and their validity.
 
-It follows from the curvature of the likelihood. Where the noise model does not describe the
-residual, the long-run variance of the score of each parameter is used in addition.
+They follow from the curvature of the likelihood. Where the noise model does not describe the
+residual, they contain the long-run variance of the score of each parameter (`variance`).
+`doubtful_errors` checks that the likelihood is a parabola up to one standard error.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.long_run import between_runs, score_inflation
+from jbf.estimation.bounds import bound_note
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
+from jbf.estimation.variance import between_runs, score_inflation
+from jbf.models.catalogue import find_effect
+from jbf.models.parameter_value import ParameterValue
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
 INSENSITIVE = 1e-9
 """Fraction of the largest derivative below which the runs do not depend on a parameter.
 
@@ -32,6 +36,11 @@ TAKES_PART = 1e-3
 """Weight in an unidentifiable combination above which a parameter takes part in it.
 
 It is a numerical tolerance.
+"""
+BENT = 0.3
+"""Permitted deviation from one of the rise of the deviance at one standard error.
+
+It enters no verdict.
 """
 
 
@@ -131,3 +140,40 @@ def _separate(normal: Array) -> Mask:
     unseen = ways[:, sizes * SINGULAR < sizes[-1]]
     part: Mask = np.linalg.norm(unseen, axis=1) < TAKES_PART
     return part
+
+
+def doubtful_errors(
+    problem: Problem, solution: Solution, parameters: Mapping[str, ParameterValue]
+) -> tuple[str, ...]:
+    """Names of the parameters, other than held ones, whose standard error is not valid."""
+    known = spread(problem, solution)
+    x = problem.encode(solution.values)
+    sd = np.where(known.separate, known.sd, np.nan)
+    for k, i in enumerate(problem.open):
+        # A parameter at a bound does not follow another parameter.
+        page = problem.parameters[problem.names[i]]
+        if bound_note(page, float(solution.values[i]), known.error(k)) is not None:
+            sd[k] = np.nan
+    low, high = problem.encode(problem.lower), problem.encode(problem.upper)
+    found = []
+    # Effects catalogued with many maxima: one standard error away may still be the same maximum.
+    many = {effect for effect in problem.effects if find_effect(effect).peaks}
+    for k, i in enumerate(problem.open):
+        # Position of the maximum of the likelihood with this parameter one standard error away.
+        way = known.correlation[:, k] * sd
+        if parameters[problem.names[i]].held:
+            continue
+        if problem.names[i].split(".")[0] in many:
+            found.append(problem.names[i])
+            continue
+        way = np.where(np.isfinite(way), way, 0.0)
+        for side in (1.0, -1.0):
+            there = x + side * way
+            if np.any((there <= low) | (there >= high)):
+                continue
+            residuals = problem.residuals(problem.decode(there, solution.values))
+            rise = solution.samples.cost(residuals, solution.noise) - solution.cost
+            if abs(rise - 1.0) > BENT:
+                found.append(problem.names[i])
+                break
+    return tuple(found)

@@ -1,37 +1,128 @@
-"""Exclusion of the initial-state transient at the start of a run.
+"""Samples that depend on a state of the model that was not recorded.
 
-The samples still depend on the unknown initial state (`initial_state`) and do not identify the
-friction law. They are excluded for every model of the campaign.
+A film, a contact or a load cell with backlash starts a run in an unknown state (`initial_state`). A
+film also depends on motion in a gap of the record. These samples do not identify the friction law
+and are excluded for every model of the campaign. A film that is too fast for the sampling rate of
+the records is refused.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.approach import approach
+from jbf import _core
+from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.film_gaps import samples_affected_by_gaps
-from jbf.estimation.film_rate import check_film
 from jbf.estimation.initial_state import has_unknown_start, memories, remembering
+from jbf.estimation.minimum import approach
 from jbf.estimation.noise_floor import noise_floor
+from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.models.catalogue import find_effect, find_law
+from jbf.models.chain import core_motion
+from jbf.models.driven import Driven
 from jbf.models.vocabulary import Clock
 from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
+EDGE = 1e-3
+"""Fraction of a gap in which a simulated motion changes its speed. It is a numerical resolution."""
 RANKING_EVALUATIONS = 8
 """Evaluations of a fit that is accurate enough to estimate the rate of the film.
 
 It limits the effort only.
 """
+
+
+def check_film(
+    campaign: Campaign, law: str, clock: Clock, seed: Mapping[str, float] | None = None
+) -> None:
+    """Raise an InputError if the film of a law is too fast for these records at every start.
+
+    Parameters
+    ----------
+    seed
+        Starting values by name.
+    """
+    if not find_law(law).has_film:
+        return
+    problem = Problem(campaign, law, clock, ())
+    known = {name: value for name, value in (seed or {}).items() if name in problem.names}
+    rate = min(
+        problem.chain.film_rate_1_s(start, campaign.motions) for start in problem.starts(known)
+    )
+    followed = min(rate, _core.FASTEST_FILM_1_S)
+    seconds = math.fsum(p.run.duration_s for p in campaign.prepared)
+    steps = followed * seconds
+    samples = sum(len(p.friction) for p in campaign.prepared)
+    settings = campaign.settings.film
+    if steps <= max(settings.max_steps * samples, settings.any_steps):
+        return
+    every = float(np.median([p.step_s for p in campaign.prepared]))
+    first = campaign.prepared[0].run
+    raise InputError(
+        file=first.path or first.name,
+        column="time_s",
+        problem=f"the film of the law {law} cannot be identified from these runs: on this rig it "
+        f"answers within {1.0 / rate:.1g} s, and there is a sample every {every:.2g} s",
+        mend="check that times are in seconds, and the rig's bearing and load, or take a law "
+        "without a film, such as stribeck",
+    )
+
+
+def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
+    """Mask of the samples at which a run still remembers unrecorded motion, one a run.
+
+    Parameters
+    ----------
+    values
+        Parameters of a model that fits roughly.
+    least_n
+        Difference of the friction that is negligible, N.
+    """
+    prepared = problem.campaign.prepared
+    found = [np.zeros(len(p.run), dtype=bool) for p in prepared]
+    if not find_law(problem.law).has_film:
+        return found
+    gap_steps = problem.campaign.settings.film.gap_steps
+    gaps = [_gaps(p, gap_steps) for p in prepared]
+    broken = [i for i, at in enumerate(gaps) if len(at)]
+    usual = problem.chain.predict(values, [prepared[i].core for i in broken])
+    for late in (False, True):
+        motions = [_through(prepared[i], gaps[i], late=late) for i in broken]
+        others = problem.chain.predict(values, motions)
+        for i, one, other in zip(broken, usual, others, strict=True):
+            found[i] |= np.abs(other - one) > least_n
+    return found
+
+
+def _gaps(p: Prepared, gap_steps: float) -> npt.NDArray[np.intp]:
+    """Indices of the last samples before gaps."""
+    return np.flatnonzero(np.diff(p.run.time_s) > gap_steps * p.step_s)
+
+
+def _through(p: Prepared, gaps: npt.NDArray[np.intp], *, late: bool) -> Driven:
+    """Motion of a run whose speed changes at the end of each gap (`late`) or at its beginning."""
+    time = p.run.time_s
+    length = time[gaps + 1] - time[gaps]
+    new = time[gaps + 1] - EDGE * length if late else time[gaps] + EDGE * length
+    speed = p.motion.velocity[gaps if late else gaps + 1]
+    whole = np.sort(np.concatenate([time, new]))
+    motion = p.motion.at(time, whole)
+    velocity, acceleration = motion.velocity.copy(), motion.acceleration.copy()
+    at = np.searchsorted(whole, new)
+    velocity[at], acceleration[at] = speed, 0.0
+    motion = replace(motion, velocity=velocity, acceleration=acceleration)
+    run = p.run.at(whole, np.interp(whole, time, p.friction))
+    return Driven(core_motion(p.rig, run, motion).motion, np.searchsorted(whole, time))
 
 
 def unsettled(problem: Problem, values: Array, noise_rms: float) -> list[Mask]:

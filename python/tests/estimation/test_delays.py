@@ -22,11 +22,11 @@ from delayed_runs import (
     value,
 )
 from jbf.diagnosis.policy import DEFAULT
-from jbf.estimation.between_runs import BetweenRuns
-from jbf.estimation.joint_lateness import LatenessStep, drift_step, lateness_step
-from jbf.estimation.lateness import lateness
+from jbf.estimation.delay_scan import scan_delays
+from jbf.estimation.delays import DelayStep, drift_step, run_delay_step
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
+from jbf.estimation.random_effects import BetweenRuns
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from scipy import ndimage, stats
@@ -40,7 +40,7 @@ EXTENDED = pytest.mark.extended
 def test_run_delays_that_differ_are_recovered_within_half_a_grid_step(seed: int) -> None:
     """The search for starting values has steps of 2 ms."""
     problem, solution = fitted(reversing_campaign(DELAYS_S, seed=seed), DELAY)
-    found = lateness(problem, solution, 0, CHANCE)
+    found = scan_delays(problem, solution, 0, CHANCE)
     assert found.drift == 0.0
     # The delay of the model is the part that is common to all runs.
     total = np.array(found.late_s) + value(problem, solution, TAU)
@@ -52,7 +52,7 @@ def test_run_delays_that_differ_are_recovered_within_half_a_grid_step(seed: int)
 def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed: str) -> None:
     """Outliers of 100 standard deviations, 2 % of the samples, would change unclipped delays."""
     problem, solution = fitted(reversing_campaign(DELAYS_S), DELAY)
-    usual = lateness(problem, solution, 0, CHANCE)
+    usual = scan_delays(problem, solution, 0, CHANCE)
     random, prepared, samples = np.random.default_rng(5), [], solution.samples
     for p, offset in zip(problem.campaign.prepared, (2.0, -1.5, 1.0, -2.0), strict=True):
         wild = np.where(random.random(len(p.run)) < 0.02, 3.0, 0.0)
@@ -64,7 +64,7 @@ def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed
     campaign = replace(problem.campaign, prepared=tuple(prepared))
     again = Problem(campaign, "coulomb", "journal", DELAY, problem.fixed)
     there = again.solution(solution.values, samples, solution.noise)
-    found = lateness(again, there, 0, CHANCE)
+    found = scan_delays(again, there, 0, CHANCE)
     np.testing.assert_allclose(found.late_s, usual.late_s, atol=0.6e-3)
 
 
@@ -72,7 +72,7 @@ def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed
 def test_clock_drift_is_recovered_within_15_percent_in_reversing_runs(drift: float) -> None:
     """The error of a clock that is exact at the start has half of its final value at mid-run."""
     middle = (0.5 * drift * DURATION_S,) * 4
-    found = lateness(*fitted(reversing_campaign(middle, drift), DELAY), 0, CHANCE)
+    found = scan_delays(*fitted(reversing_campaign(middle, drift), DELAY), 0, CHANCE)
     assert found.drift == pytest.approx(drift, rel=0.15)
     assert found.spread_s == 0.0
     np.testing.assert_allclose(found.late_s, middle, rtol=0.15)
@@ -88,16 +88,16 @@ def test_no_delay_is_reported_if_common_to_all_runs(
     delay_s: float, effects: Any, seed: int
 ) -> None:
     campaign = reversing_campaign((delay_s,) * 4, seed=seed)
-    assert lateness(*fitted(campaign, effects), 0, CHANCE) is None
+    assert scan_delays(*fitted(campaign, effects), 0, CHANCE) is None
 
 
 COVARIANCE = np.array([[4.0, 1.0], [1.0, 2.0]])
-STEP = LatenessStep(np.array([3.0, 0.0, -1.0]), COVARIANCE, np.array([True, False, True]))
+STEP = DelayStep(np.array([3.0, 0.0, -1.0]), COVARIANCE, np.array([True, False, True]))
 """Delay step of three runs, the second of which does not determine its delay."""
 
 
-def white(problem: Problem, solution: Solution) -> LatenessStep:
-    return lateness_step(problem, replace(solution, noise=WHITE))
+def white(problem: Problem, solution: Solution) -> DelayStep:
+    return run_delay_step(problem, replace(solution, noise=WHITE))
 
 
 def regression(
@@ -139,8 +139,8 @@ def test_significance_of_unequal_delays_follows_from_their_weighted_scatter() ->
     mean is 2, and (6, -2) has the square 112 / 7."""
     delays = np.array([5.0, 99.0, 1.0])
     expected = stats.chi2.sf(112.0 / 7.0, 1)
-    assert STEP.differ_chance(delays) == pytest.approx(expected)
-    assert STEP.differ_chance(delays + 40.0) == pytest.approx(expected)
+    assert STEP.differences_p_value(delays) == pytest.approx(expected)
+    assert STEP.differences_p_value(delays + 40.0) == pytest.approx(expected)
 
 
 def test_mean_delay_is_weighted_by_inverse_variances() -> None:
@@ -148,13 +148,13 @@ def test_mean_delay_is_weighted_by_inverse_variances() -> None:
 
 
 def test_runs_without_information_on_the_delay_do_not_change_its_significance() -> None:
-    nothing = LatenessStep(np.zeros(2), np.zeros((0, 0)), np.zeros(2, dtype=bool))
+    nothing = DelayStep(np.zeros(2), np.zeros((0, 0)), np.zeros(2, dtype=bool))
     assert nothing.chance == 1.0
     assert nothing.mean_s(np.array([1.0, 2.0])) == 0.0
-    assert nothing.differ_chance(np.ones(2)) == 1.0
-    one = LatenessStep(np.array([0.0, 3.0]), np.eye(1), np.array([False, True]))
+    assert nothing.differences_p_value(np.ones(2)) == 1.0
+    one = DelayStep(np.array([0.0, 3.0]), np.eye(1), np.array([False, True]))
     assert one.chance == pytest.approx(stats.chi2.sf(9.0, 1))
-    assert one.differ_chance(np.zeros(2)) == 1.0
+    assert one.differences_p_value(np.zeros(2)) == 1.0
 
 
 def test_delay_step_of_unidirectional_runs_solves_the_normal_equations() -> None:
@@ -198,20 +198,20 @@ def test_delay_or_drift_is_undetermined_beyond_the_linear_range(ratio: float, kn
     """Standard errors scale with the residuals; that of a drift is multiplied by the duration."""
     problem, solution = fitted(one_way_campaign((0.0, 0.0), durations_s=(20.0, 10.0)))
     plain = replace(solution, noise=WHITE)
-    delay_sd = lateness_step(problem, plain).covariance_s2[0, 0] ** 0.5
+    delay_sd = run_delay_step(problem, plain).covariance_s2[0, 0] ** 0.5
     drift_sd = drift_step(problem, plain).variance ** 0.5 * 20.0
     scales = (ratio * SETTINGS.delays.linear_s / sd for sd in (delay_sd, drift_sd))
     delay, drift = (replace(plain, residuals=[x * r for r in plain.residuals]) for x in scales)
-    assert lateness_step(problem, delay).determined[0] == known
+    assert run_delay_step(problem, delay).determined[0] == known
     assert np.isfinite(drift_step(problem, drift).variance) == known
 
 
 def test_no_delay_is_determined_if_all_residuals_are_zero() -> None:
     problem, solution = fitted(one_way_campaign((0.0,) * 3, noise_rms=0.0))
-    step = lateness_step(problem, solution)
+    step = run_delay_step(problem, solution)
     assert np.all(np.isfinite(step.late_s))
     exact = replace(solution, residuals=[np.zeros(len(r)) for r in solution.residuals], noise=WHITE)
-    step = lateness_step(problem, exact)
+    step = run_delay_step(problem, exact)
     assert not np.any(step.determined)
     assert step.chance == 1.0
 
@@ -220,7 +220,7 @@ def test_no_delay_is_determined_if_all_residuals_are_zero() -> None:
 def test_p_values_of_campaigns_without_delay_are_uniform() -> None:
     """P-values of Wald's test under its null hypothesis, by the test of Kolmogorov and Smirnov."""
     campaigns = (one_way_campaign((0.0,) * 3, seed=seed) for seed in range(60))
-    chances = [lateness_step(*fitted(campaign)).chance for campaign in campaigns]
+    chances = [run_delay_step(*fitted(campaign)).chance for campaign in campaigns]
     assert stats.kstest(chances, "uniform").pvalue > 0.02
 
 
@@ -244,11 +244,11 @@ def test_common_delay_biases_the_drift_unless_both_are_estimated() -> None:
     delay_s = 3e-3
     campaign = one_way_campaign((delay_s,) * 2, seed=5)
     there = fitted(campaign)
-    alone, with_delay = drift_step(*there), drift_step(*there, beside_delay=True)
+    alone, with_delay = drift_step(*there), drift_step(*there, with_delay=True)
     assert alone.drift == pytest.approx(1.5 * delay_s / 20.0, rel=0.3)
     assert alone.square > 50.0
     assert with_delay.square < 9.0
     assert with_delay.variance == pytest.approx(4.0 * alone.variance, rel=0.3)
     # A delay that the model contains is not estimated twice.
     delayed = fitted(campaign, DELAY)
-    assert drift_step(*delayed, beside_delay=True) == drift_step(*delayed)
+    assert drift_step(*delayed, with_delay=True) == drift_step(*delayed)

@@ -14,10 +14,9 @@ from by_hand import LAW, Array, Friction, along, coulomb, four_runs, there_and_b
 from coulomb_problems import solution_at, values_of
 from jbf import Fit, Parameter, ParameterValue, Rig, Run, fit
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.curvature import doubtful_errors
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.spread import spread
+from jbf.estimation.standard_errors import doubtful_errors, spread
 
 NOISE_N = 0.2
 TERMS: dict[str, Friction] = {

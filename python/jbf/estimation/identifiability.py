@@ -1,0 +1,264 @@
+"""Parameters that the runs do not identify: they are held, and a note states the reason.
+
+The value of a held parameter is used for prediction only and is not an estimate. A search may move
+it anywhere, and a reader, a model file or firmware would interpret the arbitrary number. It is
+therefore reset to a neutral value, unless that changes the prediction at the samples that count.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.bounds import at_bound, bound_note
+from jbf.estimation.jumps import active_effects
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from jbf.estimation.standard_errors import Spread
+from jbf.models.catalogue import Parameter
+from jbf.models.parameter_value import ParameterValue
+
+Array = npt.NDArray[np.float64]
+HELD = "held fixed"
+"""Note of a parameter that was not fitted."""
+STATED = "stated, not fitted: given, or taken from the runs"
+"""Note of a number that is not a fitted parameter."""
+NEVER_MOVED = "never moved: these runs do not depend on it"
+NOT_SEPARATE = "not separately known: another parameter does the same in these runs"
+NO_EFFECT = "at its null: no effect"
+ONE_SIDED = 2.0
+"""Standard errors added to the value of a scale for its upper limit. It concerns the text only."""
+SAME_IN_NOISE = 1e-4
+"""Largest difference of equal predictions, as a fraction of the residual.
+
+It is a numerical tolerance.
+"""
+SAME_IN_FRICTION = 1e-9
+"""Largest difference of equal predictions, as a fraction of the friction.
+
+It is a numerical tolerance.
+"""
+SLIDING = {"F_s": "F_c"}
+"""Breakaway force of a law, and the sliding force that it equals without a peak."""
+SHARES = (1.0, 0.5, 0.25, 0.125)
+"""Fractions of the distance to the start that are tried.
+
+If the starting value itself changes the prediction, a partial reset may still give a less extreme
+value. It is a numerical resolution.
+"""
+
+
+def undetermined(
+    page: Parameter, value: float, error: float, *, moved: bool = True, separate: bool = True
+) -> str | None:
+    """Why the runs did not determine a fitted parameter; None if they did.
+
+    Parameters
+    ----------
+    value, error
+        Value and standard error in the parameter's unit; the error is nan if it is unknown.
+    moved
+        Whether anything in these runs depends on the parameter.
+    separate
+        Whether the parameter can be distinguished from all other parameters.
+    """
+    if not moved:
+        return NEVER_MOVED
+    note = bound_note(page, value, error)
+    if note is None and not separate:
+        note = NOT_SEPARATE
+    return note or _larger_than_itself(page, value, error)
+
+
+def _larger_than_itself(page: Parameter, value: float, error: float) -> str | None:
+    """Return a note if the error of a scale exceeds its value, else None.
+
+    A scale has no sign, so such an error leaves its size undetermined. A signed parameter may
+    be zero within its error.
+    """
+    if not (page.log or page.lower == 0.0) or not error > abs(value):
+        return None
+    said = f"its error, {error:.2g}, is larger than itself: these runs "
+    most = value + ONE_SIDED * error
+    # For a logarithmic parameter with such an error, no interval holds on either side.
+    if page.log or most >= page.upper:
+        return f"{said}do not tell its size"
+    return f"{said}tell only that it is below {most:.2g}"
+
+
+def idle_effects(
+    effects: Collection[str],
+    pages: Mapping[str, Parameter],
+    values: Iterable[float],
+    errors: Mapping[str, float] | None = None,
+    fixed: Collection[str] = (),
+) -> tuple[str, ...]:
+    """Effects that a fit left at their null, where they change nothing.
+
+    Parameters
+    ----------
+    pages, values
+        Catalogue entries by full parameter name, and values in the same order.
+    errors
+        Standard errors by full name, where they are known.
+    fixed
+        Names of parameters that were not fitted.
+    """
+    errors = errors or {}
+    snapped = []
+    for (name, page), value in zip(pages.items(), values, strict=True):
+        there = at_null(page, value, errors.get(name, math.nan), fixed=name in fixed)
+        snapped.append(page.null if there and page.null is not None else math.nan)
+    active = active_effects(effects, pages, snapped)
+    return tuple(name for name in effects if name not in active)
+
+
+def at_null(page: Parameter, value: float, error: float = math.nan, *, fixed: bool = False) -> bool:
+    """Whether a value is at its parameter's null.
+
+    A fit stops at a null that is a bound, or at the bound next to an infinite null. A null between
+    the bounds does not stop a fit: an estimate there is an ordinary estimate with an error.
+    """
+    if page.null is None or fixed:
+        return value == page.null
+    if page.lower < page.null < page.upper:
+        return False
+    bound = page.lower if page.null <= page.lower else page.upper
+    return value == page.null or at_bound(page, value, bound, error)
+
+
+@dataclass(frozen=True, eq=False)
+class PutBack:
+    """A solution without arbitrary parameter values.
+
+    Attributes
+    ----------
+    values
+        Parameter values, shape (k,).
+    residuals
+        Record minus prediction at these values, N, one array a run.
+    notes
+        Parameter name to the reason why it is held, for the parameters considered here.
+    """
+
+    values: Array
+    residuals: Sequence[Array]
+    notes: dict[str, str]
+
+
+def put_back(
+    problem: Problem, solution: Solution, spread: Spread, start: Mapping[str, float]
+) -> PutBack:
+    """Set idle effects to their null, and unidentified parameters towards a neutral value.
+
+    Parameters
+    ----------
+    start
+        The user's starting values by full name; by default those of the catalogue.
+    """
+    found = PutBack(solution.values, solution.residuals, {})
+    found = _idle_to_null(found, problem, solution, spread, start)
+    for k, i in enumerate(problem.open):
+        name = problem.names[i]
+        if spread.moved[k] or name in found.notes:
+            continue
+        page, value = problem.parameters[name], float(found.values[i])
+        home = start.get(name, _home(problem, name, found.values))
+        note = f"flat here: these runs tell only that it is not {home:.3g}"
+        for share in SHARES:
+            there = found.values.copy()
+            there[i] = _moved_towards(page, value, home, share)
+            residuals = _same(problem, solution, there)
+            if residuals is not None:
+                note = NEVER_MOVED if share == 1.0 else note
+                found = PutBack(there, residuals, found.notes)
+                break
+        found = PutBack(found.values, found.residuals, {**found.notes, name: note})
+    return found
+
+
+def _idle_to_null(
+    found: PutBack,
+    problem: Problem,
+    solution: Solution,
+    spread: Spread,
+    start: Mapping[str, float],
+) -> PutBack:
+    errors = {problem.names[i]: spread.error(k) for k, i in enumerate(problem.open)}
+    idle = idle_effects(
+        problem.effects, problem.parameters, solution.values.tolist(), errors, problem.fixed
+    )
+    for effect in idle:
+        own = [i for i in problem.open if problem.names[i].startswith(f"{effect}.")]
+        there = found.values.copy()
+        for i in own:
+            name, page = problem.names[i], problem.parameters[problem.names[i]]
+            there[i] = start.get(name, page.starts[0]) if page.null is None else page.null
+        residuals = _same(problem, solution, there)
+        if residuals is not None:
+            notes = dict.fromkeys((problem.names[i] for i in own), NO_EFFECT)
+            found = PutBack(there, residuals, {**found.notes, **notes})
+    return found
+
+
+def _home(problem: Problem, name: str, values: Array) -> float:
+    """Value at which a parameter changes nothing, or its starting value.
+
+    A breakaway force without evidence of a peak equals the sliding force.
+    """
+    page, sliding = problem.parameters[name], SLIDING.get(name)
+    if sliding in problem.parameters:
+        return float(np.clip(values[problem.names.index(sliding)], page.lower, page.upper))
+    return page.starts[0] if page.null is None else page.null
+
+
+def _moved_towards(page: Parameter, value: float, home: float, share: float) -> float:
+    """Move a value by a fraction of the distance to `home`, in the search variable.
+
+    An infinite `home` is reached only with a fraction of one.
+    """
+    if share == 1.0 or not np.isfinite(home):
+        return home if share == 1.0 else value
+    if page.log:
+        return float(value * (home / value) ** share)
+    return value + share * (home - value)
+
+
+def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | None:
+    """Residuals at these values if the prediction equals that of the solution, otherwise None."""
+    residuals = problem.residuals(values)
+    samples = solution.samples
+    gaps = [a - b for a, b in zip(residuals, solution.residuals, strict=True)]
+    friction = [p.friction for p in problem.campaign.prepared]
+    allowed = SAME_IN_NOISE**2 * samples.square(solution.residuals)
+    allowed += SAME_IN_FRICTION**2 * samples.square(friction)
+    gap = samples.square(gaps)
+    return residuals if np.isfinite(gap) and gap <= allowed else None
+
+
+def parameter_values(problem: Problem, found: PutBack, spread: Spread) -> dict[str, ParameterValue]:
+    """Return values with standard errors by name; parameters that are not identifiable are held."""
+    results = {}
+    values = found.values.tolist()
+    for i, (name, page) in enumerate(problem.parameters.items()):
+        error, note = None, found.notes.get(name)
+        if i not in problem.open:
+            note = STATED if page.stated else HELD
+        elif note is None:
+            k = problem.open.index(i)
+            error = spread.error(k)
+            separate = bool(spread.separate[k])
+            note = undetermined(page, values[i], error, separate=separate)
+        results[name] = ParameterValue(values[i], None if note else error, note, note is not None)
+    return results
+
+
+def correlations(problem: Problem, parameters: dict[str, ParameterValue], spread: Spread) -> Array:
+    """Correlations of the parameters that are not held, in their order, shape (k, k)."""
+    kept = [k for k, i in enumerate(problem.open) if not parameters[problem.names[i]].held]
+    among: Array = spread.correlation[kept][:, kept]
+    return among

@@ -63,7 +63,7 @@ impl<T: Real> Encoder<T> {
             most < half,
             "top_speed_rad_s",
             top_speed_rad_s,
-            "passes half the counter's range in one step: a roll-over cannot be told",
+            "exceeds half the counter's range in one step: a roll-over is ambiguous",
         )?;
         Ok(Self {
             rad_per_count: T::of(1.0 / counts_per_rad),

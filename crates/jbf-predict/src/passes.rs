@@ -93,7 +93,10 @@ impl Pass<'_> {
         &self,
         instructions: I,
     ) -> Result<(Vec<f64>, Vec<f64>), ParameterError> {
-        assert!(self.which.len() <= LANES, "more parameters than a pass has");
+        assert!(
+            self.which.len() <= LANES,
+            "too many parameters for one pass"
+        );
         let lifted: Vec<Dual<LANES>> = self
             .parameters
             .iter()

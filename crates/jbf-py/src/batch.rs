@@ -48,11 +48,15 @@ impl BatchRig {
         Ok(Self {
             bearing: bearing.checked().map_err(wrong)?,
             clock: Clock::from_name(clock)
-                .ok_or_else(|| wrong(format!("clock {clock:?} is neither journal nor thesis")))?,
+                .ok_or_else(|| wrong(format!("clock {clock:?} is not known: journal or thesis")))?,
             method: match method {
                 "euler" => Method::Euler,
                 "rk4" => Method::Rk4,
-                _ => return Err(wrong(format!("method {method:?} is neither euler nor rk4"))),
+                _ => {
+                    return Err(wrong(format!(
+                        "method {method:?} is not known: euler or rk4"
+                    )))
+                }
             },
         })
     }
@@ -139,7 +143,7 @@ impl BatchRig {
         let speeds = course(speeds.as_slice()?, each, sets.as_array().nrows());
         let out = out.as_slice_mut()?;
         if out.len() != speeds.len() * sets.as_array().nrows() {
-            return Err(wrong("out has another size than samples x sets"));
+            return Err(wrong("out must have samples x sets elements"));
         }
         py.detach(|| on_pool(|| batch.friction(&mut batch.start(), &speeds, F::of(dt_s), out)));
         Ok(())
@@ -158,7 +162,7 @@ impl BatchRig {
         let speeds = course(speeds.as_slice()?, each, sets.as_array().nrows());
         let data = data.as_slice()?;
         if data.len() != speeds.len() {
-            return Err(wrong("data has another length than the motion"));
+            return Err(wrong("data and motion must have equal length"));
         }
         let sums =
             py.detach(|| on_pool(|| batch.squares(&mut batch.start(), &speeds, F::of(dt_s), data)));

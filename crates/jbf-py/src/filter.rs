@@ -20,7 +20,7 @@ pub fn first_order_filter<'py>(
     let x = values.as_array();
     if x.ndim() == 0 || x.ndim() > 2 {
         return Err(PyValueError::new_err(format!(
-            "values have {} axes: give (n,) or (n, k)",
+            "values have {} axes: must be (n,) or (n, k)",
             x.ndim()
         )));
     }

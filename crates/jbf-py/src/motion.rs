@@ -86,7 +86,7 @@ impl Motion {
         };
         if let Some(i) = motion.time_s.windows(2).position(|w| w[1] <= w[0]) {
             return Err(PyValueError::new_err(format!(
-                "time_s[{}] does not rise",
+                "time_s[{}] is not increasing",
                 i + 1
             )));
         }

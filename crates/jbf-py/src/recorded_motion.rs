@@ -56,7 +56,7 @@ macro_rules! of_order {
         match $order {
             3 => Ok($function::<3>($($argument),*)),
             4 => Ok($function::<4>($($argument),*)),
-            order => Err(PyValueError::new_err(format!("order {order}, not 3 or 4"))),
+            order => Err(PyValueError::new_err(format!("order must be 3 or 4 (got {order})"))),
         }
     };
 }
@@ -317,7 +317,11 @@ pub fn whiten_motion_errors<'py>(
     let log_determinant = match (whitened.as_slice_mut(), order) {
         (Some(flat), 3) => chain.whiten::<3>(width, flat),
         (Some(flat), 4) => chain.whiten::<4>(width, flat),
-        _ => return Err(PyValueError::new_err(format!("order {order}, not 3 or 4"))),
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "order must be 3 or 4 (got {order})"
+            )))
+        }
     };
     Ok((whitened.into_pyarray(py), log_determinant))
 }

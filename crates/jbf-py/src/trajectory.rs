@@ -205,11 +205,11 @@ pub fn trajectories<'py>(
         .with_count(count)
         .with_viscosity_pa_s(viscosity_pa_s);
     let clock = Clock::from_name(clock).ok_or_else(|| {
-        PyValueError::new_err(format!("clock {clock:?} is neither journal nor thesis"))
+        PyValueError::new_err(format!("clock {clock:?} is not known: journal or thesis"))
     })?;
     if !["journal", "journal_full"].contains(&model) {
         return Err(PyValueError::new_err(format!(
-            "model {model:?} is neither journal nor journal_full"
+            "model {model:?} is not known: journal or journal_full"
         )));
     }
     let asked = Asked {

@@ -246,7 +246,9 @@ def check(
     of_kind(model, Model, "model", "give a jbf.Model")
     check_callable(progress, "progress")
     if checked_integer(campaigns, "campaigns") < 1:
-        raise InputError(problem=f"{campaigns} campaigns tell no rate", mend="ask for one or more")
+        raise InputError(
+            problem=f"{campaigns} campaigns determine no rate", mend="use at least one"
+        )
     every = tuple(list_of_runs(runs))
     answers = list(done)
     finished = {(a.hidden, a.draw) for a in answers}
@@ -263,7 +265,7 @@ def check(
         if keep is not None:
             keep(answer)
         if progress is not None:
-            progress("diagnosing campaigns like this one", len(answers), total)
+            progress("diagnosing simulated campaigns", len(answers), total)
     answers.sort(key=lambda a: (len(a.hidden), a.draw))
     return Check(model, tuple(answers))
 

@@ -98,7 +98,7 @@ def manual_round(
             candidates = candidates.of(settled)
         trials = try_candidates(candidates, chosen).trials
         if progress is not None:
-            progress("how strong each would have to be", 0, 0)
+            progress("computing detection limits", 0, 0)
         strengths = power(candidates, chosen)
     except KeyboardInterrupt:
         raise Stopped(fitted) from None

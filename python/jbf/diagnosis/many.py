@@ -76,7 +76,7 @@ def diagnose_many(
     if not isinstance(campaigns, Mapping):
         raise InputError(
             problem=f"campaigns is {described(campaigns)}",
-            mend="give a dict: name to (rig, runs), or to a folder",
+            mend="give a dict of names to (rig, runs), or to a folder",
         )
     found: dict[str, Diagnosis | JbfError] = {}
 
@@ -104,7 +104,7 @@ def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError
         pair = given if isinstance(given, tuple) else read_campaign(given)
         if len(pair) != 2:
             raise InputError(
-                problem=f"a campaign is {len(pair)} things", mend="give a rig and a list of runs"
+                problem=f"a campaign has {len(pair)} elements", mend="give a rig and a list of runs"
             )
         rig, runs = pair
         return diagnose(rig, runs, **options)
@@ -113,4 +113,4 @@ def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError
 
 
 def _lost(error: BaseException) -> JbfError:
-    return JbfError(f"the work was lost: {type(error).__name__}: {error}".rstrip(": "))
+    return JbfError(f"the worker process failed: {type(error).__name__}: {error}".rstrip(": "))

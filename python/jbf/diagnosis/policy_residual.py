@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from jbf.comparison.patterns import LEAST_SHARE, SIGNIFICANCE
 from jbf.estimation.settings import documented
 
-FIVE_SIGMA = "one in two millions of Gaussian noise"
-ONE_IN_TEN_THOUSAND = "one campaign in ten thousand"
+FIVE_SIGMA = "1 in 2 million of Gaussian noise"
+ONE_IN_TEN_THOUSAND = "1 campaign in 10,000"
 SET_BEFORE = "set before any campaign was seen"
 
 
@@ -60,7 +60,7 @@ class Ripples:
         "a tone has this pitch in a few runs only",
     )
     weaker_chance: float = documented(
-        1e-3, "probability by chance of the ripple in these runs", "one in a thousand"
+        1e-3, "probability by chance of the ripple in these runs", "1 in 1000"
     )
     max_tone_share: float = documented(
         0.8,

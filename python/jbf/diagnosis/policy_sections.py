@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from jbf.estimation.settings import documented
 
-ONE_IN_TEN_THOUSAND = "one campaign in ten thousand"
+ONE_IN_TEN_THOUSAND = "1 campaign in 10,000"
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ class Delays:
         3, "number of searches for the delays of the runs", "a second search is more precise"
     )
     hint_chance: float = documented(
-        0.05, "significance level below which a clock drift is fitted", "one in twenty"
+        0.05, "significance level below which a clock drift is fitted", "1 in 20"
     )
     drift_square_factor: float = documented(
         0.5,
@@ -218,7 +218,7 @@ class NoiseVariance:
         "least squares lose a twentieth of their precision there",
     )
     tail_sigma: float = documented(
-        4.0, "standard deviations from which an innovation is in the tails", "six in 100,000"
+        4.0, "standard deviations from which an innovation is in the tails", "6 in 100,000"
     )
     min_tails: float = documented(
         5.0, "number of innovations in the tails, at least", "no single outliers"
@@ -293,7 +293,7 @@ class Laws:
         "one in forty by chance",
     )
     same_ratio: float = documented(
-        1.005, "ratio of held-out errors up to which two laws are the same", "half a per cent"
+        1.005, "ratio of held-out errors up to which two laws are the same", "1 in 40 by chance"
     )
     sections: int = documented(
         40,

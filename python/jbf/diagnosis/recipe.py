@@ -44,7 +44,7 @@ from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.threads import one_blas_thread
 
-TOO_LONG = "takes too long to diagnose on these records"
+TOO_LONG = "exceeds the computing time limit on these records"
 
 
 @one_blas_thread

@@ -53,7 +53,7 @@ class Selected:
     refused: tuple[Remainder, ...] = ()
 
 
-NOT_FINISHED = "the fits of further effects take too long on these records: not all were tried"
+NOT_FINISHED = "computing time limit reached: not all further effects were tested"
 
 
 def select(candidates: Candidates) -> Selected:
@@ -220,8 +220,8 @@ def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -
     base, richer = candidates.converge(present), candidates.converge((*present, leader))
     unit = candidates.campaign.rig.quantities.force
     where = (
-        f"{leader} would bring {base.rms:.3g} {unit} down to {richer.rms:.3g} {unit} beside "
-        f"{len(present)} effects, and no more are searched for"
+        f"effect limit ({len(present)}) reached; {leader} would reduce the RMS from "
+        f"{base.rms:.3g} to {richer.rms:.3g} {unit}"
     )
     return Remainder("effects", where, max(1.0 - (richer.rms / base.rms) ** 2, 0.0))
 
@@ -283,6 +283,6 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     if share < policy.least_share(candidates.campaign.motion_share):
         return ()
     unit = candidates.campaign.rig.quantities.force
-    fits = f"{name} fits {base.rms:.3g} {unit} down to {rms:.3g} {unit}"
-    where = f"{fits} but predicts runs left out no better"
+    fits = f"{name} reduces the RMS from {base.rms:.3g} to {rms:.3g} {unit}"
+    where = f"{fits}, but does not improve the held-out prediction"
     return (Remainder("run", where, share),)

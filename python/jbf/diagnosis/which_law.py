@@ -152,7 +152,7 @@ def which_law(
             progress(f"trying the law {name}", i, len(names))
         errors = _within(campaign, name, clock, policy)
         if errors is None:
-            refused[f"law {name}"] = "takes too long to follow along these records"
+            refused[f"law {name}"] = "exceeds the computing time limit on these records"
         else:
             left[name] = errors
     if not left:

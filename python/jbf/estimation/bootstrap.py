@@ -92,12 +92,12 @@ def check_repeats(repeats: int, name: str = "repeats") -> None:
     """Raise an InputError if the number of repeats is too small or too large."""
     if checked_integer(repeats, name) < LEAST_REPEATS:
         raise InputError(
-            problem=f"{name} {repeats} is too few to tell an error",
-            mend=f"ask for {LEAST_REPEATS} or more; 40 tell it better",
+            problem=f"{name} {repeats} is too small for standard errors",
+            mend=f"use at least {LEAST_REPEATS}; 40 is more precise",
         )
     if repeats > MOST_REPEATS:
         raise InputError(
-            problem=f"{name} {repeats} is too many", mend=f"ask for {MOST_REPEATS} or less"
+            problem=f"{name} {repeats} is too large", mend=f"use at most {MOST_REPEATS}"
         )
 
 
@@ -162,7 +162,7 @@ def bootstrap(
     check_repeats(repeats)
     checked_integer(seed, "seed")
     check_callable(progress, "progress")
-    of_kind(fitted, Fit, "the fit", "give what jbf.fit made of these runs")
+    of_kind(fitted, Fit, "the fit", "give the result of jbf.fit for these runs")
     model = fitted.model
     campaign = Campaign.prepare(model.rig, runs)
     truth = {name: p.value for name, p in fitted.parameters.items()}

@@ -49,8 +49,8 @@ def checked_bounds(
         if not low < high:
             raise InputError(
                 key=f"bounds.{full}",
-                problem=f"({pair[0]:g}, {pair[1]:g}) is empty within {page.lower:g} to "
-                f"{page.upper:g}",
+                problem=f"({pair[0]:g}, {pair[1]:g}) does not overlap {page.lower:g} "
+                f"to {page.upper:g}",
                 mend="give low < high; `fixed` holds a parameter at a value",
             )
         found[full] = (low, high)
@@ -80,7 +80,7 @@ def bound_note(page: Parameter, value: float, error: float) -> str | None:
     """Return a note if a value is at one of its bounds, otherwise None."""
     for side, bound, wish in (("lower", page.lower, "less"), ("upper", page.upper, "more")):
         if at_bound(page, value, bound, error):
-            return f"at its {side} bound {bound:g}: the runs ask for {wish}"
+            return f"at its {side} bound {bound:g}: the best fit requires {wish}"
     return None
 
 

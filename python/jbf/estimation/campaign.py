@@ -124,8 +124,8 @@ class Campaign:
             raise InputError(
                 file=prepared[0].run.path or prepared[0].run.name,
                 column="friction_n",
-                problem="zero in every sample of every run",
-                mend="check that the force was connected, and its scale",
+                problem="is zero in every sample of every run",
+                mend="check the force sensor and its scale",
             )
         samples = Samples.of(prepared, settings)
         work = Work.of(sum(len(p.friction) for p in prepared))
@@ -208,31 +208,31 @@ class Campaign:
         if coasting(self.rig) is not None and effect.name in NEEDS_RECORDED_FORCE:
             return "no force was recorded"
         if effect.name in NEEDS_TIME and self.steady:
-            return "steady states do not show it"
+            return "steady states do not contain it"
         if effect.name in SMOOTHS_FORCE and self.motion_uncertain:
             return "errors of the acceleration are a large part of the residual"
         for column in effect.columns:
             if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):
-                return f"not every run has the column {column}"
+                return f"the column {column} is missing in some runs"
         if "angle" in needs and not self.has_angle:
-            return f"not every run has {self.rig.quantities.mover}'s angle"
+            return f"{self.rig.quantities.mover}'s angle is missing in some runs"
         if "path" in needs and not all(has_path(self.rig, p.run) for p in self.prepared):
-            return "not every run has the path of the drive"
+            return "the position of the drive is missing in some runs"
         if "position" in needs and not all(has_position(p.run) for p in self.prepared):
-            return "not every run has a position or an angle"
+            return "a position or an angle is missing in some runs"
         if "loads" in needs and not self.has_loads:
-            return "all runs have one load, under which it changes nothing"
+            return "all runs have the same load"
         if "temperatures" in needs:
             span_k, least_k = (
                 self.temperatures_k,
                 self.settings.conditions.min_temperature_difference_k,
             )
             if span_k is None:
-                return "not every run has the column temperature_c"
+                return "the column temperature_c is missing in some runs"
             if span_k < least_k:
                 return (
-                    f"the temperature stays within {span_k:.2g} K: what it changes takes "
-                    f"{least_k:g} K to show"
+                    f"the temperature varies by {span_k:.2g} K only; the effect "
+                    f"requires {least_k:g} K"
                 )
         return None
 

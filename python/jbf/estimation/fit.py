@@ -188,8 +188,8 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
         reason = campaign.missing_requirement(find_effect(name))
         if reason is not None:
             raise InputError(
-                problem=f"the effect {name} cannot be found in these runs: {reason}",
-                mend="leave it out, or add runs under other loads",
+                problem=f"the effect {name} is not identifiable in these runs: {reason}",
+                mend="omit it, or record the missing motion or data",
             )
 
 

@@ -23,12 +23,12 @@ from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
 
 Array = npt.NDArray[np.float64]
-HELD = "held fixed"
+HELD = "held at the given value"
 """Note of a parameter that was not fitted."""
-STATED = "stated, not fitted: given, or taken from the runs"
+STATED = "not fitted: a given value, or a reference taken from the runs"
 """Note of a number that is not a fitted parameter."""
-NEVER_MOVED = "never moved: these runs do not depend on it"
-NOT_SEPARATE = "not separately known: another parameter does the same in these runs"
+NEVER_MOVED = "not determined: these runs do not depend on it"
+NOT_SEPARATE = "not identifiable: another parameter has the same effect in these runs"
 NO_EFFECT = "at its null: no effect"
 ONE_SIDED = 2.0
 """Standard errors added to the value of a scale for its upper limit. It concerns the text only."""
@@ -82,12 +82,12 @@ def _larger_than_itself(page: Parameter, value: float, error: float) -> str | No
     """
     if not (page.log or page.lower == 0.0) or not error > abs(value):
         return None
-    said = f"its error, {error:.2g}, is larger than itself: these runs "
+    said = f"not determined: its standard error, {error:.2g}, exceeds its value"
     most = value + ONE_SIDED * error
     # For a logarithmic parameter with such an error, no interval holds on either side.
     if page.log or most >= page.upper:
-        return f"{said}do not tell its size"
-    return f"{said}tell only that it is below {most:.2g}"
+        return said
+    return f"{said}; it is below {most:.2g}"
 
 
 def idle_effects(
@@ -168,7 +168,7 @@ def put_back(
             continue
         page, value = problem.parameters[name], float(found.values[i])
         home = start.get(name, _home(problem, name, found.values))
-        note = f"flat here: these runs tell only that it is not {home:.3g}"
+        note = f"not determined: the data exclude only {home:.3g}"
         for share in SHARES:
             there = found.values.copy()
             there[i] = _moved_towards(page, value, home, share)

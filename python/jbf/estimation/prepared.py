@@ -172,7 +172,7 @@ class Prepared:
             raise NoMotion(
                 file=run.path or run.name,
                 column="velocity_m_s",
-                problem="of no sample is it known which way the motion goes",
+                problem="the direction of motion is undetermined at every sample",
                 mend="leave this run out, or record a smoother speed",
             )
         if np.all(motion.resting):
@@ -297,7 +297,7 @@ def _of_readings(run: Run, motion: EstimatedMotion, examined: Examined) -> list[
 def _derived(run: Run, moved: float) -> Finding:
     """Finding that the friction was derived from the deceleration."""
     said = run.quantities
-    words = f"the {said.noun} is {moved:.5g} {said.unit('kg')} times the deceleration"
+    words = f"the {said.noun} is computed as {moved:.5g} {said.unit('kg')} times the deceleration"
     return Finding("converted", "friction_n", run.name, moved, said.unit("kg"), "once", words)
 
 

@@ -32,7 +32,7 @@ class NoiseSettings:
     )
     max_gain_factor: float = documented(
         4.0,
-        "multiple of the gain that a quadratic model predicts from which on no colour is searched",
+        "bounds the error of the quadratic model; avoids an unnecessary search",
         "bounds the error of the quadratic model; avoids a search in vain",
     )
     max_rms_ratio: float = documented(
@@ -44,7 +44,7 @@ class NoiseSettings:
     clip_sigma: float = documented(
         3.5,
         "standard deviations at which the contribution of a sample to a robust gain is clipped",
-        "one in two thousand of Gaussian noise",
+        "1 in 2000 of Gaussian noise",
     )
     min_floor_samples: int = documented(
         300,
@@ -86,7 +86,7 @@ class VarianceSettings:
     )
     chance: float = documented(
         0.01,
-        "significance level at which the scatter of windows or runs exceeds that of white noise",
+        "1 in 100",
         "one in a hundred",
     )
 
@@ -215,7 +215,7 @@ class JumpSettings:
     min_ratio: float = documented(
         3.0,
         "ratio of a jump to the changes next to it",
-        "a rise that the record resolves, as of a moved mass, is no jump",
+        "a resolved rise, as of an accelerated mass, is not a jump",
     )
     max_timing_error: float = documented(
         0.5,
@@ -247,8 +247,8 @@ class DelaySettings:
     )
     max_edge_likelihood: float = documented(
         0.01,
-        "likelihood at the ends of the searched range above which the delay is not known",
-        "one in a hundred",
+        "likelihood at the ends of the searched range above which the delay is unknown",
+        "1 in 100",
     )
     max_run_share: float = documented(
         0.1, "share of the shortest run above which a delay or lag is not plausible", "convention"
@@ -335,7 +335,7 @@ class MotionSettings:
     min_delay_sigma: float = documented(
         5.0,
         "standard errors from which a delay of the force in all runs is corrected",
-        "one in two millions of Gaussian noise",
+        "1 in 2 million of Gaussian noise",
     )
     max_delay_samples: float = documented(
         2.0, "sampling intervals up to which such a delay is plausible", "convention"

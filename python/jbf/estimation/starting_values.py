@@ -68,7 +68,7 @@ def scales(campaign: Campaign) -> Scales:
         raise InputError(
             file=campaign.prepared[0].run.path or campaign.prepared[0].run.name,
             column="velocity_m_s",
-            problem="of no sample that counts, in any run, is it known which way it moves",
+            problem="the direction of motion is undetermined at every usable sample",
             mend="record strokes of many samples each, or check the unit of time",
         )
     v = np.concatenate(

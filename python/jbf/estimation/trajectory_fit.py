@@ -154,7 +154,7 @@ def fit_trajectories(
     runs = motions_of(runs)
     if isinstance(friction_coefficient, str) or not isinstance(friction_coefficient, Iterable):
         said = described(friction_coefficient)
-        raise InputError(problem=f"the friction is {said}", mend="give a list, one array a run")
+        raise InputError(problem=f"the friction is {said}", mend="give a list, one array per run")
     measured = [numbers(f, f"the friction of run {i}") for i, f in enumerate(friction_coefficient)]
     keep = _usable(runs, measured)
     data = np.concatenate(measured)[keep]
@@ -245,7 +245,7 @@ def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np
     if len(runs) != len(measured):
         raise InputError(
             problem=f"{len(runs)} runs and {len(measured)} frictions",
-            mend="give one array of friction coefficients a run",
+            mend="give one array of friction coefficients per run",
         )
     found = []
     for i, ((time, motion), friction) in enumerate(zip(runs, measured, strict=True)):
@@ -253,7 +253,7 @@ def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np
         if friction.shape != t.shape:
             raise InputError(
                 problem=f"run {i}: friction of shape {friction.shape}, times of {t.shape}",
-                mend="give one friction coefficient a time (NaN where there is none)",
+                mend="give one friction coefficient per time (NaN where missing)",
             )
         if is_record(motion):
             speed = np.asarray(motion, dtype=float)

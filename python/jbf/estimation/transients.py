@@ -71,10 +71,10 @@ def check_film(
     raise InputError(
         file=first.path or first.name,
         column="time_s",
-        problem=f"the film of the law {law} cannot be identified from these runs: on this rig it "
-        f"answers within {1.0 / rate:.1g} s, and there is a sample every {every:.2g} s",
-        mend="check that times are in seconds, and the rig's bearing and load, or take a law "
-        "without a film, such as stribeck",
+        problem=f"the film of the law {law} responds within {1.0 / rate:.1g} s, but "
+        f"the sampling interval is {every:.2g} s: it is not identifiable",
+        mend="check the unit of time, the bearing and the load, or use a law without a "
+        "film, such as stribeck",
     )
 
 
@@ -199,10 +199,18 @@ def _what(law: str, effects: Iterable[str]) -> str:
     page = find_law(law)
     cell = has_unknown_start(effects)
     if page.has_film:
-        return "film, or the cell in its play, was not settled" if cell else "film was not settled"
+        return (
+            "film or the load cell's hysteresis was not at its initial state"
+            if cell
+            else "film was not at its initial state"
+        )
     if page.has_bristle:
-        return "contact was bent another way"
-    return "contact was not settled" if page.has_memory else "cell was elsewhere in its play"
+        return "contact was deflected differently"
+    return (
+        "contact was not at its initial state"
+        if page.has_memory
+        else "load cell's hysteresis was not at its initial state"
+    )
 
 
 def _findings(
@@ -220,8 +228,11 @@ def _findings(
         if size < campaign.settings.transient.min_reported_ratio * usual:
             continue
         span = float(p.run.time_s[mask][-1] - p.run.time_s[mask][0])
-        words = f"the {what} when the run began: {span:.2g} s, off by {size:.2g} N"
+        words = (
+            f"the {what} at the start of the run: residual {size:.2g} "
+            f"{p.run.quantities.force} RMS for {span:.2g} s"
+        )
         found.append(
-            Finding("unsettled_start", "friction_n", p.run.name, span, "s", "set aside", words)
+            Finding("unsettled_start", "friction_n", p.run.name, span, "s", "excluded", words)
         )
     return found

@@ -28,9 +28,11 @@ def _column(value: npt.ArrayLike, key: str) -> npt.NDArray[np.float64]:
     try:
         column = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise _refuse(key, "is not a number or numbers", "give one, or one a set") from None
+        raise _refuse(
+            key, "is not a number or an array of numbers", "give one number, or one per set"
+        ) from None
     if column.ndim > 1:
-        raise _refuse(key, f"has {column.ndim} dimensions", "give a number, or one a set")
+        raise _refuse(key, f"has {column.ndim} dimensions", "give one number, or one per set")
     return column
 
 
@@ -40,7 +42,7 @@ def _sets(columns: dict[str, npt.ArrayLike]) -> npt.NDArray[np.float64]:
     count = max((a.size for a in arrays.values() if a.ndim), default=1)
     for key, a in arrays.items():
         if a.ndim and a.size != count:
-            raise _refuse(key, f"has {a.size} values where another has {count}", "give one a set")
+            raise _refuse(key, f"has {a.size} values where another has {count}", "give one per set")
     table = np.empty((count, len(arrays)))
     for i, a in enumerate(arrays.values()):
         table[:, i] = a
@@ -51,7 +53,7 @@ def _result(out: Array | None, shape: tuple[int, int], dtype: np.dtype[Any]) -> 
     if out is None:
         return np.empty(shape, dtype)
     if not isinstance(out, np.ndarray):
-        raise _refuse("out", "is no array", f"make it np.empty({shape}, np.{dtype})")
+        raise _refuse("out", "is not an array", f"make it np.empty({shape}, np.{dtype})")
     if out.shape != shape or out.dtype != dtype or not out.flags.c_contiguous:
         raise _refuse("out", "does not fit", f"make it np.empty({shape}, np.{dtype})")
     return out
@@ -123,18 +125,18 @@ def batch(
     try:
         precision = np.dtype(dtype)
     except TypeError:
-        raise _refuse("dtype", "is no dtype", "choose np.float64 or np.float32") from None
+        raise _refuse("dtype", "is not a dtype", "choose np.float64 or np.float32") from None
     if precision not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise _refuse("dtype", f"is {precision}", "choose np.float64 or np.float32")
     if not (isinstance(dt_s, int | float) and 0.0 < dt_s < math.inf):
-        raise _refuse("dt_s", f"{dt_s!r} is not above zero and finite", "give seconds")
+        raise _refuse("dt_s", f"{dt_s!r} is not positive and finite", "give seconds")
     if rig.bearing is None or rig.lubricant is None:
         raise InputError(
-            problem="the rig lacks its [bearing] or its [lubricant]",
-            mend="the law journal needs both: add them",
+            problem="the rig has no [bearing] or no [lubricant]",
+            mend="the law journal requires both: add them",
         )
     if load_n is None and rig.load is None:
-        raise InputError(problem="the rig has no [load]", mend="add one, or give load_n")
+        raise InputError(problem="the rig has no [load]", mend="add [load], or give load_n")
     load = rig.load.normal_n if load_n is None and rig.load is not None else load_n
     assert load is not None
     sets = _sets({"f_m": f_m, "U_tr_m_s": U_tr_m_s, "K0": K0, "gamma": gamma, "load_n": load})
@@ -147,7 +149,9 @@ def batch(
             f"give (samples,) or (samples, {len(sets)})",
         )
     if not np.isfinite(speeds).all():
-        raise _refuse("velocity_m_s", "is not finite throughout", "fill or cut the gaps")
+        raise _refuse(
+            "velocity_m_s", "contains values that are not finite", "fill or remove the gaps"
+        )
     b = rig.bearing
     with core_refusals():
         core = _core.BatchRig(
@@ -164,7 +168,9 @@ def batch(
         if data is not None:
             wanted = numbers(data, "data", precision)
             if wanted.shape != speeds.shape[:1]:
-                raise _refuse("data", f"has shape {wanted.shape}", "give one coefficient a sample")
+                raise _refuse(
+                    "data", f"has shape {wanted.shape}", "give one coefficient per sample"
+                )
             squares = core.squares_f32 if single else core.squares_f64
             return squares(sets, speeds.reshape(-1), each, dt_s, wanted)
         result = _result(out, (len(speeds), len(sets)), precision)

@@ -285,7 +285,7 @@ def find_effect(name: str) -> Effect:
         name = current_effect(name, known)
     if not isinstance(name, str) or name not in known:
         raise InputError(
-            problem=f'there is no effect "{name}"',
+            problem=f'effect "{name}" is not known',
             mend=f"{did_you_mean(name, known)} (`jbf effects` lists them)",
         )
     return known[name]
@@ -307,7 +307,10 @@ def reason_not_applicable(effect: Effect, law: str) -> str | None:
     if law not in _user_laws:
         return effect.refused.get(law)
     if effect.stage not in BESIDE:
-        return "is one of your own, and the effect changes parts of a law that nobody knows of it"
+        return (
+            "is user-defined, and the effect changes parts of a law that a user-defined law does "
+            "not expose"
+        )
     return effect.refused.get(CARRIER)
 
 
@@ -319,7 +322,7 @@ def check_applies(law: str, names: Iterable[str]) -> None:
         if reason is not None:
             raise InputError(
                 problem=f"the effect {name} does not apply: the law {page.name} {reason}",
-                mend=f"leave it out (`jbf effects --law {page.name}` lists what applies)",
+                mend=f"omit it (`jbf effects --law {page.name}` lists what applies)",
             )
 
 
@@ -370,7 +373,7 @@ def find_parameter(name: str, known: Collection[str]) -> str:
     longer = [full for full in known if full.startswith(f"{name}_")]
     if len(longer) == 1:
         return longer[0]
-    raise InputError(problem=f'there is no parameter "{name}"', mend=did_you_mean(name, known))
+    raise InputError(problem=f'parameter "{name}" is not known', mend=did_you_mean(name, known))
 
 
 @cache

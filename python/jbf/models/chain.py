@@ -76,13 +76,13 @@ def check_rig(rig: Rig, law: str) -> None:
     ):
         if there is None and rig.drive is not None:
             raise InputError(
-                problem=f"the rig is a drive, and the law {law} is one of journal bearings",
-                mend="choose a law for it: --law coulomb, stribeck or lugre (`jbf.laws()`)",
+                problem=f"the rig is a drive, but the law {law} requires a journal bearing",
+                mend="choose another law: --law coulomb, stribeck or lugre (`jbf.laws()`)",
             )
         if there is None:
             raise InputError(
                 problem=f"the rig has no [{section}]",
-                mend=f"the law {law} needs one: add a [{section}] section",
+                mend=f"the law {law} requires it: add [{section}]",
             )
 
 
@@ -258,9 +258,9 @@ def warn_of_fast_film(core: DrivenChain, values: Array, motions: Sequence[Driven
     rate = core.film_rate_1_s(values, motions)
     if rate > _core.FASTEST_FILM_1_S:
         warnings.warn(
-            f"the film of this model answers at {rate:.2g} 1/s; a prediction follows it up to "
-            f"{_core.FASTEST_FILM_1_S:.2g} 1/s and holds it inside the bearing beyond: are "
-            "U_tr_m_s, K0 and the load those of a bearing?",
+            f"the film of this model responds at {rate:.2g} 1/s, above the limit of "
+            f"{_core.FASTEST_FILM_1_S:.2g} 1/s; it is kept inside the bearing; check U_tr_m_s, K0 "
+            "and the load",
             FilmWarning,
             stacklevel=4,
         )

@@ -21,8 +21,8 @@ FORMAT = 1
 _KEYS = ("format", "law", "clock", "effects", "parameters", "rig", "fit")
 _FIELDS = {"value", "stderr", "note", "held"}
 _HEADER = """\
-jbf model file. Parameters are in the SI units given behind them; stderr is one standard error. A
-plain number is sufficient: f_m = 0.26. A parameter that is held was not determined by the data.
+jbf model file. Parameters are in the SI units given in the comments; stderr is one standard error.
+A plain number is sufficient: f_m = 0.26. A parameter that is held was not determined by the data.
 The parameters of each effect in the list are in [parameters.EFFECT]."""
 
 
@@ -62,7 +62,7 @@ def _parameters(content: Mapping[str, Any], effects: Collection[str]) -> dict[st
 
 def _from_mapping(content: Mapping[str, Any]) -> ModelFile:
     if repr(content.get("format")) != repr(FORMAT):
-        problem = "is not one this jbf reads" if "format" in content else "is missing"
+        problem = "is not supported by this version of jbf" if "format" in content else "is missing"
         raise InputError(key="format", problem=problem, mend=f"write format = {FORMAT}")
     refuse_unknown(content, _KEYS)
     effects = content.get("effects", [])

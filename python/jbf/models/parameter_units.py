@@ -20,7 +20,7 @@ def unit_of(name: str, page: Parameter, law: str, quantities: Quantities) -> str
     if quantities.motion == "linear" and name in ALONG:
         return quantities.length
     if quantities.motion == "rotary" and name in OVER_LOAD:
-        return quantities.unit("N" if page.unit == "-" else "N s/m") + " over load"
+        return quantities.unit("N" if page.unit == "-" else "N s/m") + " per load"
     return quantities.unit(FORCES.get(name, page.unit))
 
 

@@ -51,15 +51,15 @@ class ParameterValue:
         if self.stderr is not None:
             stderr = number(self.stderr, "stderr")
             if stderr < 0.0:
-                raise InputError(key="stderr", problem="is negative", mend="drop the sign")
+                raise InputError(key="stderr", problem="is negative", mend="remove the sign")
             object.__setattr__(self, "stderr", None if math.isnan(stderr) else stderr)
         if self.note is not None and not isinstance(self.note, str):
-            raise InputError(key="note", problem="is not text", mend="put it in quotes")
+            raise InputError(key="note", problem="is not text", mend="put it in quotation marks")
         if not isinstance(self.held, bool):
             raise InputError(key="held", problem="is not true or false", mend="write held = true")
         if self.held and self.stderr is not None:
-            problem = "stands beside held = true, and what is held has no error"
-            raise InputError(key="stderr", problem=problem, mend="drop one of the two")
+            problem = "is given with held = true, but a held parameter has no standard error"
+            raise InputError(key="stderr", problem=problem, mend="remove one of them")
 
     def to_dict(self) -> dict[str, Any]:
         """Return the parameter for JSON; a held parameter has no `stderr` entry."""

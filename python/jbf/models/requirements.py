@@ -39,8 +39,8 @@ def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
             raise InputError(
                 file=run.path or run.name,
                 column="position_m",
-                problem=f"makes this a linear axis, and the effect {name} needs a shaft's angle",
-                mend="drop position_m, or give the rig its [bearing]",
+                problem=f"makes this a linear axis, but the effect {name} requires a shaft angle",
+                mend="remove position_m, or give the rig its [bearing]",
             )
         if "temperatures" in needs:
             require(run, "temperature_c", f"the effect {name}")

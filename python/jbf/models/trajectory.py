@@ -213,7 +213,7 @@ def trajectories(
     for name in given:
         if name not in _NAMES:
             raise InputError(
-                problem=f"{quoted(name)} is no parameter of the law",
+                problem=f"{quoted(name)} is not a parameter of the law",
                 mend=did_you_mean(name, list(_NAMES)),
             )
     for name in _NAMES:
@@ -284,7 +284,7 @@ def _sine(given: object) -> tuple[float, float, float]:
     if not (isinstance(given, tuple | list) and len(given) in (2, 3)):
         raise InputError(
             problem=f"sine is {described(given)}",
-            mend="give (amplitude in m/s, omega in rad/s) and a bias, if there is one",
+            mend="give (amplitude in m/s, omega in rad/s), optionally with a bias",
         )
     amplitude, omega, *bias = (number(x, "sine") for x in given)
     return amplitude, omega, bias[0] if bias else 0.0

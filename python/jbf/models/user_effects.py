@@ -125,7 +125,7 @@ class UserEffect(Effect):
             if name not in columns:
                 raise InputError(
                     column=name,
-                    problem=f"is missing, and the {self.called} {self.name} needs it",
+                    problem=f"is missing, and the {self.called} {self.name} requires it",
                     mend="add the column",
                 )
         try:
@@ -142,20 +142,20 @@ class UserEffect(Effect):
         def wrong(problem: str) -> InputError:
             return InputError(
                 problem=f"the {self.called} {self.name} {problem}",
-                mend="its function must give one finite force (N) a sample",
+                mend="its function must return one finite force (N) per sample",
             )
 
         array = np.asarray(found)
         if array.dtype.kind not in "fiub":
             raise wrong(f"gives {array.dtype}")
         if array.shape not in ((), (n,)):
-            raise wrong(f"gives shape {array.shape} for {n} samples")
+            raise wrong(f"returns shape {array.shape} for {n} samples")
         force: Array = np.ascontiguousarray(np.broadcast_to(array.astype(float), (n,)))
         bad = np.flatnonzero(~np.isfinite(force))
         if bad.size:
             named = zip(self.parameters, values, strict=True)
             where = ", ".join(f"{p.name} = {v:g}" for p, v in named)
-            raise wrong(f"gives {force[bad[0]]} at sample {bad[0]} with {where}")
+            raise wrong(f"returns {force[bad[0]]} at sample {bad[0]} with {where}")
         return force
 
 
@@ -224,24 +224,24 @@ def register_effect(
         return InputError(problem=f"the effect {quoted(own)} {problem}", mend=mend)
 
     if not own.isidentifier():
-        raise wrong("has no proper name", "use letters, digits and _: name=...")
+        raise wrong("has an invalid name", "use letters, digits and _: name=...")
     if own in catalogue.built_in():
         raise wrong("is in the catalogue already", "choose another name")
     if stage not in STAGES:
         known = " or ".join(STAGES)
-        raise wrong(f"cannot act at the stage {quoted(stage)}", f"choose {known}")
+        raise wrong(f"cannot be at the stage {quoted(stage)}", f"choose {known}")
     if not pages:
         raise wrong("has no parameters", "give at least one jbf.Parameter with a null")
     check_pages(pages, wrong)
     if all(p.null is None for p in pages):
-        raise wrong("never vanishes", "give one parameter null=VALUE, where the force is zero")
+        raise wrong("never vanishes", "give one parameter null=VALUE, at which the force is zero")
     page = UserEffect(
         name=own,
         stage=STAGES[stage],
-        summary=summary or (inspect.getdoc(function) or "an effect of one's own").splitlines()[0],
-        equation=equation or "a function of one's own",
+        summary=summary or (inspect.getdoc(function) or "a user-defined effect").splitlines()[0],
+        equation=equation or "a user-defined function",
         source=source or f"{getattr(function, '__module__', 'unknown')}",
-        limits=limits or "as its author knows them",
+        limits=limits or "not specified",
         needs=(),
         refused={},
         moves_jumps=False,
@@ -278,30 +278,36 @@ def forget_effect(name: str) -> None:
     False
     """
     if not catalogue.drop(name):
-        raise InputError(problem=f"{quoted(name)} is no effect of your own", mend="check the name")
+        raise InputError(
+            problem=f"{quoted(name)} is not a user-defined effect", mend="check the name"
+        )
 
 
 def check_pages(pages: Sequence[Parameter], wrong: Callable[[str, str], InputError]) -> None:
     """Raise the error of `wrong` if a parameter lacks a valid name, bounds or start."""
     names = [p.name for p in pages]
     if len(set(names)) < len(names):
-        raise wrong("has two parameters of one name", "rename one")
+        raise wrong("has two parameters of the same name", "rename one")
     for p in pages:
         place = f"has a parameter {quoted(p.name)}"
         if not p.name.isidentifier():
-            raise wrong(f"{place} that is no name", "use letters, digits and _")
+            raise wrong(f"{place} that is not a valid name", "use letters, digits and _")
         if not (np.isfinite(p.lower) and np.isfinite(p.upper) and p.lower < p.upper):
             raise wrong(f"{place} without bounds", "give lower and upper, finite and in order")
         if not p.starts:
             raise wrong(f"{place} without a starting value", "give starts=(value,)")
         if not all(p.lower <= s <= p.upper for s in p.starts):
-            raise wrong(f"{place} that starts out of its bounds", "start between lower and upper")
+            raise wrong(
+                f"{place} that starts outside its bounds", "choose a start within the bounds"
+            )
         if p.log and p.lower <= 0.0:
             raise wrong(
-                f"{place} whose logarithm does not exist", "raise lower above 0, or log=False"
+                f"{place} whose logarithm does not exist", "set lower above 0, or log=False"
             )
         if p.null is not None and not p.lower <= p.null <= p.upper:
-            raise wrong(f"{place} with its null out of its bounds", "widen the bounds to the null")
+            raise wrong(
+                f"{place} with its null outside its bounds", "extend the bounds to the null"
+            )
 
 
 def columns_of(
@@ -315,7 +321,7 @@ def columns_of(
     found = []
     for argument in inspect.signature(function).parameters.values():
         if argument.kind not in (kinds.POSITIONAL_OR_KEYWORD, kinds.KEYWORD_ONLY):
-            raise wrong(f"takes {argument}", "name every column and parameter in its function")
+            raise wrong(f"takes {argument}", "name every column and parameter explicitly")
         if argument.name in names:
             names.remove(argument.name)
         else:
@@ -354,7 +360,7 @@ def load_effects(path: PathLike) -> None:
     before = dict(catalogue.user_effects()) | dict(catalogue.user_laws())
     file = Path(path)
     if not file.is_file():
-        raise InputError(file=file, problem="is no file", mend="name a Python file")
+        raise InputError(file=file, problem="is not a file", mend="name a Python file")
     try:
         runpy.run_path(str(file))
     except InputError as error:

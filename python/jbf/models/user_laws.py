@@ -111,15 +111,15 @@ def register_law(
         return InputError(problem=f"the law {quoted(own)} {problem}", mend=mend)
 
     if not own.isidentifier() or own == AUTO:
-        raise wrong("has no proper name", f"use letters, digits and _, not {AUTO}: name=...")
+        raise wrong("has an invalid name", f"use letters, digits and _, not {AUTO}: name=...")
     if own in catalogue.built_in_laws():
         raise wrong("is in the catalogue already", "choose another name")
     check_pages(pages, wrong)
     words = {
-        "summary": summary or (inspect.getdoc(function) or "a law of one's own").splitlines()[0],
-        "equation": equation or "a function of one's own",
+        "summary": summary or (inspect.getdoc(function) or "a user-defined law").splitlines()[0],
+        "equation": equation or "a user-defined function",
         "source": source or f"{getattr(function, '__module__', 'unknown')}",
-        "limits": limits or "as its author knows them",
+        "limits": limits or "not specified",
     }
     force = UserEffect(
         name=own,
@@ -176,4 +176,4 @@ def forget_law(name: str) -> None:
     False
     """
     if not catalogue.drop_law(name):
-        raise InputError(problem=f"{quoted(name)} is no law of your own", mend="check the name")
+        raise InputError(problem=f"{quoted(name)} is not a user-defined law", mend="check the name")

@@ -59,7 +59,7 @@ class ModelFile:
         object.__setattr__(self, "effects", tuple(self.effects))
         object.__setattr__(self, "fit", {k: _plain(v, f"fit.{k}") for k, v in self.fit.items()})
         if len(set(self.effects)) < len(self.effects):
-            raise InputError(key="effects", problem="names one twice", mend="name each once")
+            raise InputError(key="effects", problem="contains a name twice", mend="name each once")
         for name in self.parameters:
             effect, dot, parameter = name.partition(".")
             if dot and effect not in self.effects:
@@ -102,7 +102,7 @@ class Vocabulary:
                 problem = f"{quoted(word)} is not known"
                 mend = did_you_mean(word, known)
                 if key == "effects":
-                    mend += "; one of your own is registered first: --effects-from FILE.py"
+                    mend += "; register a user-defined one first: --effects-from FILE.py"
                 raise InputError(key=key, problem=problem, mend=mend)
         for name, parameter in model.parameters.items():
             effect, dot, short = name.rpartition(".")

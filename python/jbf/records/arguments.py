@@ -72,7 +72,7 @@ def check_run(run: Run) -> None:
             raise InputError(
                 file=run.name,
                 column=column,
-                problem="is no array of float64, shape (N,)",
+                problem="is not an array of float64 of shape (N,)",
                 mend="make the run with jbf.Run.from_arrays, which converts and checks",
             )
     check_columns(run.name, run.columns(), None, None)
@@ -101,7 +101,7 @@ def list_of_runs(value: object) -> list[Run]:
             mend = "give a list of jbf.Run"
             if isinstance(run, str | os.PathLike):
                 mend = f"read it: jbf.read_run({quoted(os.fspath(run))})"
-            raise InputError(problem=f"runs holds {described(run)} at place {i}", mend=mend)
+            raise InputError(problem=f"runs holds {described(run)} at index {i}", mend=mend)
         check_run(run)
     return runs
 
@@ -116,7 +116,7 @@ def names(value: object, what: str) -> tuple[str, ...]:
     """
     if isinstance(value, str):
         raise InputError(
-            problem=f"{what} is text where a list of names is meant",
+            problem=f"{what} is a string, but a list of names is required",
             mend=f"write {what}=[{quoted(value) if value else ''}]",
         )
     if not isinstance(value, Iterable):
@@ -127,7 +127,7 @@ def names(value: object, what: str) -> tuple[str, ...]:
     for name in found:
         if not isinstance(name, str):
             raise InputError(
-                problem=f"{what} holds {described(name)}", mend="write names, in quotes"
+                problem=f"{what} holds {described(name)}", mend="write names as strings"
             )
     return found
 
@@ -136,7 +136,7 @@ def checked_integer(value: object, what: str, least: int = 0) -> int:
     """Return the value as an integer that is at least `least`; raise an InputError otherwise."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         shown = str(value) if isinstance(value, Real) else described(value)
-        raise InputError(problem=f"{what} is {shown}", mend=f"give a whole number from {least} on")
+        raise InputError(problem=f"{what} is {shown}", mend=f"give an integer of at least {least}")
     return int(value)
 
 
@@ -154,7 +154,7 @@ def one_of(value: object, known: Iterable[Word], what: str) -> Word:
             return word
     if isinstance(value, str):
         raise InputError(
-            problem=f"there is no {what} {quoted(value)}", mend=did_you_mean(value, words)
+            problem=f"{what} {quoted(value)} is not known", mend=did_you_mean(value, words)
         )
     raise InputError(problem=f"the {what} is {described(value)}", mend=f"known: {', '.join(words)}")
 
@@ -176,14 +176,14 @@ def numbers(
     """Return a contiguous array of numbers; with `flat`, its shape must be (N,)."""
 
     def wrong(shown: str) -> InputError:
-        return InputError(problem=f"{what} {shown}", mend="give numbers, one a sample")
+        return InputError(problem=f"{what} {shown}", mend="give numbers, one per sample")
 
     if value is None:
         raise wrong("is None")
     try:
         array: npt.NDArray[Any] = np.ascontiguousarray(value, dtype=dtype)
     except (TypeError, ValueError):
-        raise wrong("is no array of numbers") from None
+        raise wrong("is not an array of numbers") from None
     if flat and array.ndim != 1:
         raise wrong(f"has shape {array.shape}")
     return array

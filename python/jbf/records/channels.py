@@ -57,7 +57,7 @@ def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[
         raise InputError(
             file=name,
             column="velocity_m_s",
-            problem="is missing, and no position tells the motion",
+            problem="is missing, and no position is given",
             mend=f"give one of {', '.join(MOTION)}",
         )
     first, last = max(c[0] for c in moving), min(c[-1] for c in moving)
@@ -99,10 +99,12 @@ def _check_clock(clock: Array, values: Array, column: str, name: str) -> None:
         return InputError(file=name, column=column, problem=problem, mend=mend)
 
     if len(clock) != len(values):
-        raise wrong(f"has {len(values)} values at {len(clock)} instants", "give one a reading")
+        raise wrong(
+            f"has {len(values)} values at {len(clock)} instants", "give one value per instant"
+        )
     if column in ALONE and len(clock) < MIN_SAMPLES:
         raise wrong(f"has {len(clock)} readings", f"a run needs at least {MIN_SAMPLES}")
     if not (len(clock) and np.isfinite(clock).all() and np.isfinite(values).all()):
-        raise wrong("is not all finite numbers", "leave out what was not read")
+        raise wrong("contains values that are not finite", "remove the missing readings")
     if np.any(np.diff(clock) <= 0.0):
-        raise wrong("has a time that repeats or runs back", "sort its readings and drop repeats")
+        raise wrong("has a time that repeats or decreases", "sort the readings and remove repeats")

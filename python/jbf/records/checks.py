@@ -76,7 +76,7 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
 
     def wrong(problem: str) -> InputError:
         return InputError(
-            file=name, column=column, problem=problem, mend="give one number a sample, shape (N,)"
+            file=name, column=column, problem=problem, mend="give one number per sample, shape (N,)"
         )
 
     listed = values if isinstance(values, list | tuple) else ()
@@ -85,17 +85,17 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
             file=name,
             column=column,
             problem="has masked samples",
-            mend="leave them out, or give Run.from_channels the readings with their instants",
+            mend="remove them, or give Run.from_channels the readings with their instants",
         )
     try:
         array = np.asarray(values)
         # Text, dates and complex numbers would be converted to values that the user did not intend.
         if array.dtype.kind not in "biufO":
-            raise wrong(f"holds {array.dtype}, not numbers")
+            raise wrong(f"has dtype {array.dtype}, not numbers")
         if array.dtype.kind == "O":
             text = [x for x in array.flat if isinstance(x, str | bytes)]
             if text:
-                raise wrong(f"holds the text {quoted(text[0])}, not numbers")
+                raise wrong(f"contains the text {quoted(text[0])}, not numbers")
         array = frozen(array)
     except InputError:
         raise
@@ -148,7 +148,7 @@ def check_columns(
                 file=file,
                 column=column,
                 problem=f"has {count_of(len(values), 'sample')} where time_s has {samples}",
-                mend="give every column one value a sample",
+                mend="give every column one value per sample",
             )
         bad = np.flatnonzero(~np.isfinite(values))
         if column == SLOW and np.isfinite(values).any():
@@ -159,15 +159,15 @@ def check_columns(
                 column,
                 int(bad[0]),
                 f"{values[bad[0]]} is not a finite number",
-                "correct the cell or drop the row",
+                "correct the cell or remove the row",
             )
         bad = np.flatnonzero(np.abs(values) > LARGEST) if column in known else bad
         if bad.size:
             raise wrong(
                 column,
                 int(bad[0]),
-                f"{values[bad[0]]} is beyond what any machine does",
-                "correct the cell, or the unit",
+                f"{values[bad[0]]} is not plausible",
+                "correct the cell or the unit",
             )
     time_s = columns["time_s"]
     bad = np.flatnonzero(np.diff(time_s) <= 0.0)
@@ -176,15 +176,15 @@ def check_columns(
         raise wrong(
             "time_s",
             int(bad[0]) + 1,
-            f"time repeats at {now}" if now == before else f"time runs back from {before} to {now}",
-            "sort the rows and drop repeats; one file is one run",
+            f"time repeats at {now}" if now == before else f"time decreases from {before} to {now}",
+            "sort the rows and remove repeats; one file is one run",
         )
     bad = np.flatnonzero(np.diff(time_s) < SHORTEST_S)
     if bad.size:
         raise wrong(
             "time_s",
             int(bad[0]) + 1,
-            f"a step of {time_s[bad[0] + 1] - time_s[bad[0]]} s is shorter than any logger's",
+            f"a time step of {time_s[bad[0] + 1] - time_s[bad[0]]} s is not plausible",
             "give the time in seconds",
         )
     if "load_n" in columns:
@@ -194,7 +194,7 @@ def check_columns(
                 "load_n",
                 int(bad[0]),
                 f"a load of {columns['load_n'][bad[0]]} N is not above zero",
-                "correct the cell or drop the row",
+                "correct the cell or remove the row",
             )
 
 
@@ -210,7 +210,7 @@ def selection(which: slice | npt.ArrayLike, count: int, name: str) -> Any:
         if which.step is not None and which.step < 1:
             raise InputError(
                 file=name,
-                problem="a selection cannot run backwards",
+                problem="a selection cannot be reversed",
                 mend="use a step > 0",
             )
         return which

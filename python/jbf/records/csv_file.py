@@ -105,14 +105,14 @@ def _checked_header(
     if all(_is_number(cell) for cell in header):
         raise wrong(
             None,
-            "holds numbers where the header should be",
+            "has numbers where the header should be",
             f"put a line with the column names first, without #: {_HEADER_EXAMPLE}",
         )
     if len(header) == 1 and len(header[0].split()) > 1:
-        raise wrong(None, "the names are parted by blanks", "part the cells with commas")
+        raise wrong(None, "the names are separated by blanks", "separate the cells with commas")
     for name in header:
         if name and header.count(name) > 1:
-            raise wrong(name, "stands twice in the header", "keep one and rename or drop the other")
+            raise wrong(name, "is in the header twice", "keep one and rename or remove the other")
     # The file of a drive has many other columns, so only the required ones are checked there.
     absent = [name for name in (COLUMNS if of_drive is None else required) if name not in header]
     aliases = _ALIASES if of_drive is None else _ALIASES | DRIVE_ALIASES
@@ -129,7 +129,7 @@ def _checked_header(
                 mend = f"add it; the header has {listed(header)}"
                 told = [other for other in OF_DRIVES if other in header]
                 if of_drive is None and told:
-                    mend += f"; a rig with [drive] tells what {told[0]} is"
+                    mend += f"; a rig with [drive] defines {told[0]}"
             raise wrong(name, "is missing", mend)
     for name, found in misses.items():
         raise wrong(
@@ -149,13 +149,13 @@ def _is_number(cell: str) -> bool:
 
 def _bad_cell(path: Path, row: int, column: str, cell: str) -> InputError:
     if not cell.strip():
-        problem, mend = "the cell is empty", "fill it or drop the row"
+        problem, mend = "the cell is empty", "fill it or remove the row"
     elif re.fullmatch(r"\s*[+-]?\d*,\d+(e[+-]?\d+)?\s*", cell, re.IGNORECASE):
         problem = f"{quoted(cell.strip())} has a decimal comma"
         mend = "write every number with a decimal point"
     else:
         problem = f"{quoted(cell.strip())} is not a number"
-        mend = "correct the cell or drop the row"
+        mend = "correct the cell or remove the row"
     return InputError(file=path, row=row, column=column, problem=problem, mend=mend)
 
 
@@ -188,7 +188,7 @@ def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]
         for cells in reader:
             line += 1
             if first + reader.line_num > line:
-                raise wrong(line, "a quote is not closed")
+                raise wrong(line, "a quotation mark is not closed")
             if cells:
                 records.append(cells)
                 numbers.append(line)
@@ -260,7 +260,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
             file=path,
             row=numbers[at],
             problem=f"has {count_of(len(rows[at]), 'cell')} where the header has {len(header)}",
-            mend="give every row one cell a column, numbers with a decimal point",
+            mend="give every row one cell per column, with a decimal point",
         )
     columns: dict[str, Array] = {}
     gaps: dict[str, Mask] = {}

@@ -21,8 +21,8 @@ def fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Fi
         return celsius, ()
     ends = np.concatenate((time_s[:1], time_s[known], time_s[-1:]))
     longest_s = float(np.max(np.diff(ends)))
-    words = f"the temperature was read at {known.sum()} of {len(celsius)} samples"
-    finding = Finding("gaps", SLOW, name, longest_s, "s", "straight lines between", words)
+    words = f"the temperature has readings at {known.sum()} of {len(celsius)} samples"
+    finding = Finding("gaps", SLOW, name, longest_s, "s", "interpolated linearly", words)
     return filled(time_s, celsius, known), (finding,)
 
 

@@ -104,18 +104,20 @@ class Drive:
         strangers = (other, "pitch_m") if self.motion == "rotary" else (other,)
         for name in strangers:
             if getattr(self, name) is not None:
-                raise _wrong(name, f"means nothing of a {self.motion} drive", "drop it")
+                raise _wrong(name, f"does not apply to a {self.motion} drive", "remove it")
         if self.friction == "none" and self.moved is None:
             name = "inertia_kg_m2" if self.motion == "rotary" else "mass_kg"
             problem = 'is missing, and is required for friction = "none"'
             raise _wrong(
-                name, problem, "write the known value; friction is it times the deceleration"
+                name,
+                problem,
+                "write the known value; friction is its product with the deceleration",
             )
         if self.motion == "linear" and self.pitch_m is None:
             turning = self.friction == "torque" or self._of_motor is not None
             if turning or self.gear_ratio != 1.0:
-                problem = "is missing, and turns a motor's torque into a force"
-                mend = "write how far the drive moves in one turn of its screw, m"
+                problem = "is missing, and is required to convert the motor's torque to a force"
+                mend = "write the travel per revolution of the screw, m"
                 raise _wrong("pitch_m", problem, mend)
 
     def _check_constants(self) -> None:
@@ -123,12 +125,10 @@ class Drive:
         given = [name for name in _ALL_CONSTANTS if getattr(self, name) is not None]
         for name in given:
             if name not in wanted:
-                problem = (
-                    f'is not used where a {self.motion} drive has friction = "{self.friction}"'
-                )
-                raise _wrong(name, problem, "drop it, or correct friction")
+                problem = f'is not used for a {self.motion} drive with friction = "{self.friction}"'
+                raise _wrong(name, problem, "remove it, or correct friction")
         if wanted and len(given) != 1:
-            problem = "both stand there" if given else "is missing"
+            problem = "are both given" if given else "is missing"
             mend = "keep one of them" if given else f'friction = "{self.friction}" needs it'
             raise _wrong(" or ".join(wanted), problem, mend)
 
@@ -187,7 +187,7 @@ class Drive:
 def _check_word(key: str, word: object, words: Sequence[str], of: str = "") -> None:
     if word not in words:
         shown = quoted(word) if isinstance(word, str) else f"a {type(word).__name__}"
-        raise _wrong(key, f"{shown} is no {key}{of}", did_you_mean(word, words))
+        raise _wrong(key, f"{shown} is not a valid {key}{of}", did_you_mean(word, words))
 
 
 def _wrong(key: str, problem: str, mend: str) -> InputError:

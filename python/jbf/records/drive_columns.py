@@ -54,7 +54,7 @@ _ENDS = {
     "_a": "1 A",
     "_v": "1 V",
     "_percent": "1 %",
-    "_rpm": "1 turn a minute",
+    "_rpm": "1 revolution per minute",
     "_rad_s": "1 rad/s",
     "_rad": "1 rad",
 }
@@ -110,7 +110,7 @@ class DriveColumns:
         section = f'the rig\'s [drive] has motion = "{self.drive.motion}"'
         for name, mend in _foreign_columns(self).items():
             if name in header:
-                problem = f"does not go with the rig: {section}"
+                problem = f"does not match the rig: {section}"
                 if name in ("friction_n", "velocity_m_s", "position_m"):
                     problem += f', friction = "{self.drive.friction}"'
                 raise InputError(file=path, row=row, column=name, problem=problem, mend=mend)
@@ -175,18 +175,20 @@ def _foreign_columns(columns: DriveColumns) -> dict[str, str]:
     first = next(iter(columns.friction), None)
     found = {}
     if first not in ("friction_n", None):
-        found["friction_n"] = f"keep {first} and drop it, or correct [drive]"
+        found["friction_n"] = f"keep {first} and remove it, or correct [drive]"
     if columns.drive.motion == "rotary":
         for name, own in (("velocity_m_s", "velocity_rad_s"), ("position_m", "angle_rad")):
             found[name] = f"give {own}, or correct [drive]"
         return found
-    found["weight_angle_rad"] = "drop it: on a slide the weight is constant (sensor_offset)"
-    found["angle_rad"] = "is it the motor's? then rename it to motor_angle_rad, else drop it"
+    found["weight_angle_rad"] = "remove it: on a slide the weight is constant (sensor_offset)"
+    found["angle_rad"] = (
+        'an angle needs motion = "rotary"; rename the motor\'s angle to motor_angle_rad'
+    )
     for name in ("velocity_rad_s", "speed_rpm"):
-        found[name] = f"is it the motor's? then rename it to motor_{name}, else drop it"
+        found[name] = f'it needs motion = "rotary"; rename the motor\'s speed to motor_{name}'
     if columns.drive.pitch_m is None:
         for name in ("motor_angle_rad", "motor_velocity_rad_s", "motor_speed_rpm"):
-            found[name] = "give [drive] its pitch_m (way for one turn), or rename the column"
+            found[name] = "give [drive] its pitch_m (travel per revolution), or rename the column"
     if columns.drive.friction == "torque":
         found["torque_n_m"] = "rename it to motor_torque_n_m if it is the motor's"
     return found
@@ -200,10 +202,10 @@ def _unwrapped(angle: Array) -> Array:
 
 def _conversion(name: str, target: str, column: str, size: float, si: str) -> Finding:
     one = next(unit for end, unit in _ENDS.items() if column.endswith(end))
-    words = f"{column} was read as {si}: {one} is {size:.5g} {si} where the drive moves"
-    return Finding("converted", target, name, size, si, "once, on reading", words)
+    words = f"{column} was converted to {si}: {one} corresponds to {size:.5g} {si} of the drive"
+    return Finding("converted", target, name, size, si, "converted on reading", words)
 
 
 def _not_read(name: str, target: str, other: str, column: str) -> Finding:
-    words = f"{other} is there, too; {column} was read"
+    words = f"{other} is also recorded; {column} is used"
     return Finding("second_column", target, name, 0.0, "1", "kept, not used", words)

@@ -24,7 +24,9 @@ def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
     path = folder / "rig.toml"
     if not os.path.isfile(path):
         raise InputError(
-            file=folder, problem="holds no rig.toml", mend="put the rig's file beside its runs"
+            file=folder,
+            problem="contains no rig.toml",
+            mend="put the rig file into the folder of its runs",
         )
     rig = read_rig(path)
     return rig, read_runs(folder, rig)
@@ -47,7 +49,7 @@ def campaigns_in(folder: PathLike) -> dict[str, Path]:
     if not found:
         raise InputError(
             file=folder,
-            problem="holds no campaign",
-            mend="give each campaign a folder in it, with rig.toml and the runs as CSV",
+            problem="contains no campaign",
+            mend="give each campaign a subfolder with rig.toml and the runs as CSV",
         )
     return found

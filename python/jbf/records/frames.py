@@ -34,7 +34,7 @@ def columns_of(frame: object, name: str) -> dict[str, Array]:
     if names is None:
         raise InputError(
             file=name,
-            problem=f"{type(frame).__name__} has no columns by name",
+            problem=f"{type(frame).__name__} has no named columns",
             mend="give a pandas or polars frame, an Arrow table or a dict of arrays",
         )
     there: Any = frame
@@ -98,7 +98,7 @@ def _by_arrow(frame: object, name: str) -> Any:
     except ImportError:
         raise InputError(
             file=name,
-            problem=f"{type(frame).__name__} exports itself by Arrow alone, and pyarrow is missing",
+            problem=f"{type(frame).__name__} requires pyarrow, which is not installed",
             mend="pip install pyarrow, or give a frame or a dict of arrays",
         ) from None
     return pyarrow.table(frame)

@@ -69,14 +69,14 @@ class Bearing:
         if isinstance(self.count, bool) or not isinstance(self.count, int) or self.count < 1:
             raise InputError(
                 key="count",
-                problem=f"{self.count!r} is not a whole number of at least 1",
-                mend="write how many bearings the shaft has, such as 4",
+                problem=f"{self.count!r} is not an integer of at least 1",
+                mend="write the number of bearings on the shaft, such as 4",
             )
         if self.count > MOST_BEARINGS:
             raise InputError(
                 key="count",
-                problem=f"{self.count} bearings are more than a shaft has",
-                mend=f"write {MOST_BEARINGS} or less",
+                problem=f"{self.count} bearings exceed the limit",
+                mend=f"write at most {MOST_BEARINGS}",
             )
 
 
@@ -114,7 +114,7 @@ class Lubricant:
         if not (COLDEST_C <= celsius <= WARMEST_C):
             raise InputError(
                 key="temperature_c",
-                problem=f"{celsius} is not from {COLDEST_C:g} to {WARMEST_C:g}",
+                problem=f"{celsius} is outside {COLDEST_C:g} to {WARMEST_C:g}",
                 mend="give it in degrees Celsius",
             )
         object.__setattr__(self, "temperature_c", celsius)
@@ -203,13 +203,13 @@ class Rig:
             if value is not None and not isinstance(value, kind):
                 raise InputError(
                     key=name,
-                    problem=f"the {name} is no jbf.{kind.__name__} but of {type(value).__name__}",
+                    problem=f"the {name} is not a jbf.{kind.__name__} but a {type(value).__name__}",
                     mend=f"give jbf.{kind.__name__}(...), or read a file: jbf.read_rig(PATH)",
                 )
         if self.bearing is not None and self.drive is not None:
             raise InputError(
                 key="drive",
-                problem="stands beside a [bearing], and both say what friction is",
+                problem="cannot be combined with [bearing]: both define the friction",
                 mend="keep one: [bearing] for journal bearings, [drive] for any other machine",
             )
 
@@ -271,7 +271,7 @@ class Rig:
         loads_n = {"4.2": 104.0, "4.3": 83.5, "4.4": 104.0, "4.5": 83.5}
         if table not in loads_n:
             raise InputError(
-                problem=f"{quoted(table)} is no parameter table of the thesis",
+                problem=f"{quoted(table)} is not a parameter table of the thesis",
                 mend=f"choose from {', '.join(loads_n)}",
             )
         sizes = _core.thesis_bearing()

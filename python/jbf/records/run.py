@@ -219,7 +219,7 @@ class Run(Shown):
             raise InputError(
                 file=name,
                 column="velocity_m_s",
-                problem="is missing, and no position tells the motion",
+                problem="is missing, and no position is given",
                 mend=f"give one of {', '.join(MOTION)}",
             )
         check_columns(name, arrays, None, None)
@@ -267,7 +267,7 @@ class Run(Shown):
                 file=name,
                 column="time_s",
                 problem="is missing",
-                mend=f"call a column so (it has {listed(columns)})",
+                mend=f"rename a column (it has {listed(columns)})",
             )
         own = {column: recorded_samples(time_s, values) for column, values in columns.items()}
         if any(len(clock) < len(time_s) for clock, _ in own.values()):

@@ -21,7 +21,7 @@ def _expanded(item: PathLike) -> list[Path]:
         found = sorted(p for p in path.iterdir() if p.suffix.lower() == ".csv")
         if not found:
             raise InputError(
-                file=path, problem="the folder holds no .csv file", mend="name another"
+                file=path, problem="the folder contains no .csv file", mend="name another folder"
             )
         return found
     if not os.path.lexists(path) and glob.has_magic(str(path)):

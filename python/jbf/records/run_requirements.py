@@ -55,13 +55,13 @@ def run_on(rig: Rig, run: Run) -> Run:
     if run.quantities != OF_BEARING and run.quantities.motion != wanted.motion:
         raise InputError(
             file=run.path or run.name,
-            problem=f"was read for a {run.quantities.motion} drive, and this rig is none",
-            mend="give the rig that it was read with",
+            problem=f"was read for a {run.quantities.motion} drive, but the rig is not one",
+            mend="give the rig with which it was read",
         )
     if run.quantities == OF_BEARING and wanted.motion == "rotary" and run.path is not None:
         raise InputError(
             file=run.path,
-            problem="was read without the rig, whose [drive] says what its columns are",
+            problem="was read without the rig, whose [drive] defines its columns",
             mend="read it with the rig: jbf.read_run(path, rig)",
         )
     return replace(run, quantities=wanted)

@@ -50,9 +50,7 @@ def positive(value: object, key: str) -> float:
             key=key, problem=f"{found} is not above zero and finite", mend="correct the value"
         )
     if not LEAST <= found <= MOST:
-        raise InputError(
-            key=key, problem=f"{found} is beyond what any machine has", mend="give it in SI units"
-        )
+        raise InputError(key=key, problem=f"{found} is not plausible", mend="give it in SI units")
     return found
 
 

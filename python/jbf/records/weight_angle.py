@@ -41,6 +41,6 @@ def check_weight_angles(rig: Rig, runs: Sequence[Run]) -> None:
         raise InputError(
             file=lacking[0].path or lacking[0].name,
             column=WEIGHT_ANGLE,
-            problem=f"is missing, and {having[0].name} has it",
-            mend="give it in every run, or in none",
+            problem=f"is missing, but {having[0].name} has it",
+            mend="record it in every run, or in none",
         )

@@ -48,8 +48,8 @@ def _converted(key: str, value: object, prefix: str) -> object:
     if unit is None or unit.dimensions != wanted.dimensions:
         raise InputError(
             key=f"{prefix}{key}",
-            problem=f"{value!r} is no quantity in {wanted.text}",
-            mend=f"write a number of {wanted.text}, or one with its unit",
+            problem=f"{value!r} is not a quantity in {wanted.text}",
+            mend=f"write a number in {wanted.text}, or a number with its unit",
         )
     return float(unit.converted(np.array([float(match["number"])]), wanted)[0])
 

@@ -180,7 +180,7 @@ fn checked<T: Real>(start: &Start<T>, times_s: &[f64], tolerance: f64) -> Result
             t >= before && t.is_finite(),
             "times_s",
             t,
-            "must be finite, not before the start, and rise",
+            "must be finite, increasing, and not before the start",
         )?;
         before = t;
     }

@@ -24,14 +24,14 @@ impl<'a> Sampled<'a> {
             time_s.len() == velocity_m_s.len() && time_s.len() >= 2,
             "samples",
             velocity_m_s.len() as f64,
-            "must be two or more, and as many as the times",
+            "must be at least 2, and as many as the times",
         )?;
         for (i, &t) in time_s.iter().enumerate() {
             check(
                 t.is_finite() && (i == 0 || t > time_s[i - 1]),
                 "time_s",
                 t,
-                "must be finite, and rise",
+                "must be finite and increasing",
             )?;
         }
         for &v in velocity_m_s {

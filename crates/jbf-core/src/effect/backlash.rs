@@ -75,15 +75,15 @@ impl<T: Real> State<T> {
 impl<T: Real> Effect<T> for Backlash<T> {
     const INFO: Info = Info::new("backlash", Stage::Drive)
         .summary(
-            "a gap in gear, key or coupling: after a turn the journal stands until it is \
-                  crossed",
+            "play in gear, key or coupling: after a reversal the driven side rests until the \
+             gap is crossed",
         )
-        .equation("th_j stands while th_m crosses the gap, friction 0; at a flank th_j' = th_m'")
+        .equation("th_j constant while th_m crosses the gap, friction 0; at a flank th_j' = th_m'")
         .source("Nordin & Gutman 2002; play operator: Brokate & Sprekels 1996")
         .limits(
-            "rigid flanks without a bounce; no drag in the gap; the first motion finds its \
-                 flank closed; beside presliding the bristle keeps its force while the journal \
-                 stands; on a linear axis the gap is in m",
+            "rigid flanks without rebound; no drag in the gap; the first motion starts at \
+             its flank; a presliding bristle keeps its force while the driven side rests; on \
+             a linear axis the gap is in m",
         )
         .parameters(&[Parameter::new(
             "gap",

@@ -36,10 +36,13 @@ pub(super) const PARAMETERS: &[Parameter] = &[
 
 impl<T: Real> Effect<T> for Cogging<T> {
     const INFO: Info = Info::new("cogging", Stage::Other)
-        .summary("a motor's force that rises and falls with every pitch of the way, at rest too")
-        .equation("F -> F + A sin(2 pi x/p - phi), x the way of the surface, m")
+        .summary("motor force that is periodic in the position, also at rest")
+        .equation("F -> F + A sin(2 pi x/p - phi), x the position of the surface, m")
         .source("Zhu & Howe 2000; Otten et al. 1997")
-        .limits("one wave, beside which cogging_2 is another; the way must be absolute or have the same zero in every run")
+        .limits(
+            "one harmonic; cogging_2 adds a second; the position must be absolute or \
+                 have the same zero in every run",
+        )
         .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position]);
     /// Radius, m.

@@ -18,10 +18,10 @@ pub struct SecondCogging<T>(Cogging<T>);
 
 impl<T: Real> Effect<T> for SecondCogging<T> {
     const INFO: Info = Info::new("cogging_2", Stage::Other)
-        .summary("a second force over a pitch beside the first: a harmonic, or another pitch")
-        .equation("F -> F + A sin(2 pi x/p - phi), x the way of the surface, m")
+        .summary("second periodic motor force: a harmonic of the first, or another pitch")
+        .equation("F -> F + A sin(2 pi x/p - phi), x the position of the surface, m")
         .source("Zhu & Howe 2000; Otten et al. 1997")
-        .limits("one wave; the way must be absolute or have the same zero in every run")
+        .limits("one harmonic; the position must be absolute or have the same zero in every run")
         .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position])
         .further("cogging");

@@ -20,18 +20,12 @@ impl<T: Real> Effect<T> for CoulombDrag<T> {
         .summary("dry friction of seals or support bearings, independent of the load")
         .equation("F -> F + F_d sgn(v)")
         .source("Cohn 1998, section 6.6")
-        .limits(
-            "seals stiffen with speed and pressure; a drag that grows with speed is not this one",
-        )
-        .parameters(&[Parameter::new(
-            "F_d",
-            "N",
-            "drag force of one bearing's share",
-            [0.0, 1e4],
-            &[0.5],
-        )
-        .null(0.0)
-        .start(Start::Drag)])
+        .limits("constant level; seals also stiffen with speed and pressure, which is not included")
+        .parameters(&[
+            Parameter::new("F_d", "N", "drag force per bearing", [0.0, 1e4], &[0.5])
+                .null(0.0)
+                .start(Start::Drag),
+        ])
         .needs(&[Need::NoDryLevel]);
     type State = ();
 

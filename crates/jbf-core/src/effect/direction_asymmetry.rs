@@ -17,17 +17,17 @@ pub struct DirectionAsymmetry<T> {
 
 impl<T: Real> Effect<T> for DirectionAsymmetry<T> {
     const INFO: Info = Info::new("direction_asymmetry", Stage::Contact)
-        .summary("friction that is larger one way than the other")
+        .summary("friction that is larger in one direction")
         .equation("f -> f (1 + a sgn(v))")
         .source("Armstrong-Helouvry et al. 1994; Cohn 1998, section 4.1 (belt drive)")
         .limits(
-            "scales the whole friction, of a drive dry_asymmetry the dry one and viscous_asymmetry \
-             the viscous one; an offset of the cell shifts it instead, and is there at rest too",
+            "scales the whole friction; on a drive, dry_asymmetry and viscous_asymmetry \
+             scale its parts; a sensor offset shifts the force instead, also at rest",
         )
         .parameters(&[Parameter::new(
             "a",
             "-",
-            "share by which friction is larger in positive motion",
+            "relative excess of friction in positive motion",
             [-0.95, 0.95],
             &[0.05],
         )

@@ -24,17 +24,17 @@ pub struct DryAsymmetry<T> {
 
 impl<T: Real> Effect<T> for DryAsymmetry<T> {
     const INFO: Info = Info::new("dry_asymmetry", Stage::Contact)
-        .summary("dry friction that is larger one way than the other")
+        .summary("dry friction that is larger in one direction")
         .equation("F_dry -> F_dry (1 + a sgn(v))")
         .source("Armstrong-Helouvry et al. 1994")
         .limits(
-            "of a dry level that nothing changes, only a rest tells it from a force one way, which \
-             is sensor_offset",
+            "with a constant dry level, only rests distinguish it from a constant force \
+             (sensor_offset)",
         )
         .parameters(&[Parameter::new(
             "a",
             "-",
-            "share by which dry friction is larger in positive motion",
+            "relative excess of dry friction in positive motion",
             [-0.95, 0.95],
             &[0.05],
         )

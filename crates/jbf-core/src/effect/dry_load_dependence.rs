@@ -22,11 +22,11 @@ pub struct DryLoadDependence<T> {
 impl<T: Real> Effect<T> for DryLoadDependence<T> {
     const INFO: Info = Info::new("dry_load_dependence", Stage::Contact)
         .summary("dry friction that grows with the load, pressure or transmitted force")
-        .equation("F -> F + mu L sgn(v), L the recorded load; the level never below zero")
+        .equation("F -> F + mu L sgn(v), L the recorded load; the level is never below zero")
         .source("Amontons 1699; Coulomb 1785; Hamon, Gautier & Garrec 2010")
-        .limits("a straight line over the load: what a seal or a gear does far from it is not said")
+        .limits("linear in the load; extrapolation beyond the recorded loads is not reliable")
         .parameters(&[
-            Parameter::new("mu", "-", "dry friction over load", [-10.0, 10.0], &[0.1]).null(0.0),
+            Parameter::new("mu", "-", "dry friction per load", [-10.0, 10.0], &[0.1]).null(0.0),
         ])
         .needs(&[Need::NoFilm, Need::Loads]);
     type State = ();

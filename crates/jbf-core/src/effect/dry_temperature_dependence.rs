@@ -25,12 +25,15 @@ impl<T: Real> Effect<T> for DryTemperatureDependence<T> {
         .summary("dry friction that rises or falls with the recorded temperature")
         .equation("F_c -> F_c (1 + a (T - T_0)), T the recorded temperature; never below zero")
         .source("Bittencourt & Gunnarsson 2012; Simoni et al. 2019")
-        .limits("a straight line over the temperature: what lies far from it is not said")
+        .limits(
+            "linear in the temperature; extrapolation beyond the recorded temperatures \
+                 is not reliable",
+        )
         .parameters(&[
             Parameter::new(
                 "a_1_k",
                 "1/K",
-                "change of the dry friction with each kelvin",
+                "relative change of the dry friction per kelvin",
                 [-0.2, 0.2],
                 &[-0.01],
             )

@@ -30,10 +30,10 @@ pub struct State<T> {
 
 impl<T: Real> Effect<T> for DwellStiction<T> {
     const INFO: Info = Info::new("dwell_stiction", Stage::Contact)
-        .summary("static friction that has grown during a rest")
+        .summary("static friction that grows during a rest")
         .equation("f -> f + a (1 - exp(-(t_d/t_0)^m)) exp(-s/s_0) sgn(v)")
         .source("Kato et al. 1972; Cohn 1998, section 2.1.5")
-        .limits("a rest is speed exactly zero; creep during a rest, and its history, are not seen")
+        .limits("a rest has a speed of exactly zero; creep during a rest is not included")
         .parameters(&[
             Parameter::new(
                 "a",
@@ -46,7 +46,7 @@ impl<T: Real> Effect<T> for DwellStiction<T> {
             Parameter::new(
                 "t_0_s",
                 "s",
-                "length of rest for 63 % of it",
+                "rest duration for 63 % of it",
                 [1e-3, 1e6],
                 &[3.0],
             )
@@ -55,7 +55,7 @@ impl<T: Real> Effect<T> for DwellStiction<T> {
             Parameter::new(
                 "s_0",
                 "m",
-                "distance in which sliding takes it off",
+                "sliding distance in which it decays to 1/e",
                 [1e-6, 1e2],
                 &[2e-3, 2e-2],
             )

@@ -18,14 +18,14 @@ pub struct FilmMemory<T> {
 
 impl<T: Real> Effect<T> for FilmMemory<T> {
     const INFO: Info = Info::new("film_memory", Stage::Film)
-        .summary("a film that follows the speed later (or sooner) than the law's")
+        .summary("lubricant film that follows the speed more slowly (or faster) than in the law")
         .equation("d(eps, phi)/dt -> factor d(eps, phi)/dt")
         .source("Cohn 1998, section 3.2 and appendices D, E")
-        .limits("one factor for squeeze and wedge alike; the steady state does not change")
+        .limits("one factor for squeeze and wedge; the steady state does not change")
         .parameters(&[Parameter::new(
             "factor",
             "-",
-            "speed of the film's clock",
+            "rate factor of the film",
             [1e-3, 1e3],
             &[0.5, 2.0],
         )

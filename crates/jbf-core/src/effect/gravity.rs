@@ -24,19 +24,19 @@ pub struct Gravity<T> {
 
 impl<T: Real> Effect<T> for Gravity<T> {
     const INFO: Info = Info::new("gravity", Stage::Other)
-        .summary("the weight of a link, or an unbalance, that the drive carries")
+        .summary("weight of a link, or an unbalance, that the drive carries")
         .equation("F -> F + G sin(theta - theta_0)")
         .transmitted()
         .source("Siciliano et al. 2009, section 7.3")
         .limits(
-            "one link, the others standing still unless weight_angle_rad is recorded; the angle \
-                 must be absolute or have the same zero in every run",
+            "one link; other links at rest, unless weight_angle_rad is recorded; the angle \
+             must be absolute or have the same zero in every run",
         )
         .parameters(&[
             Parameter::new(
                 "G",
                 "N",
-                "weight where the link lies level, as a force at the radius",
+                "weight of the horizontal link, as a force at the radius",
                 [0.0, 1e7],
                 &[1.0],
             )
@@ -45,7 +45,7 @@ impl<T: Real> Effect<T> for Gravity<T> {
             Parameter::new(
                 "theta_0_rad",
                 "rad",
-                "angle at which the link hangs",
+                "angle at which the link hangs down",
                 [-4.0 * PI, 4.0 * PI],
                 &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
             )

@@ -17,15 +17,18 @@ pub struct Inertia<T> {
 
 impl<T: Real> Effect<T> for Inertia<T> {
     const INFO: Info = Info::new("inertia", Stage::Other)
-        .summary("the load cell also feels a mass that is accelerated")
+        .summary("inertial force of a mass, contained in the measured force")
         .equation("F -> F + m_e dv/dt")
         .transmitted()
         .source("d'Alembert; Cohn 1998, section 4.1 (the housing on its arm)")
-        .limits("a rigid mass; the slope of the speed comes from the record and has its noise")
+        .limits(
+            "a rigid mass; the acceleration is derived from the recorded motion and has \
+                 its noise",
+        )
         .parameters(&[Parameter::new(
             "m_e",
             "kg",
-            "mass as felt at the journal's surface",
+            "effective mass at the journal's surface",
             [0.0, 1e6],
             &[4.0, 100.0],
         )

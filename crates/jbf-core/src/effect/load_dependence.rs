@@ -42,8 +42,8 @@ impl<T: Real> Effect<T> for LoadDependence<T> {
         .equation("U_tr -> U_tr (F/F_0)^p, K0 -> K0 (F/F_0)^q, F_0 the rig's load")
         .source("Cohn 1998, Tables 4.2 to 4.5; Lu, Khonsari & Gelinck 2006 for U_tr")
         .limits(
-            "a power between loads that were tried; held beyond a tenth and ten times the \
-                 rig's; a load that changes faster than the film follows was never tried",
+            "power law, valid within the tested loads; constant below 0.1 and above 10 times \
+             the rig's load; loads that change faster than the film responds are untested",
         )
         .parameters(&[
             exponent("p", "exponent of U_tr", &[0.8]),

@@ -68,9 +68,9 @@ impl Need {
     pub const fn why_not(self) -> &'static str {
         match self {
             Need::Film => "has no lubricant film",
-            Need::NoFilm => "is a bearing's: its friction follows the load and the film",
-            Need::NoBristle => "bends before it slides: it has a bristle of its own",
-            Need::NoDryLevel => "already holds a dry friction that does not depend on the load",
+            Need::NoFilm => "is a bearing law: its friction depends on the load and the film",
+            Need::NoBristle => "contains presliding already",
+            Need::NoDryLevel => "contains a load-independent dry friction already",
             Need::Transmitted => "transmits nothing",
             Need::Angle => "needs no angle",
             Need::Path => "needs no path",

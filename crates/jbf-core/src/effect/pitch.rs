@@ -9,7 +9,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 pub(super) const PITCH: Parameter = Parameter::new(
     "pitch",
     "m",
-    "way of one period, at the radius",
+    "length of one period, at the radius",
     [1e-6, 1e3],
     &[0.5, 0.2],
 )
@@ -20,7 +20,7 @@ pub(super) const PITCH: Parameter = Parameter::new(
 pub(super) const PHASE: Parameter = Parameter::new(
     "phase_rad",
     "rad",
-    "phase at the way's zero",
+    "phase at position zero",
     [-4.0 * PI, 4.0 * PI],
     &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
 )

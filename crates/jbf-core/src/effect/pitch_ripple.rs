@@ -24,17 +24,27 @@ pub struct PitchRipple<T> {
 
 /// Descriptions of the parameters.
 pub(super) const PARAMETERS: &[Parameter] = &[
-    Parameter::new("a", "-", "depth of the ripple", [0.0, 1.0], &[0.1]).null(0.0),
+    Parameter::new(
+        "a",
+        "-",
+        "relative amplitude of the ripple",
+        [0.0, 1.0],
+        &[0.1],
+    )
+    .null(0.0),
     PITCH.start(Start::RipplePitch),
     PHASE,
 ];
 
 impl<T: Real> Effect<T> for PitchRipple<T> {
     const INFO: Info = Info::new("pitch_ripple", Stage::Contact)
-        .summary("friction that rises and falls with every pitch of a screw, of teeth, of balls")
-        .equation("f -> f (1 + a cos(2 pi x/p - phi)), x the way of the surface, m")
+        .summary("friction that is periodic in the position: pitch of a screw, teeth, balls")
+        .equation("f -> f (1 + a cos(2 pi x/p - phi)), x the position of the surface, m")
         .source("Armstrong-Helouvry 1991, chapter 3")
-        .limits("one wave, beside which pitch_ripple_2 is another; the way must be absolute or have the same zero in every run")
+        .limits(
+            "one harmonic; pitch_ripple_2 adds a second; the position must be absolute \
+                 or have the same zero in every run",
+        )
         .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position]);
     /// Radius, m.

@@ -19,10 +19,10 @@ pub struct SecondPitchRipple<T>(PitchRipple<T>);
 
 impl<T: Real> Effect<T> for SecondPitchRipple<T> {
     const INFO: Info = Info::new("pitch_ripple_2", Stage::Contact)
-        .summary("a second ripple of friction beside the first: a harmonic, or another pitch")
-        .equation("f -> f (1 + a cos(2 pi x/p - phi)), x the way of the surface, m")
+        .summary("second periodic variation of friction: a harmonic of the first, or another pitch")
+        .equation("f -> f (1 + a cos(2 pi x/p - phi)), x the position of the surface, m")
         .source("Armstrong-Helouvry 1991, chapter 3")
-        .limits("one wave; the way must be absolute or have the same zero in every run")
+        .limits("one harmonic; the position must be absolute or have the same zero in every run")
         .parameters(PARAMETERS)
         .needs(&[Need::NoFilm, Need::Position])
         .further("pitch_ripple");

@@ -47,7 +47,7 @@ macro_rules! places {
             const INFO: Info = {
                 assert!(
                     matches!(E::INFO.stage, $stage),
-                    "the effect's page says another stage than the place that it stands in"
+                    "the stage of the effect's description differs from the stage of its place"
                 );
                 E::INFO
             };
@@ -60,7 +60,7 @@ macro_rules! places {
                         !infinite || page.null != Some(value.value()),
                         page.name,
                         value.value(),
-                        "is where the effect vanishes: leave it out",
+                        "is the value at which the effect vanishes: omit the effect",
                     )?;
                 }
                 E::new(parameters).map(Self)

@@ -20,19 +20,26 @@ pub struct PositionRipple<T> {
 
 impl<T: Real> Effect<T> for PositionRipple<T> {
     const INFO: Info = Info::new("position_ripple", Stage::Contact)
-        .summary("friction that rises and falls once a turn (roundness, alignment)")
+        .summary("friction that varies once per revolution (roundness, alignment)")
         .equation("f -> f (1 + a cos(theta - theta_0))")
         .source("Cohn 1998, section 2.4.1; Armstrong-Helouvry 1991")
         .limits(
-            "one harmonic only; belts and gears add others; \
-                 the angle must be absolute or the same zero in every run",
+            "one harmonic per revolution; belts and gears add others; the angle must be \
+             absolute or have the same zero in every run",
         )
         .parameters(&[
-            Parameter::new("a", "-", "depth of the ripple", [0.0, 1.0], &[0.1]).null(0.0),
+            Parameter::new(
+                "a",
+                "-",
+                "relative amplitude of the ripple",
+                [0.0, 1.0],
+                &[0.1],
+            )
+            .null(0.0),
             Parameter::new(
                 "theta_0_rad",
                 "rad",
-                "angle of the largest friction",
+                "angle of maximum friction",
                 [-4.0 * PI, 4.0 * PI],
                 &[0.0, FRAC_PI_2, PI, -FRAC_PI_2],
             )

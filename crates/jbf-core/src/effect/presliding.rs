@@ -26,20 +26,23 @@ pub struct Presliding<T> {
 
 impl<T: Real> Effect<T> for Presliding<T> {
     const INFO: Info = Info::new("presliding", Stage::Contact)
-        .summary("the contact bends before it slides: a reversal is a slope over distance")
+        .summary(
+            "elastic deflection of the contact before sliding: after a reversal \
+                  friction changes over a distance",
+        )
         .equation(
-            "z' = v - |v| sigma z / f; friction coefficient sigma z, f that in sliding \
-                   (of a law in newtons its dry part: the viscous one adds)",
+            "z' = v - |v| sigma z / f; friction coefficient sigma z, f the sliding friction \
+             (for a law in newtons its dry part; the viscous part is added)",
         )
         .source("Dahl 1968; Canudas de Wit et al. 1995; Cohn 1998, section 2.1.3")
         .limits(
             "one stiffness, no memory of inner loops, drifts under small vibration; \
-                 elasto-plastic forms do better below the break-away distance",
+             elasto-plastic models are better below the breakaway distance",
         )
         .parameters(&[Parameter::new(
             "sigma",
             "1/m",
-            "contact stiffness over load",
+            "contact stiffness per load",
             [1.0, 1e12],
             &[3e3, 3e2, 3e4, 3e5],
         )

@@ -17,10 +17,13 @@ pub struct QuadraticDrag<T> {
 
 impl<T: Real> Effect<T> for QuadraticDrag<T> {
     const INFO: Info = Info::new("quadratic_drag", Stage::Other)
-        .summary("churning or windage: drag with the square of the speed")
+        .summary("churning or windage: drag proportional to the square of the speed")
         .equation("F -> F + c v |v|")
         .source("Rayleigh 1876; Cohn 1998, section 4.1")
-        .limits("the same both ways; slow flow drags in proportion to speed, which gamma takes up")
+        .limits(
+            "equal in both directions; laminar drag is proportional to the speed, which \
+                 gamma represents",
+        )
         .parameters(&[
             Parameter::new("c", "N s^2/m^2", "drag at 1 m/s", [0.0, 1e7], &[50.0]).null(0.0),
         ]);

@@ -17,15 +17,18 @@ pub struct RunningIn<T> {
 
 impl<T: Real> Effect<T> for RunningIn<T> {
     const INFO: Info = Info::new("running_in", Stage::Contact)
-        .summary("asperities that run in: friction of contact falls with the distance slid")
+        .summary("running-in of asperities: contact friction falls with the sliding distance")
         .equation("f_m -> f_m (1 + a exp(-s/s_0)), s the distance slid in the run")
         .source("Blau 1989; Cohn 1998, section 4.2")
-        .limits("unworn at the start of each run; wear that stays from run to run is not this one")
+        .limits(
+            "each run starts with a fresh surface; wear that persists between runs is \
+                 not included",
+        )
         .parameters(&[
             Parameter::new(
                 "a",
                 "-",
-                "excess of the fresh surface",
+                "relative excess of the fresh surface",
                 [-0.95, 10.0],
                 &[0.2],
             )
@@ -33,7 +36,7 @@ impl<T: Real> Effect<T> for RunningIn<T> {
             Parameter::new(
                 "s_0",
                 "m",
-                "distance in which the excess falls to 1/e",
+                "sliding distance in which the excess decays to 1/e",
                 [1e-3, 1e5],
                 &[1.0, 5.0],
             )

@@ -15,10 +15,13 @@ pub struct SensorDrift<T> {
 
 impl<T: Real> Effect<T> for SensorDrift<T> {
     const INFO: Info = Info::new("sensor_drift", Stage::Instrument)
-        .summary("the load cell's zero wanders steadily during a run")
-        .equation("r -> r + d t, t since the run began")
+        .summary("zero of the load cell drifts linearly during a run")
+        .equation("r -> r + d t, t since the start of the run")
         .source("Gautschi 2002 (charge leak of piezo cells)")
-        .limits("a straight line from zero in each run; a leak levels off after its time constant")
+        .limits(
+            "linear, from zero in each run; the leakage of a piezo cell saturates after \
+                 its time constant",
+        )
         .parameters(&[Parameter::new(
             "d",
             "N/s",

@@ -68,21 +68,20 @@ impl<T: Real> SensorHysteresis<T> {
 impl<T: Real> Effect<T> for SensorHysteresis<T> {
     const INFO: Info = Info::new("sensor_hysteresis", Stage::Instrument)
         .summary(
-            "the load cell reads less while the force rises than while it falls: play or friction \
-                  in the force path",
+            "load cell reads less while the force rises than while it falls: play or \
+             friction in the force path",
         )
-        .equation("r -> r held between F - w and F + w (play)")
+        .equation("r -> r within F - w and F + w (play)")
         .source("Krasnosel'skii & Pokrovskii 1989; Visintin 1994; VDI/VDE 2638 (hysteresis)")
         .limits(
-            "one gap, the same at every force: branches that part slowly, or the more the larger \
-                 the force, are another form; each run begins in the middle of the gap, wherever \
-                 it was: a fit sets aside what remembers that",
+            "constant gap; loops that widen gradually or with the force are not included; \
+             each run starts at mid-gap (samples that depend on this are excluded from a fit)",
         )
         .unknown_start()
         .parameters(&[Parameter::new(
             "w",
             "N",
-            "half the way between the branches",
+            "half of the distance between the branches",
             [0.0, 1e5],
             &[0.5],
         )

@@ -17,11 +17,11 @@ pub struct SensorLag<T> {
 
 impl<T: Real> Effect<T> for SensorLag<T> {
     const INFO: Info = Info::new("sensor_lag", Stage::Instrument)
-        .summary("the load cell or its filter follows the force late")
+        .summary("load cell or its filter follows the force with a time lag")
         .equation("tau r' = F - r")
         .source("Cohn 1998, section 4.1")
         .limits(
-            "one pole; a steep filter delays more than it rounds; a pure delay is another effect",
+            "first order; a steep filter delays more than it smooths; a pure delay is time_delay",
         )
         .parameters(&[
             Parameter::new("tau_s", "s", "time constant", [0.0, 1e2], &[0.05, 0.3])

@@ -41,17 +41,17 @@ impl<T: Real> SensorNonlinearity<T> {
 
 impl<T: Real> Effect<T> for SensorNonlinearity<T> {
     const INFO: Info = Info::new("sensor_nonlinearity", Stage::Instrument)
-        .summary("the load cell's line bends: it reads large forces too large or too small")
+        .summary("nonlinear load cell: it reads large forces too large or too small")
         .equation("r = F + c F^3")
         .source("VDI/VDE 2638 (linearity error); ISO 376 (interpolation by a cubic)")
         .limits(
-            "odd: the same in pull and push; of a negative c level beyond 1/sqrt(-3c); a gain that \
-                 is off is the law's",
+            "odd: equal in tension and compression; constant beyond 1/sqrt(-3c) for negative \
+             c; a gain error belongs to the law",
         )
         .parameters(&[Parameter::new(
             "c",
             "1/N^2",
-            "error of the reading over the cube of the force",
+            "error of the reading per cube of the force",
             [-1e6, 1e6],
             &[1e-4],
         )

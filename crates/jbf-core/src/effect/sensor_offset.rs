@@ -18,12 +18,12 @@ pub struct SensorOffset<T> {
 
 impl<T: Real> Effect<T> for SensorOffset<T> {
     const INFO: Info = Info::new("sensor_offset", Stage::Instrument)
-        .summary("the load cell's zero is off")
+        .summary("zero offset of the load cell")
         .equation("r -> r + b")
         .source("Cohn 1998, section 4.1 (strain gauges)")
         .limits(
-            "one offset for all runs; a zero that is set anew for each run is not this one. On a \
-             drive the offset is a constant load as well, which `torque_proportional` counts",
+            "one offset for all runs, not one per run; on a drive it is also a constant \
+             load, which `torque_proportional` includes",
         )
         .parameters(&[
             Parameter::new("b", "N", "reading without force", [-1e5, 1e5], &[0.3])

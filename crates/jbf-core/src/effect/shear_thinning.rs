@@ -17,10 +17,10 @@ pub struct ShearThinning<T> {
 
 impl<T: Real> Effect<T> for ShearThinning<T> {
     const INFO: Info = Info::new("shear_thinning", Stage::Lubricant)
-        .summary("multigrade oil that thins in fast shear")
+        .summary("multigrade oil whose viscosity falls with the shear rate")
         .equation("Ub -> Ub / (1 + (|U|/U_c)^n)")
         .source("Cross 1965")
-        .limits("shear rate taken as proportional to the speed: the film's thickness is left out")
+        .limits("shear rate proportional to the speed; changes of the film thickness are neglected")
         .parameters(&[
             Parameter::new(
                 "U_c_m_s",

@@ -24,15 +24,15 @@ pub struct StribeckAsymmetry<T> {
 
 impl<T: Real> Effect<T> for StribeckAsymmetry<T> {
     const INFO: Info = Info::new("stribeck_asymmetry", Stage::Contact)
-        .summary("a Stribeck peak at low speed that is higher one way than the other")
+        .summary("Stribeck peak at low speed that is larger in one direction")
         .equation("F -> F + c exp(-(|v|/v_s)^n)")
         .source("Bo & Pavelescu 1982; Armstrong-Helouvry et al. 1994")
-        .limits("no memory, no dwell; the dry level of either way never below zero")
+        .limits("no memory, no dwell; the dry level is never below zero in either direction")
         .parameters(&[
             Parameter::new(
                 "c",
                 "N",
-                "half of what the peak is higher by in positive motion",
+                "half of the difference of the peaks between the directions",
                 [-1e7, 1e7],
                 &[0.1],
             )
@@ -48,7 +48,7 @@ impl<T: Real> Effect<T> for StribeckAsymmetry<T> {
             )
             .log()
             .start(Start::StribeckSpeed),
-            Parameter::new("n", "-", "exponent of the fall", [0.2, 8.0], &[1.5]).log(),
+            Parameter::new("n", "-", "exponent of the decrease", [0.2, 8.0], &[1.5]).log(),
         ])
         .needs(&[Need::NoFilm]);
     type State = ();

@@ -20,10 +20,10 @@ pub struct StribeckExcess<T> {
 
 impl<T: Real> Effect<T> for StribeckExcess<T> {
     const INFO: Info = Info::new("stribeck_excess", Stage::Contact)
-        .summary("boundary friction at low speed beyond the law's own")
+        .summary("boundary friction at low speed in addition to that of the law")
         .equation("f -> f + a exp(-(|v|/v_s)^n) sgn(v)")
         .source("Tustin 1947; Bo and Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, 2.1.2")
-        .limits("no memory: a film that lags behind the speed is film_memory's; no dwell")
+        .limits("no memory (a film that lags behind the speed is film_memory); no dwell")
         .parameters(&[
             Parameter::new(
                 "a",
@@ -43,7 +43,7 @@ impl<T: Real> Effect<T> for StribeckExcess<T> {
             )
             .log()
             .start(Start::StribeckSpeed),
-            Parameter::new("n", "-", "exponent of the fall", [0.2, 8.0], &[1.5]).log(),
+            Parameter::new("n", "-", "exponent of the decrease", [0.2, 8.0], &[1.5]).log(),
         ]);
     type State = ();
 

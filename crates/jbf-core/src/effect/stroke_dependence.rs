@@ -46,16 +46,15 @@ impl<T: Real> Effect<T> for StrokeDependence<T> {
         )
         .source("Armstrong-Helouvry 1991, chapter 3; Popovic & Goldenberg 1998")
         .limits(
-            "what changes within less than a fifth of the stroke is smoothed; beyond the ends of the \
-             stroke friction stays as it is there; the way must be absolute or have the same zero in \
-             every run",
+            "variations over less than a fifth of the stroke are smoothed; constant beyond \
+             the ends; the position must be absolute or have the same zero in every run",
         )
         .parameters(&[
-            wave("a_1", "half a wave: the upper end above the lower").signed(),
-            wave("a_2", "one wave: the middle above both ends"),
-            wave("a_3", "one wave and a half").signed(),
-            wave("a_4", "two waves: the middle and the ends above what is between"),
-            wave("a_5", "two waves and a half").signed(),
+            wave("a_1", "half a wave: upper end higher than lower end").signed(),
+            wave("a_2", "one wave: middle higher than both ends"),
+            wave("a_3", "one and a half waves").signed(),
+            wave("a_4", "two waves: middle and ends higher than the quarters"),
+            wave("a_5", "two and a half waves").signed(),
             wave("a_6", "three waves"),
             Parameter::new("x_0", "m", "middle of the stroke", [-1e6, 1e6], &[0.1])
                 .signed()

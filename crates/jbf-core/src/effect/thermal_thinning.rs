@@ -30,7 +30,7 @@ pub struct State<T> {
 
 impl<T: Real> Effect<T> for ThermalThinning<T> {
     const INFO: Info = Info::new("thermal_thinning", Stage::Lubricant)
-        .summary("friction warms the oil, and warm oil carries less")
+        .summary("frictional heating of the oil, which lowers its viscosity")
         .equation("Ub -> Ub exp(-h), h' = (beta q) |F v| - h/tau")
         .source("Reynolds's viscosity law; Cohn 1998, section 4.2")
         .limits("one lumped temperature, exponential viscosity, cold at the start of each run")
@@ -38,7 +38,7 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
             Parameter::new(
                 "beta_q_1_j",
                 "1/J",
-                "loss of log viscosity per joule of friction work",
+                "decrease of log viscosity per joule of friction work",
                 [0.0, 1e3],
                 &[0.03, 0.3],
             )
@@ -46,7 +46,7 @@ impl<T: Real> Effect<T> for ThermalThinning<T> {
             Parameter::new(
                 "tau_s",
                 "s",
-                "time in which the film cools",
+                "thermal time constant of the film",
                 [0.1, 1e5],
                 &[60.0],
             )

@@ -30,17 +30,17 @@ pub struct State<T> {
 
 impl<T: Real> Effect<T> for TimeDelay<T> {
     const INFO: Info = Info::new("time_delay", Stage::Instrument)
-        .summary("the friction record is late against the motion record")
+        .summary("delay of the friction record relative to the motion record")
         .equation("r(t) = F(t - tau)")
         .source("Hess & Soom 1990; channel skew of any two-instrument record")
         .limits(
-            "one delay for all frequencies and all runs; what a filter rounds is sensor_lag; \
-                 a clock that runs fast or slow is neither",
+            "one delay for all frequencies and all runs; a filter is sensor_lag; clock drift \
+             is not included",
         )
         .parameters(&[Parameter::new(
             "tau_s",
             "s",
-            "how late the friction record is",
+            "delay of the friction record",
             [0.0, 2.0],
             &[0.025, 0.085, 0.235],
         )

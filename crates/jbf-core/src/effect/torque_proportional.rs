@@ -32,20 +32,21 @@ pub struct TorqueProportional<T> {
 
 impl<T: Real> Effect<T> for TorqueProportional<T> {
     const INFO: Info = Info::new("torque_proportional", Stage::Contact)
-        .summary("friction that is a share of the torque or force that the drive transmits")
+        .summary("friction proportional to the torque or force that the drive transmits")
         .equation(
-            "F -> F + mu |F_t| sgn(v), F_t the weight, mass and offset that other effects add",
+            "F -> F + mu |F_t| sgn(v), F_t the sum of weight, inertial force and offset of \
+             the other effects",
         )
         .source("Hamon, Gautier & Garrec 2010; Wolf & Iskandar 2018")
         .limits(
-            "what driving loses more than being driven back is in the size of the weight itself; \
-             all of a mass counts, that of a rotor before the gear too, and an offset counts as a \
-             constant load: a zero of the sensor that is large next to the weight is an error",
+            "the difference between driving and back-driving is part of the weight's value; \
+             all inertia counts, also a rotor before the gear; the offset counts as a \
+             constant load, so a large sensor offset is an error",
         )
         .parameters(&[Parameter::new(
             "mu",
             "-",
-            "friction over transmitted force, mean of driving and being driven back",
+            "friction per transmitted force, mean of driving and back-driving",
             [0.0, 10.0],
             &[0.1],
         )

@@ -22,14 +22,14 @@ pub struct ViscousAsymmetry<T> {
 
 impl<T: Real> Effect<T> for ViscousAsymmetry<T> {
     const INFO: Info = Info::new("viscous_asymmetry", Stage::Contact)
-        .summary("viscous friction that is larger one way than the other")
+        .summary("viscous friction that is larger in one direction")
         .equation("F -> F + b |v|")
         .source("Janot, Gautier & Brunot 2019; Armstrong-Helouvry et al. 1994")
-        .limits("straight lines over the speed, one each way; beside b = 0 they are one")
+        .limits("linear in the speed, one slope per direction; identical slopes for b = 0")
         .parameters(&[Parameter::new(
             "b",
             "N s/m",
-            "half of what the slope is larger by in positive motion",
+            "half of the difference of the slopes between the directions",
             [-1e7, 1e7],
             &[1.0],
         )

@@ -21,9 +21,9 @@ impl<T: Real> Effect<T> for ViscousLoadDependence<T> {
         .summary("viscous friction that grows with the load, pressure or transmitted force")
         .equation("F -> F + c L v, L the recorded load")
         .source("Hamon, Gautier & Garrec 2010; Wolf & Iskandar 2018")
-        .limits("a straight line over load and over speed")
+        .limits("linear in load and speed")
         .parameters(&[
-            Parameter::new("c", "s/m", "viscous slope over load", [-1e4, 1e4], &[0.1]).null(0.0),
+            Parameter::new("c", "s/m", "viscous slope per load", [-1e4, 1e4], &[0.1]).null(0.0),
         ])
         .needs(&[Need::NoFilm, Need::Loads]);
     type State = ();

@@ -23,12 +23,15 @@ impl<T: Real> Effect<T> for ViscousTemperatureDependence<T> {
         .summary("viscous friction that falls as the recorded temperature rises")
         .equation("F_v v -> F_v v exp(B/(T - C) - B/(T_0 - C)), T the recorded temperature")
         .source("Vogel 1921; Bittencourt & Gunnarsson 2012; Simoni et al. 2019")
-        .limits("what resists as warm as the thermometer; C as of a usual oil, unless it is told")
+        .limits(
+            "the lubricant has the recorded temperature; C is that of a typical oil \
+                 unless specified",
+        )
         .parameters(&[
             Parameter::new(
                 "B_k",
                 "K",
-                "Vogel's B: how steeply the viscous friction falls",
+                "Vogel's B: temperature sensitivity of the viscous friction",
                 [-5000.0, 5000.0],
                 &[600.0],
             )

@@ -23,14 +23,17 @@ pub struct ViscousThinning<T> {
 
 impl<T: Real> Effect<T> for ViscousThinning<T> {
     const INFO: Info = Info::new("viscous_thinning", Stage::Contact)
-        .summary("viscous friction that flattens as the speed grows: grease thins in shear")
+        .summary("viscous friction that flattens with the speed: shear thinning of grease")
         .equation("F_v v -> F_v v / (1 + w |v|)")
         .source("Cross 1965; Grotjahn, Daemi & Heimann 2001; Bona & Indri 2005")
-        .limits("one shape: it levels off at F_v/w; a lubricant that warms up flattens, too")
+        .limits(
+            "one shape: it saturates at F_v/w; heating of the lubricant also flattens \
+                 the curve",
+        )
         .parameters(&[Parameter::new(
             "w",
             "s/m",
-            "one over the speed at which the viscous friction is half of what it would be",
+            "inverse of the speed at which the viscous friction is half of the linear value",
             [0.0, 1e6],
             &[10.0],
         )

@@ -27,7 +27,7 @@ const FURTHEST: f64 = 7.0;
 pub(super) const REFERENCE: Parameter = Parameter::new(
     "T_0_c",
     "C",
-    "reference temperature: the law's parameters hold at it",
+    "reference temperature, at which the law's parameters hold",
     [-100.0, 1000.0],
     &[40.0],
 )
@@ -38,7 +38,7 @@ pub(super) const REFERENCE: Parameter = Parameter::new(
 pub(super) const C: Parameter = Parameter::new(
     "C_c",
     "C",
-    "Vogel's C: of mineral oils -95",
+    "Vogel's C: -95 for mineral oils",
     [-250.0, -60.0],
     &[OILS_C],
 )

@@ -21,7 +21,7 @@ pub struct VogelViscosity<T> {
 
 impl<T: Real> Effect<T> for VogelViscosity<T> {
     const INFO: Info = Info::new("vogel_viscosity", Stage::Lubricant)
-        .summary("oil that thins as the recorded temperature rises")
+        .summary("oil whose viscosity falls as the recorded temperature rises")
         .equation(
             "Ub -> Ub m, t -> t/m, m = exp(B/(T - C) - B/(T_0 - C)), T the recorded temperature",
         )
@@ -29,15 +29,15 @@ impl<T: Real> Effect<T> for VogelViscosity<T> {
             "Vogel 1921; Crouch & Cameron 1961 for C; Cohn 1998, section 4.2, for mu U_tr = const",
         )
         .limits(
-            "the film as warm as the thermometer; C as of a usual oil, unless it is told; the \
-             journal's inertia as at T_0; without the temperature of the rig's viscosity that \
-             viscosity is taken to hold at the mean on record",
+            "the film has the recorded temperature; C is that of a typical oil unless \
+             specified; the journal's inertia as at T_0; a rig viscosity without temperature \
+             applies at the mean recorded temperature",
         )
         .parameters(&[
             Parameter::new(
                 "B_k",
                 "K",
-                "Vogel's B: how steeply the oil thins",
+                "Vogel's B: temperature sensitivity of the viscosity",
                 [0.0, 5000.0],
                 &[800.0],
             )

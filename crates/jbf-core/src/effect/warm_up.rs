@@ -29,16 +29,23 @@ pub struct WarmUp<T> {
 
 impl<T: Real> Effect<T> for WarmUp<T> {
     const INFO: Info = Info::new("warm_up", Stage::Contact)
-        .summary("a drive that begins each run cold: all its friction falls with time")
-        .equation("f -> f (1 + a exp(-t/tau)), t since the run began")
+        .summary("warm-up: each run starts cold, and all friction falls with time")
+        .equation("f -> f (1 + a exp(-t/tau)), t since the start of the run")
         .source("Bittencourt & Gunnarsson 2012; Simoni et al. 2019")
-        .limits("as cold at the start of each run; one lumped temperature, small changes")
+        .limits("equally cold at the start of each run; one lumped temperature, small changes")
         .parameters(&[
-            Parameter::new("a", "-", "excess of the cold drive", [-0.95, 10.0], &[0.2]).null(0.0),
+            Parameter::new(
+                "a",
+                "-",
+                "relative excess of the cold drive",
+                [-0.95, 10.0],
+                &[0.2],
+            )
+            .null(0.0),
             Parameter::new(
                 "tau_s",
                 "s",
-                "time in which the excess falls to 1/e",
+                "time in which the excess decays to 1/e",
                 [0.1, 1e5],
                 &[10.0, 60.0],
             )

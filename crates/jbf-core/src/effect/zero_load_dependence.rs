@@ -17,12 +17,12 @@ pub struct ZeroLoadDependence<T> {
 
 impl<T: Real> Effect<T> for ZeroLoadDependence<T> {
     const INFO: Info = Info::new("zero_load_dependence", Stage::Other)
-        .summary("a force one way that grows with the load, pressure or transmitted force")
+        .summary("force in one direction that grows with the load, pressure or transmitted force")
         .equation("F -> F + k L, L the recorded load")
         .source("Hamon, Gautier & Garrec 2010")
-        .limits("a straight line over the load; it is there at rest, too")
+        .limits("linear in the load; also present at rest")
         .parameters(&[
-            Parameter::new("k", "-", "force over load", [-10.0, 10.0], &[0.01])
+            Parameter::new("k", "-", "force per load", [-10.0, 10.0], &[0.01])
                 .null(0.0)
                 .signed(),
         ])

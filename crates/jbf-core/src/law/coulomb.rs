@@ -30,7 +30,10 @@ impl<T: Real> Named<T> for Coulomb<T> {
         .summary("static, Coulomb and viscous friction")
         .equation("F = (F_c + F_v |v|) sgn(v); |F| <= F_s at rest")
         .source("Coulomb 1785; Morin 1833; Reynolds 1886; Cohn 1998, section 2.1.1")
-        .limits("no memory, no fall of friction with speed; F_s shows only through a soft drive")
+        .limits(
+            "no memory, no decrease of friction with speed; F_s is visible only with an \
+                 elastic drive",
+        )
         .parameters(&[F_C, F_S, F_V])
         .with_a_dry_level();
 

@@ -81,16 +81,16 @@ impl<T: Real> Dahl<T> {
 
 impl<T: Real> Named<T> for Dahl<T> {
     const INFO: Info = Info::new::<T, Self>("dahl")
-        .summary("a contact that bends before it slides, by way alone")
+        .summary("elastic contact before sliding, as a function of displacement only")
         .equation("dF/dx = sigma_0 |1 - (F/F_c) sgn(v)|^i sgn(1 - (F/F_c) sgn(v)); + F_v v")
         .source("Dahl 1968, 1977; Cohn 1998, section 2.1.3")
-        .limits("no Stribeck fall, no static friction above F_c; inner loops drift")
+        .limits("no Stribeck effect, no static friction above F_c; inner loops drift")
         .parameters(&[
             F_C,
             stiffness("sigma_0", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
             number(
                 "exponent",
-                "shape of the bend: below 1 ductile, above 1 brittle",
+                "shape of the transition: below 1 ductile, above 1 brittle",
                 [0.01, 5.0],
                 &[1.0],
             ),

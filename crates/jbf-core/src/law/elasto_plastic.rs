@@ -68,20 +68,20 @@ impl<T: Real> ElastoPlastic<T> {
 
 impl<T: Real> Named<T> for ElastoPlastic<T> {
     const INFO: Info = Info::new::<T, Self>("elasto_plastic")
-        .summary("elastic up to a breakaway, plastic beyond: does not drift below it")
+        .summary("elastic up to a breakaway force, plastic beyond: no drift below it")
         .equation(
             "dF/dx = sigma_0 while F sgn(v) < b F_c, sigma_0 (1 - (F/F_c) sgn(v))/(1 - b) beyond; \
                    + F_v v",
         )
         .source("Dupont, Hayward, Armstrong & Altpeter 2002")
-        .limits("no Stribeck fall of its own; inner loops that reach beyond the breakaway drift")
+        .limits("no Stribeck effect of its own; inner loops beyond the breakaway force drift")
         .parameters(&[
             F_C,
             stiffness("sigma_0", "stiffness up to breakaway", &[1e5, 1e6, 1e4]),
             Parameter::new(
                 "breakaway",
                 "-",
-                "share of the level up to which the contact is elastic",
+                "fraction of F_c up to which the contact is elastic",
                 [0.0, 0.999],
                 &[0.7, 0.2],
             ),

@@ -66,14 +66,19 @@ impl<T: Real> Named<T> for LuGre<T> {
                    sigma_0 g = F_c + (F_s - F_c) exp(-(v/v_s)^2)",
         )
         .source("Canudas de Wit et al. 1995; Olsson 1996; Cohn 1998, section 2.3.1")
-        .limits("drifts under small vibration; its lag in sliding is that of the bristle alone")
+        .limits("drifts under small vibration; frictional lag in sliding by the bristle only")
         .parameters(&[
             F_C,
             F_S,
             V_S,
             stiffness("sigma_0", "stiffness of the bristles", &[1e5, 1e6, 1e4]),
             damping("sigma_1", "damping of the bristles", &[100.0]).start(Start::Damping),
-            speed("v_d", "speed at which the damping has died", &[0.1]).start(Start::UsualSpeed),
+            speed(
+                "v_d",
+                "speed at which the damping has decayed to 1/e",
+                &[0.1],
+            )
+            .start(Start::UsualSpeed),
             F_V,
         ]);
 

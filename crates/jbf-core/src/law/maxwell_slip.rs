@@ -120,19 +120,22 @@ fn sum<T: Real>(forces_n: &[T; ELEMENTS]) -> T {
 
 impl<T: Real> Named<T> for MaxwellSlip<T> {
     const INFO: Info = Info::new::<T, Self>("maxwell_slip")
-        .summary("springs side by side that slip one after the other: remembers every turn")
+        .summary(
+            "parallel spring-slider elements: presliding with nonlocal memory of all \
+                  reversals",
+        )
         .equation(
             "F = sum F_j + F_v v, dF_j/dx = k_j up to |F_j| = a_j F_c; virgin curve \
                    F_c (1 - (1 - (1 - i) sigma_0 x/F_c)^(1/(1 - i)))",
         )
         .source("Iwan 1966; Lampaert, Swevers & Al-Bender 2003; Al-Bender et al. 2005")
-        .limits("no Stribeck fall of its own; in sliding it is at its level, without a lag")
+        .limits("no Stribeck effect of its own; no frictional lag in sliding")
         .parameters(&[
             F_C,
             stiffness("sigma_0", "stiffness at a reversal", &[1e5, 1e6, 1e4]),
             number(
                 "exponent",
-                "shape of the bend: near 0 all slip at once, 1/3 a sphere, 1 an exponential",
+                "shape of the transition: near 0 all slip at once, 1/3 a sphere, 1 an exponential",
                 [0.01, 2.0],
                 &[0.5, 0.1],
             ),

@@ -78,7 +78,7 @@ pub(super) const F_V: Parameter = damping("F_v", "viscous friction", &[10.0]).st
 /// Stribeck speed.
 pub(super) const V_S: Parameter = speed(
     "v_s",
-    "Stribeck speed: friction falls over it",
+    "Stribeck speed: scale of the decrease of friction",
     &[0.01, 0.1],
 )
 .start(Start::StribeckSpeed);

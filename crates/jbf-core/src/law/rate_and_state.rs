@@ -124,15 +124,15 @@ fn limited<T: Real>(age_s: T) -> T {
 
 impl<T: Real> Named<T> for RateAndState<T> {
     const INFO: Info = Info::new::<T, Self>("rate_and_state")
-        .summary("friction that depends on the logarithms of the speed and of the contact's age")
+        .summary("friction that depends on the logarithms of speed and contact age")
         .equation(
             "F = a asinh[|v|/(2 v_0) exp((F_0 + b ln(v_0 theta/D_c))/a)] sgn(v) + F_v v, \
                    theta' = 1 - |v| theta/D_c",
         )
         .source("Dieterich 1979; Ruina 1983; Rice & Ben-Zion 1996")
         .limits(
-            "no elastic deflection before sliding; a constant normal load; the logarithms hold \
-                 over a few decades of speed; the age at the start of a run is unknown",
+            "no elastic deflection before sliding; constant normal load; valid over a few \
+             decades of speed; contact age at the start of a run unknown",
         )
         .parameters(&[
             force(
@@ -144,7 +144,7 @@ impl<T: Real> Named<T> for RateAndState<T> {
             Parameter::new(
                 "a",
                 "N",
-                "direct effect: immediate rise of friction per e-fold of the speed",
+                "direct effect: immediate increase of friction per e-fold of the speed",
                 [0.0, 1e7],
                 &[0.1],
             )
@@ -152,7 +152,7 @@ impl<T: Real> Named<T> for RateAndState<T> {
             Parameter::new(
                 "b",
                 "N",
-                "ageing effect: rise of friction per e-fold of the contact's age",
+                "ageing effect: increase of friction per e-fold of the contact age",
                 [0.0, 1e7],
                 &[0.15],
             )
@@ -160,13 +160,13 @@ impl<T: Real> Named<T> for RateAndState<T> {
             Parameter::new(
                 "D_c",
                 "m",
-                "slip distance over which the contact renews itself",
+                "slip distance over which the contact is renewed",
                 [1e-12, 1e3],
                 &[1e-5, 1e-4, 1e-6],
             )
             .log()
             .start(Start::SlipDistance),
-            speed("v_0", "reference speed, at which F_0 holds", &[0.01])
+            speed("v_0", "reference speed of F_0", &[0.01])
                 .start(Start::UsualSpeed)
                 .stated(),
             F_V,

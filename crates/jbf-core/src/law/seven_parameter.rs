@@ -100,13 +100,16 @@ impl<T: Real> SevenParameter<T> {
 
 impl<T: Real> Named<T> for SevenParameter<T> {
     const INFO: Info = Info::new::<T, Self>("seven_parameter")
-        .summary("spring, Stribeck curve with a pure delay, static friction that rises at rest")
+        .summary(
+            "elastic contact, Stribeck curve with a pure delay, static friction that \
+                  grows at rest",
+        )
         .equation(
             "stuck: F = k_t x; sliding: F = [F_c + F_v |v| + F_s(t_2)/(1 + (v(t-tau_L)/v_s)^2)] \
                    sgn(v); F_s(t_2) = F_sa + (F_s_inf - F_sa) t_2/(t_2 + gamma)",
         )
         .source("Armstrong-Helouvry & Dupont 1993; Cohn 1998, section 2.3.1")
-        .limits("switches between stuck and sliding; rising static friction needs tau_L > 0")
+        .limits("switches between stuck and sliding; growing static friction needs tau_L > 0")
         .parameters(&[
             stiffness("k_t", "stiffness of the stuck contact", &[1e5, 1e6, 1e4]),
             F_C,
@@ -122,13 +125,13 @@ impl<T: Real> Named<T> for SevenParameter<T> {
             Parameter::new(
                 "tau_L_s",
                 "s",
-                "delay of friction behind speed",
+                "delay of friction relative to the speed",
                 [0.0, 1.0],
                 &[0.01, 0.1],
             ),
             time(
                 "gamma_s",
-                "time at rest in which half of the static friction returns",
+                "rest duration in which half of the static friction recovers",
                 [1e-4, 1e5],
                 &[1.0],
             ),

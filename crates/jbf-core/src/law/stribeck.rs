@@ -29,8 +29,8 @@ impl<T: Real> Named<T> for Stribeck<T> {
         .equation("F = [F_c + (F_s - F_c) exp(-(|v|/v_s)^delta) + F_v |v|] sgn(v)")
         .source("Tustin 1947; Bo & Pavelescu 1982; Armstrong-Helouvry 1991; Cohn 1998, section 2.2")
         .limits(
-            "a curve without memory: the same friction on the way up and on the way down; \
-                 F_s may come out below F_c, as for way lubricants",
+            "a curve without memory: equal friction for rising and falling speed; F_s may be \
+             below F_c, as for way lubricants",
         )
         .parameters(&[
             F_C,
@@ -38,7 +38,7 @@ impl<T: Real> Named<T> for Stribeck<T> {
             V_S,
             number(
                 "delta",
-                "shape of the fall: 1 Tustin, 2 Armstrong",
+                "shape of the decrease: 1 Tustin, 2 Armstrong",
                 [0.2, 5.0],
                 &[2.0, 1.0],
             ),

@@ -90,7 +90,7 @@ impl<T: Real> CoulombObserver<T> {
             exponent >= 1.0 || edge < FASTEST_RAD_S,
             "gain",
             gain,
-            "is too large for the time step: k_F phi' b dt would pass one half at every speed",
+            "is too large for the time step: k_F phi' b dt must stay below one half at every speed",
         )?;
         Ok(Self {
             gain: T::of(gain),

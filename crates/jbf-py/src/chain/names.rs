@@ -16,7 +16,7 @@ pub fn law(name: &str) -> PyResult<&'static law::Info> {
 /// Returns the clock with this name.
 pub fn clock(name: &str) -> PyResult<Clock> {
     Clock::from_name(name).ok_or_else(|| {
-        PyValueError::new_err(format!("clock {name:?} is neither journal nor thesis"))
+        PyValueError::new_err(format!("clock {name:?} is not known: journal or thesis"))
     })
 }
 

@@ -41,7 +41,7 @@ impl<'py> FromPyObject<'_, 'py> for Spec {
             "repetitive" => Spec::Repetitive(spec.extract()?),
             "observed" => Spec::Observed(spec.extract()?),
             _ => {
-                let said = format!("there is no compensator of the kind {kind:?}");
+                let said = format!("compensator kind {kind:?} is not known");
                 return Err(PyValueError::new_err(said));
             }
         })
@@ -86,7 +86,7 @@ impl TableSpec {
         let levels: [f64; ENTRIES] = self
             .levels_v
             .try_into()
-            .map_err(|_| PyValueError::new_err(format!("a table has {ENTRIES} entries here")))?;
+            .map_err(|_| PyValueError::new_err(format!("a table must have {ENTRIES} entries")))?;
         let axis = if self.by_angle {
             Axis::Angle
         } else {

@@ -32,7 +32,7 @@ impl LearningSpec {
     pub fn compensator<T: Real>(self, settings: &LoopSpec) -> PyResult<Learning<T>> {
         let bearing = self.bearing.checked()?;
         let clock = Clock::from_name(&self.clock)
-            .ok_or_else(|| PyValueError::new_err("clock is neither journal nor thesis"))?;
+            .ok_or_else(|| PyValueError::new_err("clock must be journal or thesis"))?;
         let parameters = Parameters {
             f_m: T::of(self.f_m),
             u_tr_m_s: T::of(self.u_tr_m_s),

@@ -34,7 +34,9 @@ pub fn control_reference<'py>(
     samples: usize,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
     let wave = Wave::from_name(wave).ok_or_else(|| {
-        PyValueError::new_err(format!("wave {wave:?} is none of sine, triangle, square"))
+        PyValueError::new_err(format!(
+            "wave {wave:?} is not known: sine, triangle or square"
+        ))
     })?;
     let reference = Reference::new(wave, low, high, frequency_rad_s).map_err(refused)?;
     let points: Vec<_> = (0..samples)
@@ -66,7 +68,7 @@ pub fn control_run<'py>(
     let load = load_n.as_slice().map_err(contiguous)?;
     if rate.len() != reference.len() || load.len() != reference.len() {
         return Err(PyValueError::new_err(
-            "reference, rate and load must have one length",
+            "reference, rate and load must have equal length",
         ));
     }
     let mut looped: Box<dyn Stepping> = match precision {
@@ -74,7 +76,7 @@ pub fn control_run<'py>(
         "f32" => compensator.into_loop::<f32>(&loop_settings)?,
         other => {
             return Err(PyValueError::new_err(format!(
-                "precision {other:?} is neither f64 nor f32"
+                "precision {other:?} is not known: f64 or f32"
             )))
         }
     };

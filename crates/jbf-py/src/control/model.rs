@@ -24,7 +24,7 @@ impl ModelSpec {
     /// Builds the chain and passes it on.
     pub fn chain<T: Real, U: Using<T>>(&self, then: U) -> PyResult<U::Output> {
         let clock = Clock::from_name(&self.clock)
-            .ok_or_else(|| PyValueError::new_err("clock is neither journal nor thesis"))?;
+            .ok_or_else(|| PyValueError::new_err("clock must be journal or thesis"))?;
         let bearing = match &self.bearing {
             Some(sizes) => Some(sizes.clone().checked()?),
             None => None,

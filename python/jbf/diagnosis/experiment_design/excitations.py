@@ -84,15 +84,15 @@ class Limits:
         pairs += [("load_n", value) for value in self.load_n or ()]
         if self.duration_s > LONGEST_S:
             raise InputError(
-                problem=f"the limit duration_s = {self.duration_s:g} is more than a day",
-                mend=f"ask for {LONGEST_S:g} or less",
+                problem=f"the limit duration_s = {self.duration_s:g} exceeds one day",
+                mend=f"use at most {LONGEST_S:g}",
             )
         for name, value in pairs:
             if not (np.isfinite(value) and value > 0.0):
                 raise InputError(problem=f"the limit {name} = {value:g}", mend="must be above zero")
             if value > MOST:
                 raise InputError(
-                    problem=f"the limit {name} = {value:g} is beyond what any machine does",
+                    problem=f"the limit {name} = {value:g} is not plausible",
                     mend="give it in SI units",
                 )
         if self.load_n and self.load_n[0] > self.load_n[1]:
@@ -162,7 +162,7 @@ def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Itera
             continue
         for load, celsius in itertools.product(loads, temperatures):
             under = "" if load is None else f" under {load:.4g} N"
-            at = "" if celsius is None else f", the machine at {celsius:.3g} C all the time,"
+            at = "" if celsius is None else f", the machine constantly at {celsius:.3g} C,"
             yield Excitation(words + under + at, velocity, load, celsius)
 
 
@@ -190,7 +190,7 @@ def _sine(speed: float, w: float, unit: str) -> str:
 
 
 def _stops(speed: float, unit: str) -> str:
-    return f"stop and go to {speed:.3g} {unit}, both ways, with rests of {REST_S:g} s"
+    return f"stop and go to {speed:.3g} {unit}, both directions, with rests of {REST_S:g} s"
 
 
 def _stop_and_go(t: Array, speed: float, acceleration: float) -> tuple[Array, float]:

@@ -161,7 +161,7 @@ def propose(
     every = [effects for group in rivals for effects in group]
     missing = missing_columns(name for effects in every for name in effects)
     if missing:
-        return f"no run can be proposed: nobody knows what {', '.join(sorted(missing))} would be"
+        return f"no run can be proposed: {', '.join(sorted(missing))} cannot be simulated"
     limits, step_s = filled_limits(candidates, limits)
     models = {}
     for effects in every:
@@ -184,16 +184,17 @@ def propose(
     names = _names(rivals)
     if best is None or best[0][0] < candidates.policy.experiments.min_evidence:
         return (
-            f"{names} predict the same friction in every motion within the limits, once each is "
-            "fitted: no such run would part them"
+            f"no run can be proposed: {names} predict the same friction in every "
+            "motion within the limits"
         )
     (evidence,), excitation, run, _ = best
     sigma = float(np.sqrt(evidence / len(run)))
     noise_rms = max(model.noise_rms for model in models.values())
     unit = candidates.campaign.rig.quantities.force
     words = (
-        f"record {excitation.words} for {limits.duration_s:g} s: there {names} differ by "
-        f"{sigma * noise_rms:.2g} {unit} RMS after a new fit, {sigma:.2g} times the noise"
+        f"record {excitation.words} for {limits.duration_s:g} s: {names} differ there "
+        f"by {sigma * noise_rms:.2g} {unit} RMS ({sigma:.2g} times the noise) after "
+        "refitting"
     )
     return Experiment(words, run, sigma * noise_rms, sigma, evidence)
 
@@ -203,7 +204,7 @@ def _names(rivals: Sequence[Sequence[Names]]) -> str:
     for group in rivals:
         shared = set.intersection(*(set(effects) for effects in group))
         differing = [" + ".join(e for e in effects if e not in shared) for effects in group]
-        groups.append(" and ".join(name or "nothing more" for name in differing))
+        groups.append(" and ".join(name or "no further effect" for name in differing))
     return "; ".join(groups)
 
 
@@ -267,14 +268,14 @@ def propose_detection_run(
     clear = {name: e for name, e in evidence.items() if e > 2.0 * settings.min_evidence}
     if best is None or not clear:
         return (
-            f"these runs could not show {listed} at a usual strength, nor could any motion within "
-            "the limits"
+            f"{listed}: not detectable in these runs, nor in any motion within the "
+            "limits, at a typical strength"
         )
     _, excitation, run, _ = best
     which = "them" if len(clear) == len(hidden) else ", ".join(clear)
     words = (
-        f"these runs could not show {listed} at a usual strength: record {excitation.words} for "
-        f"{limits.duration_s:g} s, which would show {which}"
+        f"{listed}: not detectable in these runs at a typical strength; record "
+        f"{excitation.words} for {limits.duration_s:g} s, which would show {which}"
     )
     mean = float(np.exp(np.mean(np.log(list(clear.values())))))
     sigma = float(np.sqrt(mean / len(run)))

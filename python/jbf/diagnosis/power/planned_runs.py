@@ -148,12 +148,12 @@ def planned_power(
     of_kind(model, Model, "model", "give a jbf.Model")
     noise_rms = number(noise_rms, "noise_rms")
     if not 0.0 < noise_rms <= MOST:
-        problem = "is beyond what any machine does" if noise_rms > 0.0 else "is not above zero"
+        problem = "is not plausible" if noise_rms > 0.0 else "is not above zero"
         problem = f"{noise_rms:g} {problem}"
         raise InputError(key="noise_rms", problem=problem, mend="give its standard deviation")
     planned = list_of_runs(runs)
     if not planned:
-        raise InputError(problem="no run was given", mend="give at least one motion to play")
+        raise InputError(problem="no run was given", mend="give at least one motion")
     candidates = as_recorded(model, planned, noise_rms, policy)
     limits = power(candidates, model.effects)
     names = tuple(run.name for run in planned)

@@ -166,9 +166,9 @@ def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> l
     others = [name for name in others if test.by_run[name] > policy.constancy.min_ratio]
     step = run_specific_step(problem, solution, first)
     where = (
-        f"the runs ask for parameters that differ: run {first} asks for "
-        f"{step} ({test.by_run[first]:.0f} times as much as by "
-        "chance); check its load, zero and temperature"
+        f"parameters differ between runs: run {first} fits best with {step} "
+        f"(chi-square {test.by_run[first]:.0f} times its expectation); check its "
+        "load, zero and temperature"
     )
     if others:
         where += f" (next: {', '.join(others)})"
@@ -197,7 +197,7 @@ def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
         part = float(np.expm1(np.clip(step, -MOST_REPORTED, MOST_REPORTED)))
         if abs(step) > MOST_REPORTED:
             # One step gives no more information about a value so far away.
-            return f"{name} many times as {'large' if step > 0.0 else 'small'}"
+            return f"{name} much {'larger' if step > 0.0 else 'smaller'}"
         return f"{name} {100.0 * abs(part):.3g} % {more}"
     return f"{name} {abs(step):.2g}{'' if unit == '-' else f' {unit}'} {more}"
 
@@ -234,10 +234,7 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
     if special.fdtrc(degrees, degrees, ratio) > policy.constancy.chance:
         return []
     size = 100.0 * float(np.sqrt(share * square / friction_square))
-    where = (
-        f"friction as high in no stroke as in the next: by {size:.2g} % from stroke to stroke "
-        f"({ratio:.0f} times as much as within one)"
-    )
+    where = f"friction level differs between strokes by {size:.2g} % RMS (F = {ratio:.0f})"
     return [Remainder("stroke", where, min(share, 1.0))]
 
 

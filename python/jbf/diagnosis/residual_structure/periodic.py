@@ -251,15 +251,15 @@ def _ripple_size(
 def _describe_ripple(campaign: Campaign, pitch: float, amplitude: float, along: bool) -> str:
     rig, quantities = campaign.rig, campaign.rig.quantities
     if quantities.motion == "rotary":
-        often = f"{2.0 * np.pi / pitch:.4g} times a turn"
+        often = f"{2.0 * np.pi / pitch:.4g} per revolution"
     else:
-        often = f"with every {pitch:.4g} {quantities.length}"
+        often = f"period {pitch:.4g} {quantities.length}"
     lead = None if rig.drive is None else rig.drive.pitch_m
     if lead is not None:
-        often += f" ({lead / pitch:.3g} times a turn)"
-    what = "friction" if along else f"a {quantities.noun}"
-    where = "in each run at a phase of its own"
-    return f"{what} that comes again {often}, {amplitude:.2g} {quantities.force}, {where}"
+        often += f" ({lead / pitch:.3g} per revolution)"
+    what = "periodic friction" if along else f"periodic {quantities.noun}"
+    where = "phase differs between runs"
+    return f"{what}, {often}, {amplitude:.2g} {quantities.force}; {where}"
 
 
 # ---- replicates of the motion -----------------------------------------------------------------
@@ -300,10 +300,7 @@ def find_replicates(
     if share < least or product < policy.replicates.min_sigma * np.sqrt(spread):
         return []
     size = float(np.sqrt(share))
-    where = (
-        f"error that comes again with each period, {100.0 * size:.0f} % of the residual's RMS, in "
-        + ", ".join(names)
-    )
+    where = f"periodic error, {100.0 * size:.0f} % of the residual RMS, in " + ", ".join(names)
     return [Remainder("period", where, min(share, 1.0))]
 
 

@@ -174,11 +174,11 @@ def _findings(before_s: dict[str, float], found: Shifted) -> list[Finding]:
 def _finding(run: str, late_s: float, drift: float) -> Finding:
     if drift == 0.0:
         way = "late" if late_s > 0.0 else "early"
-        words = f"the force is {1e3 * abs(late_s):.2g} ms {way} against the motion"
+        words = f"the force is {1e3 * abs(late_s):.2g} ms {way} relative to the motion"
         return Finding(LATE, "friction_n", run, late_s, "s", "shifted", words)
-    way = "slower" if drift > 0.0 else "faster"
+    way = "slow" if drift > 0.0 else "fast"
     words = (
-        f"the force's clock runs {way} than the motion's by {1e6 * abs(drift):.0f} parts in a "
-        f"million: {1e3 * late_s:+.2g} ms in the middle of the run"
+        f"the force clock is {1e6 * abs(drift):.0f} ppm {way} relative to the motion "
+        f"clock ({1e3 * late_s:+.2g} ms at mid-run)"
     )
     return Finding(DRIFT, "friction_n", run, drift, "1", "shifted", words)

@@ -142,9 +142,9 @@ def force_weights(
     sd = [np.sqrt(least + slope * f**2) for f in force]
     low = min(float(s.min()) for s in sd)
     share = float(np.sqrt(slope))
-    words = f"the noise grows with the force, by {100.0 * share:.2g} % of it"
+    words = f"the noise grows with the force: {100.0 * share:.2g} % of it"
     names = ", ".join(samples.runs)
-    finding = Finding("noise_with_force", "friction_n", names, share, "1", "weighed", words)
+    finding = Finding("noise_with_force", "friction_n", names, share, "1", "weighted", words)
     return [low / s for s in sd], finding
 
 
@@ -173,9 +173,9 @@ def run_weights(
     by_run = np.ones(len(some))
     by_run[some] = np.maximum(*(x[some].min() / x[some] for x in (white, whole)))
     ratio = float(by_run.max() / by_run.min())
-    words = f"the noise differs by run, up to {ratio:.2g} times"
+    words = f"the noise level differs between runs by a factor of up to {ratio:.2g}"
     names = ", ".join(samples.runs)
-    finding = Finding("noise_by_run", "friction_n", names, ratio, "1", "weighed", words)
+    finding = Finding("noise_by_run", "friction_n", names, ratio, "1", "weighted", words)
     weights = [np.full(len(x), w) for x, w in zip(e, by_run.tolist(), strict=True)]
     return weights, finding
 
@@ -199,9 +199,9 @@ def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding
     # The square of a weight on the residual is Huber's weight on its square.
     limit = policy.noise.huber_sigma * sigma
     weights = [np.sqrt(np.minimum(1.0, limit / np.maximum(np.abs(x), 1e-300))) for x in e]
-    words = f"{100.0 * beyond:.2g} % of the noise is beyond four of its standard deviations"
+    words = f"{100.0 * beyond:.2g} % of the noise exceeds 4 standard deviations"
     names = ", ".join(samples.runs)
-    finding = Finding("heavy_tails", "friction_n", names, beyond, "1", "weighed", words)
+    finding = Finding("heavy_tails", "friction_n", names, beyond, "1", "weighted", words)
     return weights, finding, _student_gain(flat, sigma)
 
 

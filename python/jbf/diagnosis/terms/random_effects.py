@@ -174,11 +174,11 @@ def _spread(
 
 
 WHAT = {
-    "zero": "the zero differs",
-    "drift": "the zero drifts",
-    "gain": "the gain differs",
-    "U_tr_m_s": "the transition speed differs",
-    "gamma": "the viscous friction differs",
+    "zero": "offset differs",
+    "drift": "offset drifts",
+    "gain": "gain differs",
+    "U_tr_m_s": "transition speed differs",
+    "gamma": "viscous friction differs",
 }
 """First words of the finding on each random effect."""
 
@@ -187,9 +187,11 @@ def _words(name: str, sd: float, unit: str) -> tuple[str, str]:
     """Kind and text of the finding."""
     what = WHAT[name]
     if name == "zero":
-        return "level_by_run", f"{what} by run by {sd:.2g} {unit} (1 s.d.)"
+        return "level_by_run", f"{what} between runs by {sd:.2g} {unit} (1 s.d.)"
     if name == "drift":
-        return "drift_by_run", f"{what}, by another {sd:.2g} {unit} (1 s.d.) in each run"
+        return "drift_by_run", f"{what} differently in each run, by {sd:.2g} {unit} (1 s.d.)"
     if name == "gain":
-        return "gain_by_run", f"{what} by run by {100.0 * sd:.2g} % (1 s.d.)"
-    return "oil_by_run", f"{what} by run by {100.0 * sd:.2g} % (1 s.d.): the oil's warmth?"
+        return "gain_by_run", f"{what} between runs by {100.0 * sd:.2g} % (1 s.d.)"
+    return "oil_by_run", (
+        f"{what} between runs by {100.0 * sd:.2g} % (1 s.d.); check the oil temperature"
+    )

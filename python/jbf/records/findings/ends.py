@@ -65,5 +65,5 @@ def ends_finding(
         if part.any()
     ]
     size = float(np.max(np.abs(off[mask])))
-    words = f"{' and '.join(sides)} of the {what} off by up to {size:.3g} {unit}"
+    words = f"outliers in the {what}: {' and '.join(sides)}, up to {size:.3g} {unit}"
     return Finding("glitches", channel, run, size, unit, done, words)

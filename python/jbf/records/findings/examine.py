@@ -87,26 +87,22 @@ def examine_readings(run: Run, velocity: Array) -> Examined:
 
 def _interpolated(run: Run, native: Native) -> Finding:
     rate = 1.0 / native.period_s
-    words = (
-        f"the {run.quantities.noun} was read at {rate:.4g} Hz and drawn as straight lines between"
-    )
-    done = "taken back to its readings"
+    words = f"the {run.quantities.noun} was sampled at {rate:.4g} Hz and interpolated linearly"
+    done = "reduced to its readings"
     return Finding("interpolated", "friction_n", run.name, rate, "Hz", done, words)
 
 
 def _filled_in(run: Run, native: Native) -> Finding:
     share = 100.0 * (1.0 - len(native.time_s) / len(run))
     words = (
-        f"{share:.2g} % of the samples of the {run.quantities.noun} lie on the straight line "
-        "between their neighbours: they were filled in, not read"
+        f"{share:.2g} % of the {run.quantities.noun} samples are linear interpolations of their "
+        "neighbours, not readings"
     )
     return Finding("interpolated", "friction_n", run.name, share, "%", "left out", words)
 
 
 def _repeated(run: Run, native: Native) -> Finding:
     rate = 1.0 / native.period_s
-    words = (
-        f"the {run.quantities.noun} was read at {rate:.4g} Hz and repeated until the next reading"
-    )
-    done = "taken back to its readings"
+    words = f"the {run.quantities.noun} was sampled at {rate:.4g} Hz and held in between"
+    done = "reduced to its readings"
     return Finding("held_samples", "friction_n", run.name, rate, "Hz", done, words)

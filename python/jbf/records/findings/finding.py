@@ -21,7 +21,7 @@ class Finding:
     size
         Magnitude, in `unit`.
     done
-        Action taken: `set aside`, `weighed`, `none`, ...
+        Action taken: `excluded`, `weighted`, `none`, ...
     words
         The finding in a sentence.
     """

@@ -51,9 +51,9 @@ def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Fin
         return []
     said = run.quantities
     words = (
-        f"the {said.noun} goes with the motion, by {-push:.3g} {said.force}: "
-        f"{said.friction_column} is against it where it is "
-        "positive with a positive speed; turn its sign, or the speed's and the position's"
+        f"{said.friction_column} has the wrong sign: it drives the motion ({-push:.3g} "
+        f"{said.force}). Positive {said.noun} must oppose positive velocity: negate "
+        f"{said.friction_column}"
     )
     return [Finding("sign", "friction_n", run.name, push, said.force, "none", words)]
 

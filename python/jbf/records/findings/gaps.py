@@ -39,5 +39,5 @@ def find_gaps(run: Run) -> list[Finding]:
     if count == 0:
         return []
     longest = float(steps[missing > 0].max())
-    words = f"{count_of(count, 'row is', 'rows are')} missing, {longest:.2g} s at the longest"
-    return [Finding("gaps", "time_s", run.name, longest, "s", "stepped over", words)]
+    words = f"{count_of(count, 'row is', 'rows are')} missing; longest gap {longest:.2g} s"
+    return [Finding("gaps", "time_s", run.name, longest, "s", "bridged", words)]

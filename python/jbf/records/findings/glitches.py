@@ -71,7 +71,7 @@ def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
     loose = _loose_ends(run, velocity, mask)
     off = run.friction - _next_to(run, mask | loose)
     unit = run.quantities.force
-    ends = ends_finding("friction_n", "force", run.name, loose, off, unit, "set aside")
+    ends = ends_finding("friction_n", "force", run.name, loose, off, unit, "excluded")
     more = [] if ends is None else [ends]
     if not mask.any():
         return more, loose
@@ -79,11 +79,9 @@ def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
     middle = 0.5 * (run.friction[index - 1] + run.friction[index + 1])
     size = float(np.max(np.abs(run.friction[index] - middle)))
     first = ", ".join(f"{t:.2f} s" for t in run.time_s[index[:3]])
-    singles = count_of(
-        len(index), "single sample of the force is", "single samples of the force are"
-    )
-    words = f"{singles} off by up to {size:.3g} {unit} (at {first})"
-    single = Finding("glitches", "friction_n", run.name, size, unit, "set aside", words)
+    singles = count_of(len(index), "outlier in the force", "outliers in the force")
+    words = f"{singles}, up to {size:.3g} {unit} (first at {first})"
+    single = Finding("glitches", "friction_n", run.name, size, unit, "excluded", words)
     return [single, *more], mask | loose
 
 

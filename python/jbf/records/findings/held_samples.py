@@ -78,8 +78,7 @@ def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
     spans = run.time_s[ends - 1] - run.time_s[np.maximum(starts - 1, 0)]
     longest = float(np.max(spans))
     words = (
-        f"the {run.quantities.noun} stands still {count_of(len(starts), 'time')}, "
-        f"for up to {longest:.2g} s "
-        f"(first at {run.time_s[starts[0]]:.2f} s)"
+        f"the {run.quantities.noun} is constant {count_of(len(starts), 'time')}, for up to "
+        f"{longest:.2g} s (first at {run.time_s[starts[0]]:.2f} s)"
     )
-    return [Finding("held_samples", "friction_n", run.name, longest, "s", "set aside", words)], mask
+    return [Finding("held_samples", "friction_n", run.name, longest, "s", "excluded", words)], mask

@@ -46,4 +46,4 @@ def find_noisy_load(name: str, load: Array | None) -> list[Finding]:
     size = float(np.std(load))
     share = 100.0 * size / float(np.mean(load))
     words = f"the load is white noise of {size:.3g} N ({share:.2g} %) about {np.mean(load):.4g} N"
-    return [Finding("noisy_load", "load_n", name, size, "N", "its mean is taken", words)]
+    return [Finding("noisy_load", "load_n", name, size, "N", "replaced by its mean", words)]

@@ -75,8 +75,8 @@ def as_read(run: Run) -> Run:
         return run
     share = 100.0 * float(np.mean(again))
     words = (
-        f"{share:.2g} % of the rows repeat the one before while {run.quantities.mover} moves on: "
-        "the logger asks oftener than it is answered"
+        f"{share:.2g} % of the rows repeat the previous one while {run.quantities.mover} moves: "
+        "the logger is faster than its source"
     )
     found = Finding("repeated_rows", "time_s", run.name, share, "%", "left out", words)
     return replace(run.select(~again), reading=(*run.reading, found))

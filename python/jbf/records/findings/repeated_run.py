@@ -50,6 +50,6 @@ def _same(name: str, a: Array, b: Array) -> bool:
 
 def repeated(first: Run, again: Run) -> Finding:
     """Return the finding for a run that was given twice."""
-    words = f"it is run {first.name} again, sample by sample"
+    words = f"identical to run {first.name} in every sample"
     size = float(len(again))
     return Finding("repeated_run", "friction_n", again.name, size, "samples", "left out", words)

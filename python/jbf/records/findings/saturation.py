@@ -79,9 +79,6 @@ def find_saturation(run: Run) -> tuple[list[Finding], Mask]:
     share = float(np.mean(np.isin(run.friction, ends)))
     unit = run.quantities.force
     said = " and ".join(f"{end:.4g} {unit}" for end in sorted(ends))
-    words = (
-        f"the {run.quantities.noun} stands at the end of its range, {said}, "
-        f"in {100.0 * share:.2g} % of the run"
-    )
+    words = f"the {run.quantities.noun} is saturated at {said} in {100.0 * share:.2g} % of the run"
     size = float(np.max(np.abs(ends)))
-    return [Finding("saturation", "friction_n", run.name, size, unit, "set aside", words)], mask
+    return [Finding("saturation", "friction_n", run.name, size, unit, "excluded", words)], mask

@@ -19,6 +19,6 @@ def separate_clock(run: Run) -> list[Finding]:
         for there in (force, motion)
     ]
     noun = run.quantities.noun
-    words = f"the {noun} was read at {rates[0]:.4g} Hz and the motion at {rates[1]:.4g} Hz"
-    done = "compared at its own readings"
+    words = f"the {noun} was sampled at {rates[0]:.4g} Hz and the motion at {rates[1]:.4g} Hz"
+    done = "compared at its own sampling times"
     return [Finding("own_clock", "friction_n", run.name, rates[0], "Hz", done, words)]

@@ -40,8 +40,8 @@ def find_slow_temperature(run: Run) -> list[Finding]:
     _, held_s, noise_k = _steady(run.time_s, run.temperature_c)
     found = []
     if held_s > 0.0:
-        words = f"the temperature stands still for {held_s:.2g} s and jumps to its next reading"
-        done = "straight lines through the jumps"
+        words = f"the temperature is constant for {held_s:.2g} s between readings"
+        done = "interpolated linearly between readings"
         found.append(Finding("held_samples", "temperature_c", run.name, held_s, "s", done, words))
     if noise_k > 0.0:
         words = f"the temperature has noise of {noise_k:.2g} K"

@@ -51,7 +51,7 @@ def find_smooth_force(run: Run, sliding: Mask) -> list[Finding]:
     said = run.quantities
     noise = white_noise(force, ORDERS[1])
     words = (
-        f"the {said.noun} is a command or was filtered: white noise is {noise:.2g} {said.force} "
-        "at most, so its noise floor is not known"
+        f"the {said.noun} is a command or was filtered: its white noise is at most {noise:.2g} "
+        f"{said.force}, so its noise floor is unknown"
     )
     return [Finding("smooth_force", "friction_n", run.name, noise, said.force, "none", words)]

@@ -70,5 +70,5 @@ def find_steps(run: Run, usable: Mask, *, drawn: bool = False) -> list[Finding]:
     if step == 0.0 or step < MATTERS * max(noise_of(force), 1e-300):
         return []
     unit = run.quantities.force
-    words = f"the {run.quantities.noun} comes in steps of {step:.3g} {unit}"
-    return [Finding("steps", "friction_n", run.name, step, unit, "counted as noise", words)]
+    words = f"the {run.quantities.noun} has a quantisation step of {step:.3g} {unit}"
+    return [Finding("steps", "friction_n", run.name, step, unit, "included in the noise", words)]

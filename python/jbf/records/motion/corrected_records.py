@@ -100,7 +100,7 @@ def corrected_records(
             raise InputError(
                 file=run.path or name,
                 column="velocity_m_s",
-                problem="is missing, and an angle tells no speed without the journal's radius",
+                problem="is missing; an angle determines no speed without the journal's radius",
                 mend="add the column, or give the rig its [bearing]",
             )
         speed, odd = mend_speed(name, time, speed, None, said.speed)
@@ -157,7 +157,7 @@ def _without_speed(
     """Return the records of a motion without a recorded speed."""
     speed = centred_speed(time, path)
     words = "no speed was recorded"
-    made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "the path alone tells it", words)
+    made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "derived from the position", words)
     shaken = () if found else _present(shaken_path(name, time, path, speed))
     return CorrectedRecords(path, step, speed, False, (made, *found, *shaken), loose)
 

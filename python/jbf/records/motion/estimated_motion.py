@@ -313,7 +313,7 @@ def _steady(run: Run) -> EstimatedMotion:
         raise InputError(
             file=run.path or run.name,
             column="velocity_m_s",
-            problem="is missing, and steady states need a speed",
+            problem="is missing, and steady states require a speed",
             mend="add the speed of each point",
         )
     zeros, rest = np.zeros(len(run)), run.velocity == 0.0
@@ -342,7 +342,7 @@ def _late(run: Run, delay_s: float) -> list[Finding]:
     if abs(delay_s) < WORTH * float(np.median(np.diff(run.time_s))):
         return []
     way = "later" if delay_s > 0.0 else "earlier"
-    words = f"the speed is {1e3 * abs(delay_s):.3g} ms {way} than the path"
+    words = f"the speed is {1e3 * abs(delay_s):.3g} ms {way} than the position"
     return [Finding("late_speed", "velocity_m_s", run.name, delay_s, "s", "corrected", words)]
 
 

@@ -38,7 +38,7 @@ RARE = 0.02
 RARE_ALONE = 0.003
 """Largest share of outliers of a speed without a path; a slip of the shaft may be as short."""
 LEAST_SAMPLES = 60
-ASIDE = "left out of the motion"
+ASIDE = "excluded from the motion"
 
 
 def mend_position(name: str, time: Array, position: Position) -> tuple[Position, Finding | None]:
@@ -201,5 +201,5 @@ def _between(time: Array, values: Array, mask: Mask) -> Array:
 def _words(what: str, time: Array, mask: Mask, size: str) -> str:
     index = np.flatnonzero(mask)
     first = ", ".join(f"{t:.2f} s" for t in time[index[:3]])
-    singles = count_of(len(index), "single sample")
-    return f"{singles} of the {what} off by up to {size} (at {first})"
+    singles = count_of(len(index), "outlier")
+    return f"{singles} in the {what}, up to {size} (first at {first})"

@@ -50,8 +50,8 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
     size = noise_of(steps[near]) * float(np.sqrt(20.0 / 70.0))
     if size < LEAST * usual:
         return None
-    words = f"the stamps are off an even clock by {1e3 * size:.3g} ms RMS"
-    done = "the instants of the even clock are used" if corrected else "taken as they are"
+    words = f"the time stamps deviate from a regular clock by {1e3 * size:.3g} ms RMS"
+    done = "replaced by the regular clock" if corrected else "used as recorded"
     return Finding("jitter", "time_s", name, size, "s", done, words)
 
 
@@ -94,8 +94,8 @@ def shaken_path(name: str, time: Array, path: Array, speed: Array) -> Finding | 
     if size < LEAST * usual or not 1.0 / AGREE < sizes[0] / size < AGREE:
         return None
     words = (
-        f"the path is as noisy as if it was read {1e3 * size:.3g} ms RMS off the stamps: "
-        "its noise grows with the speed"
+        "the position noise grows with the speed, as with time stamp errors of "
+        f"{1e3 * size:.3g} ms RMS"
     )
     return Finding("jitter", "time_s", name, size, "s", "none", words)
 

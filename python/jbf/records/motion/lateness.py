@@ -38,8 +38,10 @@ def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding
     step_s = float(np.median(np.diff(time)))
     if late_s < max(SURE * error_s, WITHIN * step_s):
         return None
-    words = f"the speed is {1e3 * late_s:.3g} ms later than the path: filtered, or looking back"
-    done = "left aside; the path alone tells the motion"
+    words = (
+        f"the speed lags the position by {1e3 * late_s:.3g} ms: filtered, or a backward difference"
+    )
+    done = "not used; the motion is derived from the position"
     return Finding("filtered_speed", "velocity_m_s", name, late_s, "s", done, words)
 
 

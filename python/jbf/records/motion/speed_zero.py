@@ -58,8 +58,8 @@ def speed_zero(
     error = float(np.std(inner)) / np.sqrt(len(inner) / STILL_SAMPLES)
     if abs(zero) < ERRORS * error or abs(zero) * _longest(time, still) < GONE * step:
         return speed, 0.0, None
-    words = f"the speed reads {zero:.3g} {unit} while the position stands still"
-    found = Finding("speed_zero", "velocity_m_s", name, zero, unit, "taken off", words)
+    words = f"the speed reads {zero:.3g} {unit} at constant position"
+    found = Finding("speed_zero", "velocity_m_s", name, zero, unit, "subtracted", words)
     return speed - zero, step_of(speed), found
 
 

@@ -52,8 +52,8 @@ def replace_stale_positions(
         lasted, count = max(lasted, float(time[end] - time[first])), count + end - first
     if not 0 < count <= MOST * len(path):
         return position, None
-    readings = count_of(count, "reading of the position repeats", "readings of the position repeat")
-    words = f"{readings} the one before while {mover} moves on"
-    done = "put where the speed says"
+    readings = count_of(count, "position reading repeats", "position readings repeat")
+    words = f"{readings} the previous value while {mover} moves"
+    done = "replaced by the integrated speed"
     found = Finding("held_samples", position.column, name, lasted, "s", done, words)
     return position.along(mended), found

@@ -57,8 +57,8 @@ def wrong_unit(
     if ratio is None:
         return None
     if abs(ratio + 1.0) < OFF:
-        words = f"{position.column} falls where {called} says that it rises: one has its sign"
-        done = f"{position.column} is turned to the speed's sign"
+        words = f"{position.column} decreases where {called} is positive: one has the wrong sign"
+        done = f"{position.column} is negated"
         return Mismatch(
             Finding("sign", position.column, name, ratio, "1", done, words + " turned"), -1
         )
@@ -66,14 +66,14 @@ def wrong_unit(
     for which, guess, factor in _units(position, turns=quantities.motion == "rotary"):
         if abs(abs(ratio) / factor - 1.0) < NEAR:
             said = called if which == "velocity_m_s" else which
-            column, unit, by = which, f": is {said} in {guess}?", float(np.copysign(factor, ratio))
+            column, unit, by = which, f"; {said} in {guess}?", float(np.copysign(factor, ratio))
             break
-    turned = ", and the other way" if ratio < 0.0 else ""
-    hint = unit or (": is the radius of the journal right?" if position.arm_m != 1.0 else "")
-    words = f"{position.column} changes {abs(ratio):.4g} times as fast as {called} says{turned}"
+    turned = " and with opposite sign" if ratio < 0.0 else ""
+    hint = unit or ("; check the radius of the journal" if position.arm_m != 1.0 else "")
+    words = f"{position.column} changes {abs(ratio):.4g} times as fast as {called}{turned}"
     done = f"divided by {by:.4g}, to agree with the speed"
     if column == "velocity_m_s":
-        done = f"multiplied by {by:.4g}, to agree with the path"
+        done = f"multiplied by {by:.4g}, to agree with the position"
     return Mismatch(Finding("units", column, name, ratio, "1", done, words + hint), by)
 
 
@@ -86,9 +86,9 @@ def _units(position: Position, *, turns: bool) -> Iterator[tuple[str, str, float
         yield "angle_rad", "turns", 1.0 / turn
         if not turns:
             yield "velocity_m_s", "rad/s", arm
-        yield "velocity_m_s", "degrees a second", arm * turn / 360.0
-        yield "velocity_m_s", "turns a minute", arm * turn / 60.0
-        yield "velocity_m_s", "turns a second", arm * turn
+        yield "velocity_m_s", "degrees per second", arm * turn / 360.0
+        yield "velocity_m_s", "revolutions per minute", arm * turn / 60.0
+        yield "velocity_m_s", "revolutions per second", arm * turn
     else:
         yield "position_m", "mm", 1e3
         yield "position_m", "cm", 1e2

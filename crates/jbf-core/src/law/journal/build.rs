@@ -59,7 +59,7 @@ impl<T: Real> Journal<T> {
                 && lightest.inverse_load_number.is_finite(),
             "load_number",
             load_number.value(),
-            "or another group of the sizes overflows: check their units",
+            "or another combination of the dimensions overflows: check their units",
         )?;
         Ok(law)
     }

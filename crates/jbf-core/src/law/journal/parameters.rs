@@ -13,7 +13,7 @@ pub const PARAMETERS: &[Parameter] = &[
     Parameter::new(
         "f_m",
         "-",
-        "largest friction coefficient of the asperities",
+        "maximum friction coefficient of the asperities",
         [1e-4, 10.0],
         &[0.25],
     )

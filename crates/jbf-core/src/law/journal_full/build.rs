@@ -25,7 +25,7 @@ impl<T: Real> JournalFull<T> {
             inverse_mass_number > T::ZERO && inverse_mass_number.is_finite(),
             "mass_number",
             mass_number.value(),
-            "or its inverse overflows: check the units of the sizes",
+            "or its inverse overflows: check the units of the dimensions",
         )?;
         Ok(Self {
             film,

@@ -33,8 +33,8 @@ from jbf.units.unit import ONE
 ReadSignal = Callable[[Channel], Stream]
 """Function that spools a channel with its times."""
 QUESTION = (
-    "these files have clocks of their own: write a common signal (`drive/pos ~ force/pos`) or the "
-    "offset in seconds; 0 where they were started together"
+    "these files have separate clocks: write a common signal (`drive/pos ~ force/pos`) "
+    "or the offset in seconds; 0 if they started together"
 )
 _SIDES = re.compile(r"((?:`[^`]*`|[^`~])+)~((?:`[^`]*`|[^`~])+)")
 _ZONE = re.compile(r"(Z|[+-]\d\d:?\d\d)$")
@@ -100,7 +100,7 @@ class Alignment:
         if self.by == "dates":
             return f"aligned to {self.main.name} by their dates"
         if self.by == "stated":
-            return f"its clock is {self.brief}, as the map states; corrected"
+            return f"its clock is {self.brief}, as stated in the map; corrected"
         signal = self.signal.replace("`", "")
         error = f", standard error {self.offset_std_s:.1g} s" if self.offset_std_s else ""
         how = f"by {signal}: correlation {abs(self.correlation or 0.0):.3f}{error}"
@@ -147,7 +147,10 @@ def _check_keys(source: SideBySide, mapping: Map) -> None:
         if key not in stems:
             mend = f"the further files are: {', '.join(stems)}"
             raise InputError(
-                file=mapping.path, key=f"align.{key}", problem="is no further file", mend=mend
+                file=mapping.path,
+                key=f"align.{key}",
+                problem="is not one of the further files",
+                mend=mend,
             )
 
 
@@ -169,7 +172,7 @@ def _aligned(
     wanted = mapping.align.get(stem)
     if wanted is None:
         if dates_s is None:
-            problem = f"its clock and that of {main.name} are separate"
+            problem = f"its clock is separate from that of {main.name}"
             mend = (
                 f'write {stem} = "A ~ B" (a common signal) under [align] in the map, or the offset '
                 "in seconds"
@@ -216,7 +219,7 @@ def _signals(
     sides = _SIDES.fullmatch(text)
     mend = f'write such as "{stem_of(source.path)}/trigger ~ {stem_of(file)}/trigger"'
     if sides is None:
-        problem = f"{text!r} is no pair of signals"
+        problem = f"{text!r} is not a pair of signals"
         raise InputError(file=mapping.path, key=key, problem=problem, mend=mend)
     tables = tables_of(source, mapping.options)
     names, places = column_names(tables), located(tables)

@@ -49,13 +49,13 @@ def check_folder(path: Path, *, replace: bool, holding: Sequence[str] = ()) -> N
         raise os_error(path, error, "read") from None
     if holds:
         if not (path / NAME).is_file():
-            raise wrong("holds other files", "name a new folder")
+            raise wrong("is not empty", "name a new folder")
         if not replace:
-            raise wrong("holds an import already", "name a new folder, or say --force")
+            raise wrong("contains an import already", "name a new folder, or use --force")
     parent = real_path(path).parent
     try:
         if not parent.is_dir():
-            raise wrong("its parent folder does not exist", "make it or correct the path")
+            raise wrong("its parent folder does not exist", "create it or correct the path")
         TemporaryDirectory(prefix=".jbf-import-", dir=parent).cleanup()
     except OSError as error:
         raise os_error(path, error, "written") from None

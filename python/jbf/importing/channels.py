@@ -63,8 +63,10 @@ def channels_of(source: Source, mapping: Map) -> list[Channel]:
             raise InputError(key=section, problem=error.problem, mend=error.mend) from None
         of_tables = {places[r.column][0].name for r in references(node)}
         if len(of_tables) != 1:
-            problem = "takes columns with different clocks" if of_tables else "takes no column"
-            mend = "take columns of one group; nothing is resampled here"
+            problem = (
+                "combines columns with different clocks" if of_tables else "contains no column"
+            )
+            mend = "use columns of one group; columns are not resampled here"
             raise InputError(key=section, problem=f"{text} {problem}", mend=mend)
         (of,) = of_tables
         table = next(t for t in tables if t.name == of)
@@ -82,8 +84,8 @@ def tables_of(source: Source, options: Options) -> tuple[Table, ...]:
         if table.name == options.table:
             return (table,)
     names = ", ".join(table.name for table in source.tables)
-    problem = f'holds no "{options.table}"'
-    raise InputError(file=source.path, problem=problem, mend=f"it holds: {names}")
+    problem = f'contains no "{options.table}"'
+    raise InputError(file=source.path, problem=problem, mend=f"it contains: {names}")
 
 
 def clock_of(
@@ -104,7 +106,9 @@ def clock_of(
             return text
         if key in mapping.clocks:
             problem = "is in another group than its column"
-            raise InputError(key=f"clocks.{key}", problem=problem, mend="name a time beside it")
+            raise InputError(
+                key=f"clocks.{key}", problem=problem, mend="give a time of the same group"
+            )
     if table.clock is not None:
         return f"`{table.name}/{table.clock}`"
     if text is None and (mapping.options.rate_hz or table.rate_hz):
@@ -112,10 +116,10 @@ def clock_of(
     if text is not None:
         problem = f"has no clock: time_s is in another group than [{table.name}]"
         raise InputError(
-            key=f"columns.{key}", problem=problem, mend=f"name its time under [clocks] as {key}"
+            key=f"columns.{key}", problem=problem, mend=f"give its time under [clocks] as {key}"
         )
     raise InputError(
         key="columns.time_s",
         problem="is missing",
-        mend="name the file's column of times, or say rate_hz under [file]",
+        mend="give the column of times, or rate_hz under [file]",
     )

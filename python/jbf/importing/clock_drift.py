@@ -163,8 +163,8 @@ class _Problem:
         within = self._correlation_within_windows(offset, solution[1])
         if abs(within) < WITHIN:
             problem = (
-                "the records of the common signal agree in their slow changes only "
-                f"(correlation {abs(within):.2f} within windows)"
+                "the common signal agrees in slow changes only (correlation "
+                f"{abs(within):.2f} within windows)"
             )
             raise InputError(problem=problem, mend=MEND)
         covariance = self._covariance((offset, solution[1]), with_drift=False)

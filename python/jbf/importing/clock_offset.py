@@ -223,15 +223,16 @@ def _clear_peak(r: Array, allowed: Mask, offsets: Array) -> tuple[int, int, int]
         outside[low : high + 1] = False
         rival = int(np.argmax(np.where(outside, np.abs(r), 0.0)))
         problem = (
-            f"the common signal repeats: offsets of {offsets[best]:.4g} s and {offsets[rival]:.4g} "
-            f"s fit alike (correlation {abs(r[best]):.3f} and {abs(r[rival]):.3f})"
+            f"the common signal repeats: offsets of {offsets[best]:.4g} s and "
+            f"{offsets[rival]:.4g} s fit equally (correlation {abs(r[best]):.3f} and "
+            f"{abs(r[rival]):.3f})"
         )
         raise InputError(problem=problem, mend=MEND)
     reached = np.flatnonzero(allowed)
     if low <= reached[0] + 1 or high >= reached[-1] - 1:
         problem = (
-            "the common signal does not determine the offset: any from "
-            f"{offsets[low]:.4g} s to {offsets[high]:.4g} s fits"
+            f"the common signal does not determine the offset: {offsets[low]:.4g} s to "
+            f"{offsets[high]:.4g} s fit equally"
         )
         raise InputError(problem=problem, mend=MEND)
     return best, low, high

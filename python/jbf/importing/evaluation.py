@@ -55,20 +55,20 @@ def column_unit(reference: Reference, units: Mapping[str, str]) -> Unit:
         raise InputError(
             column=reference.column,
             problem="its unit is open",
-            mend="write it in place of the ? in the map, such as [mm]",
+            mend="replace the ? in the map by the unit, such as [mm]",
         )
     if reference.unit is None and text in ASK:
         raise InputError(
             column=reference.column,
-            problem=f"the unit {quoted(text)} may be {ASK[text]}",
-            mend="write the one that it is behind the column in the map, in square brackets",
+            problem=f"the unit {quoted(text)} is ambiguous: {ASK[text]}",
+            mend="write one of them after the column in the map, in square brackets",
         )
     unit = parse_unit(text) if text else ONE
     if unit is None:
         raise InputError(
             column=reference.column,
-            problem=f"{quoted(text)} is no known unit",
-            mend="write one such as [N m], [mm/s], [rpm] behind the column in the map",
+            problem=f"the unit {quoted(text)} is not known",
+            mend="write one such as [N m], [mm/s], [rpm] after the column in the map",
         )
     return unit
 
@@ -94,7 +94,7 @@ def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str])
         unit = parse_unit(node.unit)
         if unit is None:
             raise InputError(
-                problem=f"{quoted(node.unit)} behind {node.value:g} is no known unit",
+                problem=f"the unit {quoted(node.unit)} of {node.value:g} is not known",
                 mend="write one such as [mm] or [N m/A]",
             )
         return Quantity(node.value, unit)
@@ -132,11 +132,11 @@ def converted(found: Quantity, wanted: Unit, key: str) -> Array:
         return values * (found.unit.in_si / wanted.in_si)
     if angle and found.unit.dimensions[:_RAD] == wanted.dimensions[:_RAD]:
         problem, mend = (
-            "turns, degrees or radians?",
+            "the unit is ambiguous: revolutions, degrees or radians",
             "give a factor its unit: [mm/rev], [counts/rev]",
         )
     else:
-        problem = f"has the unit {found.unit.text}, which is no {wanted.text}"
+        problem = f"has the unit {found.unit.text}, but {wanted.text} is required"
         mend = "give columns and factors their units in square brackets"
     raise InputError(key=f"columns.{key}", problem=problem, mend=mend)
 
@@ -178,8 +178,8 @@ def _called(node: Call, inner: Quantity) -> Quantity:
         return Quantity(_root(inner), ONE, loose=True)
     if inner.unit.dimensions[:_RAD] != NONE[:_RAD] or inner.unit.dimensions[_RAD] not in (0, 1):
         raise InputError(
-            problem=f"{node.function} of {inner.unit.text}, which is no angle",
-            mend="give it an angle",
+            problem=f"{node.function} requires an angle, not {inner.unit.text}",
+            mend="use an angle as its argument",
         )
     angle = np.asarray(inner.value) * inner.unit.in_si
     return Quantity(np.sin(angle) if node.function == "sin" else np.cos(angle), ONE)
@@ -188,7 +188,8 @@ def _called(node: Call, inner: Quantity) -> Quantity:
 def _root(inner: Quantity) -> Value:
     if inner.unit.dimensions != NONE:
         raise InputError(
-            problem=f"the root of {inner.unit.text} has no unit", mend="divide by a unit first"
+            problem=f"the square root of {inner.unit.text} has no unit",
+            mend="divide by a unit first",
         )
     with np.errstate(invalid="ignore"):
         found: Value = np.sqrt(np.asarray(inner.value) * inner.unit.in_si)
@@ -207,13 +208,13 @@ def _not_twice(node: Binary, left: Quantity, right: Quantity) -> None:
         if math.isclose(factor, size, rel_tol=_SAME):
             raise InputError(
                 problem=f"the factor {other.value:g} converts {this.unit.text} a second time",
-                mend="drop it: units are converted by their names",
+                mend="remove it: units are converted automatically",
             )
 
 
 def _no_zero(unit: Unit) -> None:
     if unit.zero:
         raise InputError(
-            problem=f"{unit.text} has a zero of its own and cannot be reckoned with",
-            mend="give the temperature's column alone",
+            problem=f"{unit.text} has an offset zero and cannot be used in a calculation",
+            mend="use the temperature column alone",
         )

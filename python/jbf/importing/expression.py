@@ -121,7 +121,7 @@ class _Parser:
         found = self._sum()
         self._skip()
         if self.at < len(self.text):
-            raise self._wrong(f"{quoted(self.text[self.at :])} is left over")
+            raise self._wrong(f"{quoted(self.text[self.at :])} is not understood")
         return found
 
     def _sum(self) -> Node:
@@ -153,7 +153,7 @@ class _Parser:
     def _item(self) -> Node:
         self._skip()
         if self.at == len(self.text):
-            raise self._wrong("ends where a column or a number is due")
+            raise self._wrong("ends where a column or a number is expected")
         if self.text[self.at] == "`":
             return self._in_back_quotes()
         name = self._name_here()
@@ -223,7 +223,7 @@ class _Parser:
         return InputError(problem=problem, mend=did_you_mean(word, self.known))
 
     def _wrong(self, problem: str) -> InputError:
-        mend = "write columns and numbers with + - * / and brackets, a unit as [N m] behind them"
+        mend = "write columns and numbers with + - * / and brackets, units as [N m] after them"
         return InputError(problem=f"{quoted(self.text)} {problem}", mend=mend)
 
 

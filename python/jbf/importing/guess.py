@@ -92,7 +92,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     if joints and joint not in joints:
         raise JointNotChosen(source.path, joints, joint)
     if joint is not None and not joints:
-        raise InputError(file=source.path, problem="holds one joint", mend="name no joint")
+        raise InputError(file=source.path, problem="contains only one joint", mend="omit the joint")
     for table in tables:
         questions += [
             Question(f"[{table.name}]" if several else "file", q) for q in table.questions
@@ -118,11 +118,11 @@ def guess(source: Source, joint: str | None = None) -> Guess:
             rivals = [c for c in found if c.key == key]
             if key in ("temperature_c", "pressure_pa") and not _one(rivals, key):
                 # Columns that no model requires are left out without a question.
-                ignored |= {c.column.name: f"one of several that may be {key}" for c in rivals}
+                ignored |= {c.column.name: f"several columns may be {key}" for c in rivals}
                 continue
             entry, rest, asked = _chosen(key, rivals)
             taken[key] = entry
-            ignored |= dict.fromkeys(rest, f"{key} is made of another")
+            ignored |= dict.fromkeys(rest, f"another column is used for {key}")
             of = made_in.get(key, file_of(source, table))
             if key in FRICTION or of == file_of(source, table):
                 questions += asked
@@ -139,15 +139,17 @@ def guess(source: Source, joint: str | None = None) -> Guess:
                     # The clock of the main file is that of the recording.
                     ignored[column_of(entry)] = f"{key} is read from {made_in[key].name}"
                 elif key != "time_s":
-                    ask = f"is in [{table.name}], too; say table under [file], or write it out"
+                    ask = (
+                        f"is also in [{table.name}]; set table under [file], or write the full name"
+                    )
                     questions.append(Question(key, ask))
         ignored |= _unused_columns(table, found, time)
-        ignored |= {c.column.name: "holds no value" for c in blank}
+        ignored |= {c.column.name: "contains no value" for c in blank}
     if "load_n_m" in entries and not any(key in entries for key in FRICTION):
         entries["torque_n_m"] = replace(entries.pop("load_n_m"), key="torque_n_m")
     entries = by_machine(entries)
     for key in redundant_motor_columns(entries):
-        ignored[column_of(entries.pop(key))] = "redundant: a force and a place are recorded"
+        ignored[column_of(entries.pop(key))] = "redundant: a force and a position are recorded"
     lone_motion = all(c.kind != "number" or _is_used(c, entries) for t in tables for c in t.columns)
     questions += _missing(entries, source, lone_motion)
     questions += force_as_torque(entries, ignored)
@@ -219,9 +221,9 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
     if column.name in KNOWN:
         header = understood(column.name)
         if column.unit and not _fits(column.unit, column.name):
-            ask = f"its unit is {column.unit}, its name says {wanted_unit(column.name).text}"
-            return Candidate(column.name, column, header, False, "its name", ask)
-        return Candidate(column.name, column, header, True, "its name is jbf's own")
+            ask = f"its unit {column.unit} contradicts its name ({wanted_unit(column.name).text})"
+            return Candidate(column.name, column, header, False, "by name", ask)
+        return Candidate(column.name, column, header, True, "name of a jbf column")
     header = understood(column.name, column.unit)
     if header.kind is None and not header.setpoint:
         # `force/value`: the name of the group applies, unless another column has its quantity.
@@ -231,7 +233,7 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
     if header.setpoint or header.modelled or header.kind in NEVER or is_doubtful_time(header):
         return None
     unit = None if header.unit in ASK else parse_unit(header.unit)
-    kind, why = header.kind, "its name"
+    kind, why = header.kind, "by name"
     if kind == "force" and unit is not None and unit.dimensions == TORQUE:
         kind = "torque"  # a friction in N m
     if unit is not None and (kind is None or unit.dimensions not in KINDS[kind]):
@@ -239,29 +241,34 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
         if kind == "time":
             return None  # a time without a unit of time: the time is searched for elsewhere
         if kind is not None and header.sure:
-            ask = f"{header.unit} is no unit of a {kind}; write the one that it is"
+            ask = f"{header.unit} is not a unit of {kind}; write its unit"
             return Candidate(_key(kind, header), column, header, False, why, ask)
         kind = next((k for k in _BY_UNIT if unit.dimensions in KINDS[k]), None)
         if kind == "torque" and unit.dimensions == NONE:
             kind = None
-        why = "its unit alone"
+        why = "by unit"
     if kind is None or kind == "time":
         return None
     key = _key(kind, header)
     if header.unit in ASK:
-        ask = f"{header.unit} may be {ASK[header.unit]}; write which behind the column"
+        ask = (
+            f"the unit {header.unit} is ambiguous: {ASK[header.unit]}; write one of "
+            "them after the column"
+        )
         return Candidate(key, column, header, False, why, ask)
     if kind == "voltage" and not header.motor:
-        ask = "is this the motor's voltage? if so, replace [?] by [V]; results are then in volts"
+        ask = "is this the motor's voltage? If so, replace [?] by [V]; results are then in volts"
         return Candidate(key, column, header, False, why, ask)
     if unit is None:
-        said = f"the unit {header.unit!r} is not known" if header.unit else "no unit is written"
-        return Candidate(key, column, header, False, why, f"{said}; write it behind the column")
+        said = f"the unit {header.unit!r} is not known" if header.unit else "it has no unit"
+        return Candidate(key, column, header, False, why, f"{said}; write it after the column")
     if unit.dimensions == COUNT:
-        ask = "how many counts is a turn (or a metre)? write / 4096 [counts/rev] behind the column"
+        ask = (
+            "how many counts per revolution (or metre)? Write / 4096 [counts/rev] after the column"
+        )
         return Candidate(key, column, header, False, why, ask)
-    sure = why == "its name" or len(header.name) <= 2
-    return Candidate(key, column, header, sure, f"{why} and its unit" if why == "its name" else why)
+    sure = why == "by name" or len(header.name) <= 2
+    return Candidate(key, column, header, sure, "by name and unit" if why == "by name" else why)
 
 
 def _fits(unit: str, key: str) -> bool:
@@ -308,7 +315,7 @@ def _one(rivals: list[Candidate], key: str) -> bool:
 def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
     """Return the column for `key`, the rejected columns and the open questions."""
     sure = [c for c in rivals if c.sure]
-    named = [c for c in rivals if c.why != "its unit alone"]
+    named = [c for c in rivals if c.why != "by unit"]
     if named and len(named) < len(rivals):
         # A candidate known by its unit only does not compete with one known by its name.
         entry, rest, asked = _chosen(key, named)
@@ -318,7 +325,7 @@ def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Q
         best = (own or sure or rivals)[0]
         questions = [] if best.question is None else [Question(best.column.name, best.question)]
         if not best.sure and best.question is None and key in (*FRICTION, *MOTION):
-            ask = f"is it {key}? only its unit says so; write it into the map"
+            ask = f"is it {key}? Only its unit indicates this; write it into the map"
             questions = [Question(best.column.name, ask)]
         rest = [c.column.name for c in rivals if c is not best]
         return Entry(key, best.expression, best.why, not questions), rest, questions
@@ -338,15 +345,19 @@ def _missing(entries: Mapping[str, Entry], source: Source, lone_motion: bool) ->
     found = []
     if not any(key in entries for key in FRICTION) and not lone_motion:
         if "load_n" in entries:
-            ask = f"is {entries['load_n'].expression} the friction or the load? write friction_n"
+            ask = (
+                f"is {entries['load_n'].expression} the friction or the load? For "
+                "friction write friction_n"
+            )
         else:
             ask = (
-                f"which column is the friction force or torque? there are {shown}; of a coast-down "
-                'write friction = "none" and what moves under [drive]'
+                f"which column is the friction force or torque? Columns: {shown}. For "
+                'a coast-down write friction = "none" and the moved mass or inertia '
+                "under [drive]"
             )
         found.append(Question("friction", ask))
     if not any(key in entries for key in MOTION):
-        found.append(Question("motion", f"which column is a place or a speed? there are {shown}"))
+        found.append(Question("motion", f"which column is a position or a speed? Columns: {shown}"))
     return found
 
 
@@ -368,10 +379,10 @@ def _unused_columns(table: Table, found: list[Candidate], time: Entry | None) ->
         elif header.modelled:
             why = "computed, not measured"
         elif header.kind == "run":
-            why = "numbers the runs: [cut] may go by it"
+            why = "run number: [cut] can use it"
         elif header.kind is None:
             why = "not known"
         else:
-            why = f"{header.kind}: nothing is made of it"
+            why = f"{header.kind}: not used"
         left[column.name] = why
     return left

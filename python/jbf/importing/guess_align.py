@@ -35,7 +35,7 @@ def with_alignment(guess: Guess, source: SideBySide) -> Guess:
     for file in source.files[1:]:
         stem = stem_of(file)
         if not _is_used(guess, source, file):
-            notes[stem] = "nothing is taken from it"
+            notes[stem] = "not used"
             continue
         note = _tried(guess, source, file, {})
         if isinstance(note, str):
@@ -46,7 +46,7 @@ def with_alignment(guess: Guess, source: SideBySide) -> Guess:
             align[stem] = shared[0]
             note = _tried(guess, source, file, {stem: shared[0]})
             if not isinstance(note, InputError):
-                notes[stem] = note or "the one column that both files have"
+                notes[stem] = note or "the only common column"
                 continue
             notes[stem] = note.problem
             questions.append(Question(f"align.{stem}", f"{note.problem}; {note.mend}"))
@@ -85,7 +85,7 @@ def _tried(
         every = channels_of(source, mapping)
         channels = [c for c in every if source.file_of(c.table) in (source.path, file)]
         if any(f"[{OPEN}]" in channel.clock for channel in channels):
-            return None if align else InputError(problem="a time is open")
+            return None if align else InputError(problem="a time is unknown")
         with TemporaryDirectory(prefix="jbf-align-") as folder:
             (found,) = aligned(source, mapping, channels, Path(folder))
     except InputError as error:

@@ -13,12 +13,12 @@ from jbf.importing.targets import LINEAR, TURNING
 Sections = dict[str, dict[str, Any]]
 
 _ASKS = {
-    "rated_torque_n_m": 'what is 100 % of the motor\'s torque (such as "1.27 N m")?',
-    "rated_force_n": 'what is 100 % of the motor\'s force (such as "60 N")?',
-    "torque_constant_n_m_a": 'what torque is 1 A of the motor (such as "0.5 N m/A")?',
-    "inertia_kg_m2": 'no force was recorded: what inertia coasts or swings ("0.02 kg m^2")?',
-    "mass_kg": 'no force was recorded: what mass coasts ("3.5 kg")?',
-    "pitch_m": 'how far does it move in one turn of its screw (such as "10 mm")?',
+    "rated_torque_n_m": 'what is the motor\'s rated torque, 100 % (such as "1.27 N m")?',
+    "rated_force_n": 'what is the motor\'s rated force, 100 % (such as "60 N")?',
+    "torque_constant_n_m_a": 'what is the motor\'s torque per ampere (such as "0.5 N m/A")?',
+    "inertia_kg_m2": 'no force was recorded: what is the moved inertia (such as "0.02 kg m^2")?',
+    "mass_kg": 'no force was recorded: what is the moved mass (such as "3.5 kg")?',
+    "pitch_m": 'what is the travel per revolution of the screw (such as "10 mm")?',
 }
 
 
@@ -64,7 +64,7 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
         asked.append("pitch_m")
     drive |= dict.fromkeys(asked, OPEN)
     return {"drive": drive}, [
-        Question(f"drive.{key}", f"{_ASKS[key]} write it into the map") for key in asked
+        Question(f"drive.{key}", f"{_ASKS[key]} Write it into the map") for key in asked
     ]
 
 
@@ -116,8 +116,8 @@ def force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[
     lever = f"{force.expression} * {OPEN} [mm]"
     entries["torque_n_m"] = Entry("torque_n_m", lever, force.why, sure=False)
     ask = (
-        f"at what radius does {force.expression} act? write it in the place of the {OPEN}; of a "
-        "journal bearing write friction_n and [bearing] (docs/import.md)"
+        f"at what radius does {force.expression} act? Write it in place of the {OPEN}; "
+        "for a journal bearing write friction_n and [bearing] (docs/import.md)"
     )
     return [Question("torque_n_m", ask)]
 

@@ -28,10 +28,10 @@ Found = tuple[Entry | None, list[Question]]
 def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
     """Return the map entry for the time of a table, and open questions about it."""
     if table.clock is not None:
-        return Entry("time_s", written(table.clock), "the format's own clock"), []
+        return Entry("time_s", written(table.clock), "clock of the format"), []
     own = [c for c in table.columns if c.name == "time_s" and c.kind == "number"]
     if own:
-        return Entry("time_s", written("time_s"), "its name is jbf's own"), []
+        return Entry("time_s", written("time_s"), "name of a jbf column"), []
     numbers = [c for c in table.columns if _is_time(c) and _runs_forward(head[c.name])]
     instants = [
         c for c in table.columns if c.kind == "instant" and _steps(head[c.name]) is not None
@@ -41,21 +41,21 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
         return _of_number(numbers[0], _steps(head[numbers[0].name]))
     if not numbers and instants:
         finest = min(instants, key=lambda c: _steps(head[c.name]) or np.inf)
-        return Entry("time_s", written(finest.name), "its cells are dates or times of day"), []
+        return Entry("time_s", written(finest.name), "dates or times of day"), []
     if len(instants) == 1 and not with_unit:
-        return Entry("time_s", written(instants[0].name), "its cells are dates or times of day"), []
+        return Entry("time_s", written(instants[0].name), "dates or times of day"), []
     if len(numbers) == 1:
         epoch = _since_1970(numbers[0], head[numbers[0].name])
         return (epoch, []) if epoch else _of_number(numbers[0], _steps(head[numbers[0].name]))
     if numbers:
         names = ", ".join(c.name for c in numbers)
-        ask = f"which of these is it: {names}? those of other channels go under [clocks]"
+        ask = f"which of these is it: {names}? Those of other channels belong under [clocks]"
         return Entry("time_s", OPEN, f"one of: {names}", sure=False), [Question("time_s", ask)]
     if table.rate_hz is not None:
         return None, []
     ask = (
-        "no column holds it; under [file] say rate_hz (samples a second), or steady = true where "
-        "each row is a steady state (a Stribeck curve); or say which column it is"
+        "no column contains it; name the column, or set rate_hz (samples per second) "
+        "under [file], or steady = true for steady states (a Stribeck curve)"
     )
     return None, [Question("time_s", ask)]
 
@@ -83,7 +83,7 @@ def time_by_motion(
         for unit in ("s", "ms", "us", "min"):
             text = time.expression.replace(OPEN, unit)
             tried = replace(
-                time, expression=text, why=f"in {unit} speed and place agree", sure=True
+                time, expression=text, why=f"speed and position agree in {unit}", sure=True
             )
             ratio = speed_ratio({**entries, **assumed, "time_s": tried}, pair, tables, heads)
             if ratio is not None and 1.0 / OFF < ratio < OFF:
@@ -129,20 +129,22 @@ def _of_number(column: Column, step: float | None = None) -> Found:
         unit = parse_unit(header.unit)
         if step is not None and unit is not None and step * unit.in_si < SHORTEST_S:
             ask = (
-                f"the times of {text} would be {step * unit.in_si:.2g} s apart, as of no logger: "
-                "write its unit behind the column"
+                f"the times of {text} would be {step * unit.in_si:.2g} s apart, which "
+                "is not plausible: write its unit after the column"
             )
             open_text = f"{written(header.name)} [{OPEN}]"
-            entry = Entry("time_s", open_text, "its name", sure=False)
+            entry = Entry("time_s", open_text, "by name", sure=False)
             return entry, [Question(column.name, ask)]
-        return Entry("time_s", text, "its name and its unit"), []
+        return Entry("time_s", text, "by name and unit"), []
     if header.unit:
-        ask = f"{header.unit} is no unit of time: [min], [ms] or what? write it behind the column"
+        ask = (
+            f"{header.unit} is not a unit of time; write one such as [min] or [ms] after the column"
+        )
     else:
-        ask = "no unit is written; write [s], [ms] or [us] behind the column"
+        ask = "it has no unit; write [s], [ms] or [us] after the column"
         if step is not None:
-            ask += f" (from row to row it grows by {step:.4g})"
-    entry = Entry("time_s", f"{written(column.name)} [{OPEN}]", "its name", sure=False)
+            ask += f" (it increases by {step:.4g} per row)"
+    entry = Entry("time_s", f"{written(column.name)} [{OPEN}]", "by name", sure=False)
     return entry, [Question(column.name, ask)]
 
 
@@ -154,7 +156,7 @@ def _since_1970(column: Column, values: Values) -> Entry | None:
         return None
     for unit, size in (("s", 1.0), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)):
         if _FROM_S * size < known.min() and known.max() < _TO_S * size:
-            why = f"{unit} since 1970, by its size"
+            why = f"{unit} since 1970, from the magnitude"
             return Entry("time_s", f"{written(column.name)} [{unit}]", why)
     return None
 

@@ -153,8 +153,8 @@ def import_files(
     if folder is not None:
         check_folder(folder, replace=replace_folder)
     if joint is not None and map is not None:
-        mend = "leave one of them out: the map names the columns"
-        raise InputError(problem="a joint and a map are given", mend=mend)
+        mend = "omit one of them: the map names the columns"
+        raise InputError(problem="both a joint and a map are given", mend=mend)
     mapping, text = _map(map, paths, joint, _further(beside or ()))
     if beside is not None:
         mapping = replace(mapping, beside=_further(beside))
@@ -246,12 +246,12 @@ def _further(files: Sequence[PathLike]) -> tuple[Path, ...]:
 def _check_further_files(paths: Sequence[Path], mapping: Map) -> None:
     """Raise an error for several recordings with further files, or for missing further files."""
     if mapping.beside and len(paths) > 1:
-        problem = f"{len(paths)} files are given together with files recorded beside one"
-        mend = f"name one main file: {paths[0].name}, or leave the others out"
+        problem = f"{len(paths)} files are given together with further files of one recording"
+        mend = f"name one main file: {paths[0].name}, or omit the others"
         raise InputError(problem=problem, mend=mend)
     if mapping.align and not mapping.beside:
         mend = 'name the further files: beside = ["force.csv"] under [file]'
-        raise InputError(file=mapping.path, key="align", problem="has no files", mend=mend)
+        raise InputError(file=mapping.path, key="align", problem="contains no files", mend=mend)
     _further(mapping.beside)
 
 
@@ -291,7 +291,7 @@ def _pieces(recordings: Sequence[Recording], mapping: Map) -> list[Piece]:
         why = pieces[0].why if pieces else "it is empty"
         raise InputError(
             file=recordings[0].path,
-            problem=f"nothing is left to be a run: {why}",
+            problem=f"no run remains: {why}",
             mend="correct [cut] in the map, or the trims",
         )
     return pieces

@@ -33,9 +33,9 @@ class JointNotChosen(InputError):
 
     def __init__(self, path: Path, joints: Sequence[str], named: str | None) -> None:
         self.joints = tuple(joints)
-        held = f"holds the joints {', '.join(joints)}"
-        problem = held if named is None else f"{held}; none is called {named}"
-        mend = f"say which: --joint {joints[0]}, or --joint all with --folder"
+        held = f"contains the joints {', '.join(joints)}"
+        problem = held if named is None else f"{held}, but not {named}"
+        mend = f"choose one: --joint {joints[0]}, or --joint all with --folder"
         super().__init__(file=path, problem=problem, mend=mend)
 
     def __reduce__(self) -> tuple[object, ...]:

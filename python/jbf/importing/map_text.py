@@ -13,15 +13,15 @@ from jbf.importing.guessed import Guess
 from jbf.text_files import real_path
 
 _HEAD = """\
-# A map: which columns of the file make which columns of a run. Made by jbf import; edit it, then
+# Map from the columns of the file to the columns of a run. Written by jbf import; edit it, then
 #   jbf import {file} --map {map} --folder FOLDER
-# A column stands as the file names it, in back quotes or not; + - * / and brackets are allowed, and
-# units in square brackets: "`Torque [Nm]` / 12.7 [mm]", "-`Speed` [rpm]". Units are converted to
-# what the name on the left ends in. Each ? is open: put what it is in its place.
+# Columns have the names of the file, optionally in back quotes; + - * / and brackets are allowed,
+# and units in square brackets: "`Torque [Nm]` / 12.7 [mm]", "-`Speed` [rpm]". Units are converted
+# to the unit in the name on the left. Replace each ? by its value.
 """
 _CUT = """\
-# One recording becomes several runs where it is cut: at its rests where nothing is said here.
-# Time that starts again always cuts.
+# A recording is cut into several runs, by default at its rests. It is always cut where time
+# restarts.
 # [cut]
 # by = "{way}"  # one or several of: "rests", "cycles", "set_point", "load_step", "motion",
 #               # "run", "parts"

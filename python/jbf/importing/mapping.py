@@ -85,7 +85,7 @@ class Map:
                         file=self.path,
                         key=f"{section}.{key}",
                         problem="is open",
-                        mend="put what it is in the place of the ?",
+                        mend="replace the ? by its value",
                     )
 
     def check(self) -> Rig:
@@ -103,8 +103,8 @@ class Map:
                 wanted_unit(key)
             for key in self.clocks:
                 if key not in self.columns or key == "time_s":
-                    problem = "has a clock of its own and is no other column"
-                    mend = "name it under [columns], too"
+                    problem = "has a separate clock but is not a column"
+                    mend = "add it under [columns]"
                     raise InputError(key=f"clocks.{key}", problem=problem, mend=mend)
             self._complete()
             return Rig.from_mapping(self.rig)
@@ -119,13 +119,13 @@ class Map:
             if not any(key in self.columns for key in wanted):
                 raise InputError(
                     key="columns",
-                    problem=f"holds no column for {what}",
+                    problem=f"contains no column for {what}",
                     mend=f"give one of {', '.join(wanted)}",
                 )
         if not self.rig:
             raise InputError(
                 key="drive",
-                problem="nothing says what it was recorded on",
+                problem="the map does not describe the machine",
                 mend='add [drive] with motion = "linear" or "rotary" and friction, or [bearing]',
             )
 
@@ -185,7 +185,7 @@ def _further_paths(names: object, folder: Path) -> tuple[Path, ...]:
     """Return the further files; their paths are relative to the folder of the map."""
     if not isinstance(names, list) or not all(isinstance(n, str) and n for n in names):
         mend = 'write a list of files, such as ["force.csv"]'
-        raise InputError(key="file.beside", problem=f"{names!r} does not fit", mend=mend)
+        raise InputError(key="file.beside", problem=f"{names!r} is not a list of files", mend=mend)
     return tuple(folder / name for name in names)
 
 
@@ -202,7 +202,9 @@ def _align(section: Mapping[str, Any]) -> dict[str, str | float]:
             fits = False
         if not fits:
             mend = f'write a common signal, such as "drive/pos ~ {key}/pos", or seconds'
-            raise InputError(key=f"align.{key}", problem=f"{value!r} does not fit", mend=mend)
+            raise InputError(
+                key=f"align.{key}", problem=f"{value!r} is not a signal or an offset", mend=mend
+            )
         found[key] = seconds
     return found
 
@@ -213,7 +215,7 @@ def _texts(content: Mapping[str, Any], section: str) -> dict[str, str]:
         if not isinstance(value, str):
             raise InputError(
                 key=f"{section}.{key}",
-                problem=f"{value!r} is no text",
+                problem=f"{value!r} is not text",
                 mend='write an expression in quotes, such as "Force [N] / 2"',
             )
         found[key] = value
@@ -225,8 +227,8 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "decimal": (str, '"," or "."'),
     "thousands": (str, 'text, such as "."'),
     "encoding": (str, 'text, such as "latin-1"'),
-    "header": (int, "the number of a row, 0 where there is none"),
-    "units": (int, "the number of a row, 0 where there is none"),
+    "header": (int, "a row number, 0 if there is none"),
+    "units": (int, "a row number, 0 if there is none"),
     "table": (str, "the name of a sheet, group or topic"),
     "rate_hz": ((int, float), "a number above zero"),
     "steady": (bool, "true or false"),
@@ -255,7 +257,7 @@ def _options(section: Mapping[str, Any]) -> Options:
             good = good and all(isinstance(word, str) for word in value)
         if not good:
             raise InputError(
-                key=f"file.{key}", problem=f"{value!r} does not fit", mend=f"write {wanted}"
+                key=f"file.{key}", problem=f"{value!r} is not valid", mend=f"write {wanted}"
             )
     if "empty" in given:
         given["empty"] = tuple(given["empty"])

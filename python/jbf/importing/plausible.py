@@ -40,9 +40,9 @@ def contradictions(
             continue
         ratio = speed_ratio(by_key, (place, speed), tables, heads)
         if ratio is not None and not 1.0 / OFF < ratio < OFF:
-            of = f"{by_key[speed].expression} is {ratio:.4g} times the change of"
-            ask = f"{of} {by_key[place].expression}: a unit, of these or of the time, is wrong"
-            found.append(Question(speed, f"{ask}; write the right one behind the column"))
+            of = f"{by_key[speed].expression} is {ratio:.4g} times the derivative of"
+            ask = f"{of} {by_key[place].expression}: one unit, or that of the time, is wrong"
+            found.append(Question(speed, f"{ask}; write the right unit after the column"))
     return found
 
 

@@ -40,7 +40,7 @@ Report = Callable[[str, int, int], None]
 
 LOADED = 0.1
 """Share of the usual load below which a machine counts as unloaded; used in suggestions."""
-STEADY = "none: each row is a steady state"
+STEADY = "none: steady states"
 """Text of the ledger for the clock of steady states."""
 
 
@@ -120,8 +120,8 @@ def _read_stream(
     except InputError as error:
         raise error.within(file=of) from None
     if isinstance(source, SideBySide) and len(recording.streams[-1].segments) > 1:
-        problem = "its time starts again, and files recorded side by side have one stretch each"
-        raise InputError(file=of, problem=problem, mend="save its stretches as files of their own")
+        problem = "its time restarts, but files recorded together need one stretch each"
+        raise InputError(file=of, problem=problem, mend="save its stretches as separate files")
 
 
 def _spool(
@@ -172,7 +172,9 @@ def _spool(
             report(f"reading {of.name}", done, total)
     stream.segments = line.segments(stream.rows)
     if stream.rows == 0:
-        raise InputError(problem="holds no samples", mend="name another file, or correct the map")
+        raise InputError(
+            problem="contains no samples", mend="name another file, or correct the map"
+        )
     dropped = [Dropped(*found) for found in source.skipped_rows()] + line.dropped()
     if stream.needed:
         lacking = sum(int((~stream.complete(block)).sum()) for block in stream.blocks())
@@ -185,7 +187,7 @@ def _spool(
         recording.start = recording.start or table.start
     for at in stream.empty:
         key = stream.columns[at]
-        recording.notes.append(f"{key} holds no value and is left out")
+        recording.notes.append(f"{key} contains no value and is not imported")
     recording.channels += [
         _described(c, stream, units, rate, recording)
         for at, c in enumerate(channels, 1)
@@ -199,8 +201,8 @@ def _values(
     if channel.key in (*OF_CUTTING, SIGNAL_COLUMN):
         read = [values[reference.column] for reference in references(channel.node)]
         if channel.key == KEPT_COLUMN and any(column.dtype == object for column in read):
-            mend = "compare a column of numbers"
-            raise InputError(key="cut.keep", problem="takes a column of words", mend=mend)
+            mend = "use a numeric column in the comparison"
+            raise InputError(key="cut.keep", problem="is a column of words", mend=mend)
         if isinstance(channel.node, Reference):
             column = values[channel.node.column]
             return words.codes(column) if column.dtype == object else column
@@ -208,7 +210,9 @@ def _values(
     for reference in references(channel.node):
         if values[reference.column].dtype == object:
             raise InputError(
-                column=reference.column, problem="holds words, not numbers", mend="name another"
+                column=reference.column,
+                problem="contains words, not numbers",
+                mend="name another column",
             )
     try:
         return converted(evaluate(channel.node, values, units), channel.unit, channel.key)
@@ -240,7 +244,7 @@ def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
         row, column = np.argwhere(beyond)[0]
         raise InputError(
             key=f"columns.{columns[column]}",
-            problem=f"{rows[row, column]:g} is beyond what any machine does",
+            problem=f"{rows[row, column]:g} is not plausible",
             mend="correct the unit, or the expression",
         )
 
@@ -271,8 +275,8 @@ def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> 
                 file=recording.path,
                 key="columns.load_n",
                 problem=f"a load of {load:g} N at {time:g} s is not above zero",
-                mend=f"keep = '{least}' under [cut] leaves such rows out; or turn its sign, or "
-                "take its zero off",
+                mend=f"keep = '{least}' under [cut] removes such rows; otherwise "
+                "correct its sign or zero",
             )
 
 
@@ -329,17 +333,19 @@ def keep_common_span(recording: Recording) -> None:
     early = recording.streams[[last for _, last in spans].index(end)]
     if begin >= end:
         problem = (
-            f"it begins {begin - end:.4g} s after the end of {_name(early)}: their times do not "
-            "overlap"
+            f"it begins {begin - end:.4g} s after the end of {_name(early)}: their "
+            "times do not overlap"
         )
-        mend = "correct the offset or the signal under [align], or leave a file out"
+        mend = "correct the offset or the signal under [align], or omit a file"
         raise InputError(file=late.source, problem=problem, mend=mend)
     for stream in recording.streams:
         low, high = stream.rows_between(0, begin, end)
         skipped = stream.rows - (high - low)
         if high == low:
-            problem = f"it has no samples from {begin:.4g} s to {end:.4g} s, when all files were on"
-            raise InputError(file=stream.source, problem=problem, mend="leave it out")
+            problem = (
+                f"it has no samples from {begin:.4g} s to {end:.4g} s, where the files overlap"
+            )
+            raise InputError(file=stream.source, problem=problem, mend="omit it")
         if skipped:
             stream.segments = [(low, high)]
             why = "another file does not cover their time"
@@ -354,6 +360,6 @@ def _check_segments(recording: Recording) -> None:
     counts = {len(stream.segments) for stream in recording.streams}
     if len(counts) > 1:
         raise InputError(
-            problem="time starts again in some channels and not in others",
-            mend="give the channels one clock, or import the stretches as files of their own",
+            problem="time restarts in some channels only",
+            mend="give the channels one clock, or import the stretches as separate files",
         )

@@ -30,6 +30,6 @@ def check_rig_columns(rig: Rig, mapping: Map) -> None:
             raise InputError(
                 file=file,
                 key=f"columns.{key}",
-                problem="is missing, and the rig needs it",
+                problem="is missing, but the rig requires it",
                 mend="add it under [columns], or correct the rig's section",
             )

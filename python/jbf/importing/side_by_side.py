@@ -104,14 +104,14 @@ def open_recording(
     if not beside:
         return open_source(path, options)
     if options.steady:
-        mend = "leave the other files out, or steady"
+        mend = "omit the other files, or steady"
         raise InputError(key="file.steady", problem="steady states have no clock", mend=mend)
     with ExitStack() as stack:
         sources = [stack.enter_context(open_source(file, options)) for file in (path, *beside)]
         stems = [stem_of(source.path) for source in sources]
         for at, source in enumerate(sources):
             if stems[at] in stems[:at]:
-                problem = f"another of the files is called {stems[at]}, too"
+                problem = f"another file also has the name {stems[at]}"
                 raise InputError(file=source.path, problem=problem, mend="rename one of them")
         return SideBySide(sources, stack.pop_all(), options)
 
@@ -123,7 +123,7 @@ def _chosen(sources: Sequence[Source], name: str | None) -> list[tuple[Table, ..
     named = [tuple(t for t in source.tables if t.name == name) for source in sources]
     if not any(named):
         known = ", ".join(t.name for source in sources for t in source.tables if t.name)
-        problem = f'no file holds "{name}"'
-        mend = f"they hold: {known}" if known else "leave it out"
+        problem = f'no file contains "{name}"'
+        mend = f"they contain: {known}" if known else "omit it"
         raise InputError(key="file.table", problem=problem, mend=mend)
     return [own or source.tables for own, source in zip(named, sources, strict=True)]

@@ -46,6 +46,9 @@ def wanted_unit(key: str) -> Unit:
         raise InputError(
             key=f"columns.{key}",
             problem="is not known, and its name ends in no unit",
-            mend=f"{did_you_mean(key, KNOWN)}; one of your own is such as setpoint_rpm",
+            mend=(
+                f"{did_you_mean(key, KNOWN)}; name your own columns with a unit, such "
+                "as setpoint_rpm"
+            ),
         )
     return found[1]

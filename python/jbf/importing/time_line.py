@@ -76,9 +76,9 @@ class TimeLine:
                 if now > self._first + _BEGINNING * (self._last - self._first):
                     raise InputError(
                         row=self._row_of(self.seen + row),
-                        problem=f"sample {self.seen + row + 1}: time runs back from "
+                        problem=f"sample {self.seen + row + 1}: time decreases from "
                         f"{self._last:.12g} s to {now:.12g} s",
-                        mend="sort the rows, or import what comes after as a file of its own",
+                        mend="sort the rows, or import the later part as a separate file",
                     )
                 self._starts.append(kept)
                 self._first = now
@@ -96,8 +96,10 @@ class TimeLine:
         if self._repeats > _MANY * max(self.seen, 1):
             raise InputError(
                 column="time_s",
-                problem=f"stands still in {self._repeats} of {self.seen} rows: too coarse a clock",
-                mend="name a finer one, or leave time_s out and say rate_hz under [file]",
+                problem=(
+                    f"is constant in {self._repeats} of {self.seen} rows: the clock is too coarse"
+                ),
+                mend="name a finer one, or omit time_s and set rate_hz under [file]",
             )
         return list(zip(self._starts, [*self._starts[1:], rows], strict=True))
 
@@ -107,5 +109,5 @@ class TimeLine:
         if self._repeats:
             found.append(Dropped(self._repeats, "time repeats", self._first_repeat))
         if self._timeless:
-            found.append(Dropped(self._timeless, "there is no time"))
+            found.append(Dropped(self._timeless, "time is missing"))
         return found

@@ -33,7 +33,9 @@ def unwrapped(stream: Stream) -> list[str]:
             last = float(values[-1])
         if jumps and high - low <= _TURN * (1.0 + 1e-6):
             stream.rewrite(column, _unwrapped_blocks(stream, column))
-            notes.append(f"{key} started again {jumps} times at a turn: whole turns were added")
+            notes.append(
+                f"{key} restarted {jumps} times after a revolution: whole revolutions were added"
+            )
     return notes
 
 

@@ -34,17 +34,17 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
     lines = [f"{names}: {guess.format}, {'; '.join(held)}"]
     rows_ = [(e.key, e.expression, "" if e.sure else "?", f"({e.why})") for e in guess.entries]
     if rows_:
-        lines += ["", "What was found:", *columns(rows_, "<<<<")]
+        lines += ["", "Columns found:", *columns(rows_, "<<<<")]
     if guess.ignored:
         shown = [f"{name} ({why})" for name, why in guess.ignored.items()]
         more = [f"and {len(shown) - _MOST} more"] if len(shown) > _MOST else []
-        lines += ["", *hanging("Not taken: ", ", ".join(shown[:_MOST] + more), 0)]
+        lines += ["", *hanging("Not used: ", ", ".join(shown[:_MOST] + more), 0)]
     if guess.align_notes:
         lines += ["", "Clocks:"]
         for stem, note in guess.align_notes.items():
             lines += hanging("- ", f"{stem}: {note}")
     if guess.questions:
-        lines += ["", "Not sure:"]
+        lines += ["", "Questions:"]
         for question in guess.questions:
             lines += hanging("- ", str(question))
     if kept:
@@ -67,7 +67,7 @@ def import_report(found: Import) -> str:
     seconds = sum(piece.to_s - piece.from_s for piece in runs)
     files = found.ledger["files"]
     steady = any(channel["clock"] == STEADY for channel in files[0]["channels"])
-    length = "steady states" if steady else f"{seconds:.4g} s in all"
+    length = "steady states" if steady else f"{seconds:.4g} s in total"
     lines = [f"{count_of(len(runs), 'run')} of {length}, from {_file_count(files)}:"]
     rows = [
         (piece.name, f"of {piece.file}", "", "", "")
@@ -115,7 +115,7 @@ def _file_count(files: Sequence[Mapping[str, Any]]) -> str:
     further = sum(len(page.get("beside", ())) for page in files)
     if not further:
         return count_of(len(files), "file")
-    return f"{count_of(len(files) + further, 'file')} recorded side by side"
+    return f"{count_of(len(files) + further, 'file')} recorded together"
 
 
 def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
@@ -137,7 +137,7 @@ def skipped_row_lines(ledger: Mapping[str, Any]) -> list[str]:
             first = f", the first in row {dropped['first_row']}" if "first_row" in dropped else ""
             rows = count_of(dropped["rows"], "row")
             of = dropped.get("file", page["file"])
-            said.append(f"{of}: {rows} left out, for {dropped['why']}{first}")
+            said.append(f"{of}: {rows} left out: {dropped['why']}{first}")
         said += [f"{page['file']}: {note}" for note in page["notes"]]
     return ["", "Notes:", *[line for s in said for line in hanging("- ", s)]] if said else []
 

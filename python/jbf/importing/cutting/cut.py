@@ -21,7 +21,7 @@ from jbf.importing.spool import Recording
 from jbf.importing.targets import FRICTION, MOTION
 from jbf.records.checks import MIN_SAMPLES
 
-TOO_FEW = f", and a run has at least {MIN_SAMPLES}"
+TOO_FEW = f", but a run needs at least {MIN_SAMPLES}"
 REST_S, KEEP_REST_S = 0.25, 0.1
 """Default shortest rest at which a recording is cut, and the part of it that is kept, s."""
 LOST, SHORTEST_S = 0.05, 1.0
@@ -36,8 +36,8 @@ def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
     """Return the pieces of a recording in order of time, including those that are left out."""
     timed = [way for way in settings.by or () if way in ("rests", "cycles", "motion")]
     if recording.steady and timed:
-        problem = f'"{timed[0]}" needs a motion in time, and the file holds steady states'
-        raise InputError(key="cut.by", problem=problem, mend="drop it")
+        problem = f'"{timed[0]}" requires a motion over time, but the file contains steady states'
+        raise InputError(key="cut.by", problem=problem, mend="remove it")
     if settings.by is not None or recording.steady:
         return _cut(recording, settings)
     pieces = at_rests_by_default(recording, settings)
@@ -69,7 +69,7 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
         elif way == "cycles":
             found_cycles = cut_at_cycles(recording, settings)
             if not found_cycles:
-                recording.notes.append("no cycle was found: the motion does not go to and fro")
+                recording.notes.append("no cycle was found: the motion has no reversals")
             cuts += found_cycles
         elif way == "parts":
             cuts += cut_into_parts(recording, settings.parts)
@@ -80,7 +80,7 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
             if found is None:
                 mend = "name another column"
                 raise InputError(
-                    file=recording.path, key="cut.column", problem="holds no value", mend=mend
+                    file=recording.path, key="cut.column", problem="contains no value", mend=mend
                 )
             cuts += cut_at_changes(found[0], CUT_COLUMN, way.replace("_", " "))
     kept = recording.stream_of(KEPT_COLUMN)
@@ -139,7 +139,7 @@ def _judged(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
         raise InputError(
             file=recording.path,
             column=next(iter(read), "motion"),
-            problem="holds no value",
+            problem="contains no value",
             mend="name another column in the map",
         )
     first, end = found[0].rows_between(piece.segment, piece.from_s, piece.to_s)

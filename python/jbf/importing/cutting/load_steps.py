@@ -32,7 +32,7 @@ def cut_at_load_steps(recording: Recording) -> list[Cut]:
     if found is None:
         raise InputError(
             key="cut.by",
-            problem="load_step needs load_n, load_n_m or pressure_pa",
+            problem="load_step requires load_n, load_n_m or pressure_pa",
             mend="name the column under [columns]",
         )
     stream, key = found
@@ -64,7 +64,7 @@ def _steps(stream: Stream, segment: int, column: int) -> list[Cut]:
         after = level[at : at + 2]
         if np.all(np.abs(after - before) > least) and abs(after[1] - after[0]) < least:
             row = _edge(stream, first, end, at, column, before, float(after[1]))
-            why = f"the load goes from {before:.4g} to {after[1]:.4g}"
+            why = f"the load changes from {before:.4g} to {after[1]:.4g}"
             found.append(Cut(segment, stream.at(row - 1), stream.at(row), why))
             since = at
     return found

@@ -32,7 +32,7 @@ class MotionSpeed:
         if found is None:
             raise InputError(
                 file=recording.path,
-                problem="holds no value of a place or a speed",
+                problem="contains no position and no speed",
                 mend="name another column in the map",
             )
         self.stream: Stream = found[0]

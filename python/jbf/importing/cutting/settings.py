@@ -60,7 +60,7 @@ class Condition:
         match = _COMPARISON.fullmatch(text) if isinstance(text, str) else None
         if match is None:
             mend = 'write a comparison, such as "powered == 1" or "load > 5 [N]"'
-            raise InputError(key="cut.keep", problem=f"{text!r} is no condition", mend=mend)
+            raise InputError(key="cut.keep", problem=f"{text!r} is not a condition", mend=mend)
         left, relation, right = (part.strip() for part in match.groups())
         difference = left if right == "0" else f"{left} - ({right})"
         return cls(difference, relation, str(text))
@@ -126,34 +126,36 @@ class CutSettings:
             ways = ("rests",) if {"rest_s", "keep_rest_s", "still"} & given.keys() else None
             ways = ("parts",) if "parts" in given else ways
         elif not isinstance(by, str | list | tuple):
-            mend = 'write by = "rests", or a list of ways'
-            raise InputError(key="cut.by", problem=f"{by!r} is no way of cutting", mend=mend)
+            mend = 'write by = "rests", or a list of methods'
+            raise InputError(key="cut.by", problem=f"{by!r} is not a cutting method", mend=mend)
         else:
             ways = (by,) if isinstance(by, str) else tuple(by)
         for way in ways or ():
             if way not in WAYS:
                 raise InputError(
-                    key="cut.by", problem=f"{quoted(way)} is no cut", mend=did_you_mean(way, WAYS)
+                    key="cut.by",
+                    problem=f"{quoted(way)} is not a cutting method",
+                    mend=did_you_mean(way, WAYS),
                 )
         needs = [way for way in ways or () if way in ("set_point", "run")]
         if needs and not isinstance(given.get("column"), str):
             raise InputError(
                 key="cut.column",
                 problem="is missing",
-                mend=f'by = "{needs[0]}" needs the file\'s column, such as "setpoint_rpm"',
+                mend=f'by = "{needs[0]}" requires a column, such as "setpoint_rpm"',
             )
         for key in ("rest_s", "keep_rest_s", "shortest_s", "still"):
             if key in given:
                 given[key] = number(given[key], f"cut.{key}")
                 if not 0.0 <= given[key] < math.inf:
-                    problem = f"{given[key]} is below zero or not finite"
+                    problem = f"{given[key]} is negative or not finite"
                     raise InputError(key=f"cut.{key}", problem=problem, mend="correct it")
         if "parts" in given and "parts" not in (ways or ()):
-            mend = 'add "parts" to by, or drop it'
+            mend = 'add "parts" to by, or remove it'
             raise InputError(key="cut.parts", problem='is used by by = "parts" only', mend=mend)
         parts = given.get("parts", 2)
         if isinstance(parts, bool) or not isinstance(parts, int) or parts < 2:
-            problem = f"{parts!r} is not a whole number of at least 2"
+            problem = f"{parts!r} is not an integer of at least 2"
             raise InputError(key="cut.parts", problem=problem, mend="write parts = 2 for halves")
         if "keep" in given:
             given["keep"] = Condition.of(given["keep"])

@@ -14,10 +14,10 @@ from jbf.records.toml_file import number, read_toml, refuse_unknown, table
 
 _KEYS = ("name", "file", "from_s", "to_s", "keep", "stretch", "why")
 _HEAD = """\
-# How the recordings were cut. Edit names, times (s; numbers of steady states) and keep, add and
-# take away lines, and then:
+# Cuts of the recordings. Edit names, times (s; numbers of steady states) and keep, add and remove
+# lines, then:
 #   jbf import FILE... --map map.toml --cut cut.toml --folder FOLDER
-# Both instants belong to the run. Where time starts again in a file, stretch counts from 1.
+# Both instants belong to the run. If time restarts in a file, stretch counts from 1.
 """
 
 
@@ -58,7 +58,9 @@ def trimmed(path: Path, recordings: Sequence[Recording]) -> list[Piece]:
         refuse_unknown(content, ["pieces"])
         rows = content.get("pieces", [])
         if not isinstance(rows, list):
-            raise InputError(key="pieces", problem="is no list", mend="write pieces = [ { ... }, ]")
+            raise InputError(
+                key="pieces", problem="is not a list", mend="write pieces = [ { ... }, ]"
+            )
         pieces = [_piece(row, at, recordings) for at, row in enumerate(rows, 1)]
         names = [piece.name for piece in pieces if piece.keep]
         for at, name in enumerate(names):
@@ -82,26 +84,28 @@ def _piece(row: object, at: int, recordings: Sequence[Recording]) -> Piece:
     if not found:
         names = ", ".join(r.path.name for r in recordings)
         problem = f'"{content["file"]}" is not imported'
-        raise InputError(key=f"{key}, file", problem=problem, mend=f"there are {names}")
+        raise InputError(key=f"{key}, file", problem=problem, mend=f"known: {names}")
     segment = int(number(content.get("stretch", 1), f"{key}, stretch")) - 1
     if not 0 <= segment < found[0].segments:
         problem = f"there is no stretch {segment + 1}"
-        mend = f"time starts again {found[0].segments - 1} times in {found[0].path.name}"
+        mend = f"time restarts {found[0].segments - 1} times in {found[0].path.name}"
         raise InputError(key=f"{key}, stretch", problem=problem, mend=mend)
     from_s, to_s = (number(content[k], f"{key}, {k}") for k in ("from_s", "to_s"))
     first_s, last_s = ends(found[0], segment)
     if not from_s < to_s or to_s < first_s or from_s > last_s:
         raise InputError(
             key=f"{key}, from_s",
-            problem=f"from {from_s:g} to {to_s:g} s holds nothing",
-            mend=f"the recording goes from {first_s:g} to {last_s:g} s",
+            problem=f"{from_s:g} s to {to_s:g} s contains no samples",
+            mend=f"the recording covers {first_s:g} s to {last_s:g} s",
         )
     keep = content.get("keep", True)
     if not isinstance(keep, bool):
-        raise InputError(key=f"{key}, keep", problem="is no true or false", mend="write one")
+        raise InputError(
+            key=f"{key}, keep", problem="is not true or false", mend="write true or false"
+        )
     name = str(content["name"])
     if keep and (not name or set(name) & set('/\\:*?"<>|') or name.startswith(".")):
         raise InputError(
-            key=f"{key}, name", problem="is no name for a file", mend="write letters and figures"
+            key=f"{key}, name", problem="is not a valid file name", mend="use letters and digits"
         )
     return Piece(name, found[0].path.name, segment, from_s, to_s, keep, str(content.get("why", "")))

@@ -74,7 +74,7 @@ class TextSource(Source):
             except LookupError:
                 raise InputError(
                     file=self.path,
-                    problem=f"{quoted(self.encoding)} is no encoding",
+                    problem=f"the encoding {quoted(self.encoding)} is not known",
                     mend='write one such as "utf-8" or "latin-1"',
                 ) from None
             try:
@@ -83,7 +83,7 @@ class TextSource(Source):
                     yield number, line.replace("\u2212", "-")
             except (OSError, EOFError, UnicodeError) as error:
                 problem = f"cannot be read ({error})"
-                raise InputError(file=self.path, problem=problem, mend="save it anew") from None
+                raise InputError(file=self.path, problem=problem, mend="save it again") from None
 
     def _laid_out(self, lines: list[str]) -> Layout:
         rows = [
@@ -96,7 +96,7 @@ class TextSource(Source):
             if self.dialect.delimiter == " ":
                 raise InputError(
                     file=self.path,
-                    problem="is separated by blanks, which the names of its channels may hold",
+                    problem="is separated by blanks, which channel names may contain",
                     mend="export it with tabs or semicolons",
                 )
             return channels
@@ -135,8 +135,8 @@ class TextSource(Source):
                 order = self.options.dates or day_or_month_first(cells)
                 if order is None:
                     questions.append(
-                        f"column {name}: {quoted(cells[0])} may begin with the day or the month; "
-                        'say dates = "day_first" or "month_first" under [file]'
+                        f"column {name}: {quoted(cells[0])} is ambiguous; set dates = "
+                        '"day_first" or "month_first" under [file]'
                     )
                 try:
                     instant = int(Instants(order or "day_first").parse(cells[:1], [False])[0])
@@ -220,7 +220,7 @@ class TextSource(Source):
             few = few and not self.layout.parts
             if few or (len(cells) > width and any(cells[width:])):
                 problem = f"has {len(cells)} cells where the header has {width}"
-                mend = "correct the row, or say delimiter and decimal under [file]"
+                mend = "correct the row, or set delimiter and decimal under [file]"
                 damage.add(InputError(row=number, problem=problem, mend=mend))
                 continue
             # Empty cells at the end may be missing.
@@ -238,7 +238,11 @@ class TextSource(Source):
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return the rows of words among the samples, and the damaged rows."""
-        words = [(len(self._words), "there are only words", self._words[0])] if self._words else []
+        words = (
+            [(len(self._words), "the column contains only words", self._words[0])]
+            if self._words
+            else []
+        )
         return [*words, *self._damage.skipped_rows()]
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
@@ -319,9 +323,12 @@ class TextSource(Source):
                 continue
             if not dialect.is_number(cell):
                 other = "," if dialect.decimal == "." else "."
-                mend = f'correct the cell, or write empty = ["{cell}"] under [file] if it is none'
+                mend = (
+                    f'correct the cell, or set empty = ["{cell}"] under [file] if '
+                    "it marks a missing value"
+                )
                 if Dialect(dialect.delimiter, other).is_number(cell):
-                    mend = "write all decimals alike"
+                    mend = "use one decimal mark in all cells"
                 problem = f"{quoted(cell)} is not a number"
                 error = InputError(row=rows[at], column=name, problem=problem, mend=mend)
                 wrong.setdefault(at, error)

@@ -132,8 +132,8 @@ class Instants:
             at = full[int(np.argmin(valid))]
             raise InputError(
                 row=at,
-                problem=f"{quoted(cells[at].strip())} is no date and no time of day",
-                mend="correct the cell or drop the row",
+                problem=f"{quoted(cells[at].strip())} is not a date or a time of day",
+                mend="correct the cell or remove the row",
             )
         values[without_date] = self._continued(values[without_date])
         result[full] = values

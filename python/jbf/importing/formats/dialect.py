@@ -182,7 +182,7 @@ def _doubt(cells: list[str]) -> str | None:
         return None
     if all(len(m[3]) == 3 and 1 <= len(m[1]) <= 3 and m[1][0] != "0" for m in commas):
         return (
-            f'{quoted(commas[0][0])} may be a decimal comma or thousands; say decimal = "," or '
-            'decimal = "." and thousands = "," under [file]'
+            f'{quoted(commas[0][0])} is ambiguous; set decimal = "," or decimal = '
+            '"." and thousands = "," under [file]'
         )
     return None

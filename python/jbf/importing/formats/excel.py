@@ -32,7 +32,9 @@ class ExcelSource(Source):
         self._origins: dict[bool, float] = {}
         tables = [t for name in self._book.sheetnames if (t := self._table(name)) is not None]
         if not tables:
-            raise InputError(file=path, problem="holds no rows of numbers", mend="name another")
+            raise InputError(
+                file=path, problem="contains no numeric rows", mend="name another file"
+            )
         self.tables = tuple(tables)
 
     def _table(self, name: str) -> Table | None:

@@ -35,7 +35,7 @@ def open_hdf5(path: Path, options: Options) -> Source:
         name = parent if parents.count(parent) == 1 else f"{parent} {length} samples".strip()
         source.add(name if len(found) > 1 else "", columns, length)
     if not source.tables:
-        raise InputError(file=path, problem="holds no columns of numbers", mend="name another")
+        raise InputError(file=path, problem="contains no numeric columns", mend="name another file")
     return source
 
 

@@ -43,7 +43,7 @@ def open_json(path: Path, options: Options) -> Source:
         source.add(called if len(found) > 1 else "", own, rows, rate_hz=rate_hz)
     if not source.tables:
         raise InputError(
-            file=path, problem="holds no records and no arrays of numbers", mend="write CSV"
+            file=path, problem="contains no records and no numeric arrays", mend="write CSV"
         )
     return source
 
@@ -67,10 +67,10 @@ def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
             raise InputError(
                 file=path,
                 row=row,
-                problem=f"is no JSON ({reason})",
+                problem=f"is not valid JSON ({reason})",
                 mend="correct it, or write CSV",
             ) from None
-        why = [(len(torn), f"the line is torn ({reason})", row) for row, reason in torn[:1]]
+        why = [(len(torn), f"the line is truncated ({reason})", row) for row, reason in torn[:1]]
         return records, list(why)
 
 

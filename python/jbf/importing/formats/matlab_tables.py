@@ -25,8 +25,8 @@ def add_tables(source: ArraySource, path: Path) -> None:
     except ModuleNotFoundError:
         raise InputError(
             file=path,
-            problem="holds a MATLAB table or timetable, which mat-io reads, and that is not "
-            "installed",
+            problem="contains a MATLAB table or timetable, which requires mat-io; "
+            "mat-io is not installed",
             mend="pip install 'jbf[timetable]' (Python 3.11 or later), or save plain vectors",
         ) from None
     with library_errors(path, "cannot be read by mat-io"):

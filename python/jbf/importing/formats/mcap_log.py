@@ -39,8 +39,8 @@ class McapSource(MessageSource):
             if channel.message_encoding in ("cdr", "json"):
                 self.add_topic(channel.topic, counts.get(number))
         if not self.tables:
-            held = f" (it holds {', '.join(sorted(others))})" if others else ""
-            problem = f"holds no messages of ROS 2 or JSON with numbers{held}"
+            held = f" (it contains {', '.join(sorted(others))})" if others else ""
+            problem = f"contains no numeric messages of ROS 2 or JSON{held}"
             raise InputError(file=path, problem=problem, mend="write its messages as JSON or CSV")
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:

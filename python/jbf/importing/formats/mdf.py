@@ -40,7 +40,9 @@ class MdfSource(Source):
             if table is not None:
                 tables.append(table)
         if not tables:
-            raise InputError(file=path, problem="holds no channels of numbers", mend="name another")
+            raise InputError(
+                file=path, problem="contains no numeric channels", mend="name another file"
+            )
         self.tables = tuple(tables)
 
     def _table(self, at: int, group: Any, name: str) -> Table | None:

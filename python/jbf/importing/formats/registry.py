@@ -50,7 +50,7 @@ class Format:
             opener: Callable[[Path, Options], Source] = getattr(
                 import_module(f"jbf.importing.formats.{module}"), function
             )
-            with library_errors(path, f"is no whole file of its kind, {self.name}"):
+            with library_errors(path, f"is not a complete file of its kind, {self.name}"):
                 return opener(path, options)
         except ModuleNotFoundError as error:
             if not self.extra or (error.name or "").startswith("jbf"):
@@ -61,7 +61,7 @@ class Format:
         """Return the error that states what to install."""
         return InputError(
             file=path,
-            problem=f"is {self.name}, which {self.library} reads, and that is not installed",
+            problem=f"is {self.name}, which requires {self.library}; it is not installed",
             mend=f"pip install 'jbf[{self.extra}]'",
         )
 
@@ -163,7 +163,9 @@ def format_of(path: Path) -> Format:
         by_suffix = suffix in unread.suffixes and not _is_text(begin)
         if by_suffix or begin.startswith(unread.magic):
             problem = f"is {unread.name}{f' ({suffix})' if suffix in unread.suffixes else ''}"
-            raise InputError(file=path, problem=f"{problem}, which is not read", mend=unread.mend)
+            raise InputError(
+                file=path, problem=f"{problem}, which is not supported", mend=unread.mend
+            )
     by_name = next((f for f in FORMATS if suffix in f.suffixes), None)
     return FORMATS[-1] if by_name is None else by_name
 

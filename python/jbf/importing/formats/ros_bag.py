@@ -30,7 +30,7 @@ class BagSource(MessageSource):
                 self.add_topic(topic, info.msgcount)
         if not self.tables:
             raise InputError(
-                file=path, problem="holds no messages with numbers", mend="name another"
+                file=path, problem="contains no numeric messages", mend="name another file"
             )
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:

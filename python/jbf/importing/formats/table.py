@@ -82,7 +82,7 @@ class Table:
             if column.name == name:
                 return column
         names = [column.name for column in self.columns]
-        raise InputError(column=name, problem="is not there", mend=did_you_mean(name, names))
+        raise InputError(column=name, problem="does not exist", mend=did_you_mean(name, names))
 
 
 @dataclass(frozen=True)
@@ -191,7 +191,7 @@ def library_errors(path: Path, problem: str) -> Iterator[None]:
         raise
     except Exception as error:
         said = str(error).splitlines()[0].strip() if str(error).strip() else type(error).__name__
-        mend = "save it anew, or name another file"
+        mend = "save it again, or name another file"
         raise InputError(file=path, problem=f"{problem} ({said})", mend=mend) from error
 
 

@@ -57,7 +57,9 @@ def open_tdms(path: Path, options: Options) -> Source:
         date = None if key not in starts else str(first)
         source.add(name if len(found) > 1 else "", columns, length, clock, date)
     if not source.tables:
-        raise InputError(file=path, problem="holds no channels of numbers", mend="name another")
+        raise InputError(
+            file=path, problem="contains no numeric channels", mend="name another file"
+        )
     return source
 
 

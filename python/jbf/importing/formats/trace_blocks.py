@@ -30,7 +30,7 @@ def open_trace(path: Path, lines: Iterable[str]) -> Source:
     source = ArraySource(path)
     add_by_clock(source, _blocks(path, lines))
     if not source.tables:
-        raise InputError(file=path, problem="holds no samples", mend="export the trace anew")
+        raise InputError(file=path, problem="contains no samples", mend="export the trace again")
     return source
 
 
@@ -47,9 +47,9 @@ def _blocks(path: Path, lines: Iterable[str]) -> Iterator[Signal]:
                 cells = (sample[k].replace(",", ".") for k in ("time", "value"))
                 rows.append([float({"TRUE": "1", "FALSE": "0"}.get(c, c)) for c in cells])
             except ValueError:
-                problem = f"{line.strip()!r} is no sample"
+                problem = f"{line.strip()!r} is not a sample"
                 raise InputError(
-                    file=path, row=number, problem=problem, mend="export the trace anew"
+                    file=path, row=number, problem=problem, mend="export the trace again"
                 ) from None
     if rows:
         yield _signal(name, rows)

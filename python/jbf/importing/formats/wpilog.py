@@ -67,16 +67,18 @@ def open_wpilog(path: Path, options: Options) -> Source:
     data = path.read_bytes()
     if len(data) < _HEADER:
         raise InputError(
-            file=path, problem="is no whole data log of WPILib", mend="copy it from the robot anew"
+            file=path,
+            problem="is not a complete WPILib data log",
+            mend="copy it from the robot again",
         )
     source = ArraySource(path)
     entries, torn = _entries(data)
     if torn is not None:
-        source.passed_over = [(1, f"the record at byte {torn} is torn", None)]
+        source.passed_over = [(1, f"the record at byte {torn} is truncated", None)]
     origin_us = min((min(entry.stamps_us) for entry in entries if entry.stamps_us), default=0)
     add_by_clock(source, (s for entry in entries for s in entry.signals(data, origin_us)))
     if not source.tables:
-        raise InputError(file=path, problem="holds no entries with numbers", mend="name another")
+        raise InputError(file=path, problem="contains no numeric entries", mend="name another file")
     return source
 
 

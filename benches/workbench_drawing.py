@@ -1,7 +1,7 @@
 """How fast the workbench draws: `python benches/workbench_drawing.py`.
 
 A recording of a million samples (and a model of it) in a headless browser without a graphics
-processor. Measures the time from the click to the frame with all plots of the page "See", and the
+processor. Measures the time from the click to the frame with all plots of "Explore", and the
 time for a brush in the friction-speed plane. Prints least, median and worst of `--times`, in
 milliseconds. With `--most 300 100` it fails if even the least time of a first draw or of a brush is
 longer; the other times depend on the load of the machine. Needs Chromium (Debian: `apt-get install
@@ -36,7 +36,7 @@ ACT = """async (act) => {
     canvas.dispatchEvent(new PointerEvent(type, { ...where, buttons }));
   };
   const begun = performance.now();
-  if (act === "see") document.querySelector("[data-key=tab-See]").click();
+  if (act === "see") document.querySelector("[data-key=tab-Explore]").click();
   else {
     const x = 150 + 60 * Math.random();
     at("pointerdown", x, 60); at("pointermove", x + 80, 200); at("pointerup", x + 80, 200);
@@ -74,7 +74,7 @@ def measured(page: Page, times: int) -> dict[str, list[float]]:
     found: dict[str, list[float]] = {way: [] for way in WAYS}
     for model in ("", ", with a model"):
         if model:
-            page.click("[data-key=tab-Learn]")
+            page.click("[data-key=tab-Model]")
             page.select_option("[data-key=law]", "coulomb")
             page.wait_for_selector("[data-key=fit-law]:enabled")
             page.click("[data-key=fit-law]")

@@ -162,15 +162,15 @@ class Unfinished(InputError):
 
     def __init__(self, *, steps: float, fit: Any = None, file: str | None = None) -> None:
         self.steps, self.fit = steps, fit
-        best = "nothing is fitted yet"
+        best = "no fit so far"
         if fit is not None:
             model = " + ".join([fit.model.law, *fit.model.effects])
             unit = fit.model.rig.quantities.force
             best = f"the best so far is {model}, RMS {fit.rms:.3g} {unit}, not finished"
         super().__init__(
-            problem=f"no answer from these runs in {steps:.1g} steps of the model; {best}",
-            mend="check that times are in seconds, or take a law without memory, such as stribeck, "
-            "or records with samples closer together",
+            problem=f"not finished after {steps:.1g} steps of the model; {best}",
+            mend="check the unit of time, or use a law without memory, such as stribeck, or a "
+            "higher sampling rate",
             file=file,
         )
 

@@ -42,19 +42,19 @@ def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[st
         return tables(model, base.bench, schemes=schemes, seeds=_SEEDS)
 
     listed = Learning(volts=LISTED_VOLTS)
-    yield case("the rig's scale, elastic belt")
+    yield case("scale of the rig, elastic belt")
     yield case("scale 3.5 V", learning(Learning(volts=3.5)))
     yield case("scale 25.5 V, as listed", learning(listed))
     yield case("compensator's film on the journal clock", learning(Learning(clock="journal")))
     yield case("k_F 0.02", tables(base.model, base.bench, schemes={"coulomb": Coulomb(gain=0.02)}))
     yield case("elastic contact, no belt", elastic("contact", Learning()))
     yield case("elastic contact, scale 25.5 V", elastic("contact", listed))
-    yield case("nothing elastic", elastic("nothing", Learning()))
+    yield case("no elasticity", elastic("nothing", Learning()))
     counted = {name: replace(task, skip_s=0.0) for name, task in TASKS.items()}
     schemes = standard_schemes(base.model)
     del schemes["observed"]
     yield case(
-        "first seconds counted",
+        "with the first seconds",
         tables(base.model, base.bench, schemes=schemes, tasks=counted, seeds=_SEEDS),
     )
 

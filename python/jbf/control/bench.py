@@ -60,10 +60,10 @@ class Bench:
         positive = ("damping_1_s", "input_rad_s2_v", "volts_per_n", "limit_v", "counts_per_rad")
         for name in (*positive, "dt_s", "inner_steps"):
             if not 0.0 < getattr(self, name) < float("inf"):
-                raise _wrong(name, getattr(self, name), "above zero and finite")
+                raise _wrong(name, getattr(self, name), "positive and finite")
         for name in ("input_noise_v", "encoder_noise_counts", "stood_s"):
             if not 0.0 <= getattr(self, name) < float("inf"):
-                raise _wrong(name, getattr(self, name), "zero or above, and finite")
+                raise _wrong(name, getattr(self, name), "zero or positive, and finite")
         if not 0 <= self.seed < 2**64:
             raise _wrong("seed", self.seed, "between 0 and 2^64 - 1")
         if not 8 <= self.counter_bits <= 32:
@@ -89,7 +89,7 @@ class Bench:
 
 
 def _wrong(name: str, value: float, rule: str) -> InputError:
-    return InputError(key=name, problem=f"{value} is not {rule}", mend="correct the value")
+    return InputError(key=name, problem=f"{value} must be {rule}", mend="correct the value")
 
 
 def core_model(model: Model) -> dict[str, Any]:
@@ -103,14 +103,16 @@ def core_model(model: Model) -> dict[str, Any]:
     pages = catalogue.effects()
     if isinstance(catalogue.find_law(model.law), UserLaw):
         raise InputError(
-            problem=f"{model.law} is a law of your own: it runs in Python, not in a loop",
-            mend="write it for the core: cargo run --example user_law shows how",
+            problem=f"{model.law} is a user-defined law in Python, which cannot run in a loop",
+            mend="write it in Rust: cargo run --example user_law shows how",
         )
     user_effects = [name for name in model.effects if isinstance(pages.get(name), UserEffect)]
     if user_effects:
         raise InputError(
-            problem=f"{user_effects[0]} is an effect of your own: it runs in Python, not in a loop",
-            mend="fit a model without it, or write it for the core (ARCHITECTURE.md)",
+            problem=(
+                f"{user_effects[0]} is a user-defined effect in Python, which cannot run in a loop"
+            ),
+            mend="fit a model without it, or write it in Rust (ARCHITECTURE.md)",
         )
     values = [p.value for p in model.parameters.values()]
     names = list(model.parameters)

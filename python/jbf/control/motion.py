@@ -65,7 +65,9 @@ def follow(
     steps = np.arange(0.0, time_s[-1], bench.dt_s)
     value = np.interp(steps, time_s, values)
     if not np.ptp(value) > 0.0:
-        raise InputError(file=recorded.path, problem="does not move", mend="name a run that does")
+        raise InputError(
+            file=recorded.path, problem="the angle is constant", mend="name a run with motion"
+        )
     rate = np.interp(steps, time_s, np.gradient(values, time_s))
     load = None if recorded.load_n is None else np.interp(steps, time_s, recorded.load_n)
     seconds = len(steps) * bench.dt_s

@@ -229,8 +229,8 @@ def run(
 def _mend(problem: str) -> str:
     """Return the advice for an input that the core's loop rejects."""
     if problem.startswith("top_speed_rad_s"):
-        return "lower counts_per_rad, or limit_v and input_rad_s2_v, or take a wider counter"
-    return "correct it"
+        return "decrease counts_per_rad, or limit_v and input_rad_s2_v, or use a wider counter"
+    return "correct the value"
 
 
 def _scheme(given: str | Scheme, carried: Model | None, settings: Settings | None) -> Scheme:
@@ -262,7 +262,7 @@ def _reference(
     if value.ndim != 1 or value.shape != rate.shape or not len(value):
         raise InputError(
             problem=f"the reference has shapes {value.shape} and {rate.shape}",
-            mend="give two arrays of one length",
+            mend="give two arrays of equal length",
         )
     return value, rate
 
@@ -271,5 +271,5 @@ def _load(model: Model, given: float | npt.ArrayLike | None, n: int) -> Array:
     own = core_load_n(model.rig) or 1.0
     load = np.full(n, own) if given is None else np.array(np.broadcast_to(given, n), dtype=float)
     if not np.all(np.isfinite(load)):
-        raise InputError(problem="a load is not finite", mend="give newtons")
+        raise InputError(problem="a load is not finite", mend="give finite values, N")
     return load

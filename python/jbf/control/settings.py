@@ -16,14 +16,16 @@ jbf control settings, in SI units; `jbf control tune MODEL` computes them from a
 
 _NOTES = {
     "bandwidth_rad_s": "poles of the observer",
-    "learning_1_s": "rate at which a lasting correction is taken for friction",
-    "level_limit_v": "most that the friction level may be corrected by",
-    "rest_limit_v": "most that anything else may be",
-    "slow_rad_s": "below this the shaft counts as slow",
+    "learning_1_s": "rate at which a persistent correction is attributed to friction",
+    "level_limit_v": "limit of the correction of the friction level",
+    "rest_limit_v": "limit of all other corrections",
+    "slow_rad_s": "speed below which the shaft counts as slow",
     "loop_rad_s": "natural frequency of the stiffened position loop",
-    "breakaway": "share of the level sent out where the shaft is slow",
-    "moving_v": "a voltage that surely moves the shaft",
-    "patience_s": "time after which a still counter is frozen, a saturated loop gives up",
+    "breakaway": "share of the level that is applied at slow speed",
+    "moving_v": "voltage that moves the shaft with certainty",
+    "patience_s": (
+        "time after which a constant counter counts as frozen, or a saturated loop falls back"
+    ),
 }
 
 
@@ -46,7 +48,7 @@ class Settings:
             if not 0.0 <= number(value, name) < float("inf"):
                 raise InputError(
                     key=name,
-                    problem=f"{value} is not zero or above, and finite",
+                    problem=f"{value} is negative or not finite",
                     mend="correct the value",
                 )
 
@@ -78,7 +80,9 @@ class Settings:
             refuse_unknown(content, names)
             for name in names:
                 if name not in content:
-                    raise InputError(key=name, problem="is missing", mend="add it, or tune again")
+                    raise InputError(
+                        key=name, problem="is missing", mend="add it, or run the tuning again"
+                    )
             return cls(**{name: number(content[name], name) for name in names})
         except InputError as error:
             raise error.within(file=path) from None

@@ -39,22 +39,22 @@ class Task:
             )
         if self.wave not in (*WAVES, RECORDED):
             raise InputError(
-                problem=f'there is no wave "{self.wave}"', mend=did_you_mean(self.wave, WAVES)
+                problem=f'wave "{self.wave}" is not known', mend=did_you_mean(self.wave, WAVES)
             )
         if not -_FARTHEST <= self.low < self.high <= _FARTHEST:
             raise InputError(
-                problem=f"low {self.low} and high {self.high} are no range",
-                mend="give low below high, within a million either way",
+                problem=f"low {self.low} and high {self.high} are not a valid range",
+                mend="give low < high, both within one million",
             )
         if not 0.0 < self.frequency_rad_s < math.inf:
             raise InputError(
-                problem=f"frequency {self.frequency_rad_s} rad/s is not above zero",
-                mend="correct it",
+                problem=f"frequency {self.frequency_rad_s} rad/s is not positive",
+                mend="correct the value",
             )
         if not 0.0 <= self.skip_s < self.seconds <= 1e5:
             raise InputError(
-                problem=f"{self.seconds} s with {self.skip_s} s left out is no run",
-                mend="give up to 100,000 s, and leave out less than all",
+                problem=f"{self.seconds} s with {self.skip_s} s omitted is not a valid duration",
+                mend="give up to 100,000 s, and omit less than the whole",
             )
 
     @property

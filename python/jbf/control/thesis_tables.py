@@ -143,7 +143,7 @@ def fit_friction(
         nonlocal calls
         calls += 1
         if report is not None:
-            report(f"fitting the bench's friction, trial {calls}", 0, 0)
+            report(f"fitting the bench's friction, evaluation {calls}", 0, 0)
         model, drive = built(logs)
         work = partial(_run_cell, model, NoCompensation(), drive)
         found = np.array([r.rms for r in _each(work)])

@@ -84,7 +84,10 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
     level_v = friction_level_v(the_model(model), bench)
     if not 0.0 < level_v < bench.limit_v:
         raise InputError(
-            problem=f"the model's friction is {level_v:.3g} V, the drive has {bench.limit_v:g} V",
+            problem=(
+                f"the model's friction is {level_v:.3g} V, the limit of the drive "
+                f"{bench.limit_v:g} V"
+            ),
             mend="correct --volts-per-n",
         )
     count_rad = 1.0 / bench.counts_per_rad

@@ -66,7 +66,7 @@ def _calls(n: Numbers, kind: str) -> list[str]:
         f"#define model_{kind}_step {prefix}_step",
         f"#define model_{kind}_predict {prefix}_predict",
         "",
-        "/* Build the model: JBF_OK, or what jbf.h says, with why in error (may be NULL). */",
+        "/* Build the model: JBF_OK, or an error code of jbf.h; error may be NULL. */",
         f"static inline int32_t model_{kind}_init(model_{kind} *model, jbf_error *error) {{",
         f"  int32_t code = {prefix}_init(model, {bearing}, MODEL_LOAD_N, {C.name(n.law)}, "
         f"{len(n.law.values)}, JBF_CLOCK_{n.clock.upper()}, error);",

@@ -59,7 +59,7 @@ class Numbers:
         law = find_law(model.law)
         if isinstance(law, UserLaw):
             raise InputError(
-                problem=f"the law {law.name} is written in Python, which no target runs",
+                problem=f"the law {law.name} is written in Python and cannot be exported",
                 mend="write it in Rust: cargo run --example user_law shows how",
             )
         effects = []
@@ -67,7 +67,7 @@ class Numbers:
             page = find_effect(name)
             if isinstance(page, UserEffect):
                 raise InputError(
-                    problem=f"the effect {name} is written in Python, which no target runs",
+                    problem=f"the effect {name} is written in Python and cannot be exported",
                     mend="write it in Rust: cargo run --example user_effect shows how",
                 )
             group = _group(page, model, f"{name}.")

@@ -14,7 +14,7 @@ def _check(group: Group, name: str) -> list[str]:
     return [
         "const _: () = assert!(",
         f'    jbf_core::{group.room}::fits("{group.name}", &{name}),',
-        f'    "{what} has other parameters, or a value is out of its bounds"',
+        f'    "{what} has other parameters, or a value out of bounds"',
         ");",
     ]
 
@@ -67,7 +67,7 @@ def rust(model: Model, source: str = "a model") -> str:
     if n.effects:
         out += [
             "",
-            "/// The type of the effects: these are kept in memory, and no others.",
+            "/// The type of the effects; memory is reserved for these only.",
             f"pub type Effects<T> = {_nested([_path(group) for group in n.effects])};",
         ]
     placed = [f"Place::new(&{RUST.name(group)}.map(T::of))?" for group in n.effects]
@@ -76,7 +76,7 @@ def rust(model: Model, source: str = "a model") -> str:
         "/// The model, in `f32` or `f64`.",
         "///",
         "/// # Errors",
-        "/// None for the constants above; after a change of them it names the one that is wrong.",
+        "/// `None` for the constants above; after a change it names the invalid one.",
         f"pub fn model<T: Real>() -> Result<Chain<T, Law<T>, {effects}>, ParameterError> {{",
         "    let law = Law::build(",
         f"        {bearing},",

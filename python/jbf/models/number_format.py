@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from jbf.models.parameter_value import ParameterValue
 
-BARE = "bare law"
+BARE = "base law"
 
 
 def number(value: float, digits: int = 3) -> str:

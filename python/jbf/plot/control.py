@@ -43,7 +43,9 @@ def control_trace(
         Whether to add the label of the vertical axis and a legend.
     """
     if what not in TRACES:
-        raise InputError(problem=f"there is no trace {what}", mend=f"known: {', '.join(TRACES)}")
+        raise InputError(
+            problem=f"trace {what} is not available", mend=f"known: {', '.join(TRACES)}"
+        )
     ax = one_axes(ax, (7.0, 2.6))
     draw = {
         "response": _response,

@@ -60,7 +60,7 @@ def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
             fontsize="small",
             annotation_clip=False,
         )
-    dress(ax, "The error falling", f"RMS of record minus model ({unit}), logarithmic", "")
+    dress(ax, "Error by step", f"RMS residual ({unit}), logarithmic", "")
     legend_above(ax)
     return ax
 

@@ -87,7 +87,10 @@ def residual_map(
     up = up or ("run" if len(prepared) > 1 else "speed")
     for name in (across, up):
         if name not in ("time", "speed", "place", "run"):
-            raise InputError(problem=f"a map is not over {name}", mend="time, speed, place or run")
+            raise InputError(
+                problem=f"a map over {name} is not available",
+                mend="choose time, speed, place or run",
+            )
     ax = one_axes(ax, (9.0, 1.6 + min(0.22 * len(prepared), 6.0) if up == "run" else 3.6))
     x, y = (samples.flat(_values(comparison, name)) for name in (across, up))
     left = samples.flat(comparison.residuals)
@@ -102,7 +105,7 @@ def residual_map(
     norm = TwoSlopeNorm(0.0, -top, top)
     mesh = ax.pcolormesh(edges[0], edges[1], means.T, cmap=DIVERGING, norm=norm, rasterized=True)
     said = quantities_of(comparison)
-    ax.figure.colorbar(mesh, ax=ax, label="Times the noise", pad=0.01, extend="both")
+    ax.figure.colorbar(mesh, ax=ax, label="Residual / noise", pad=0.01, extend="both")
     for name, axis in ((across, ax.xaxis), (up, ax.yaxis)):
         if name == "run":
             every = -(-len(prepared) // MOST_NAMES)
@@ -113,10 +116,10 @@ def residual_map(
     words = {
         "time": "Time in the run (s)",
         "speed": f"{said.velocity} ({said.speed})",
-        "place": f"Place ({said.length})" if said.motion == "linear" else "Angle (rad)",
+        "place": f"Position ({said.length})" if said.motion == "linear" else "Angle (rad)",
         "run": "",
     }
-    title = f"Mean of record minus model, in units of the noise ({number(noise, 2)} {said.force})"
+    title = f"Mean residual / noise ({number(noise, 2)} {said.force})"
     dress(ax, title, words[across], words[up])
     ax.grid(visible=False)
     return ax

@@ -90,7 +90,7 @@ def intervals(
     ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
     reach = min(largest, WIDEST_PERCENT)
     ax.set_xlim(-reach, reach)
-    dress(ax, "Parameters with standard errors", "Off the value (%)", "")
+    dress(ax, "Parameters with standard errors", "Deviation from the value (%)", "")
     return ax
 
 

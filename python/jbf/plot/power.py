@@ -51,7 +51,8 @@ def power(
     known.sort(key=lambda p: p.share_80 or 0.0)
     if not known:
         raise InputError(
-            problem="no power is known of these effects", mend="see .power for what there is"
+            problem="the power of these effects is unknown",
+            mend="see .power for the available effects",
         )
     ax = one_axes(ax, (7.0, 4.4))
     shown = known if effects is not None else known[:MOST]
@@ -70,8 +71,8 @@ def power(
     ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     ax.xaxis.set_minor_formatter(NullFormatter())
     more = len(known) - len(shown)
-    title = "What such runs show" + (f"; {more} more need to be stronger" if more else "")
-    dress(ax, title, "Strength, share of the friction (%)", "Found in (% of campaigns)")
+    title = "Detection probability" + (f"; {more} more require a larger strength" if more else "")
+    dress(ax, title, "Strength, share of the friction (%)", "Detection probability (%)")
     ax.legend(frameon=False, fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
     return ax
 

@@ -51,12 +51,15 @@ def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> A
     """
     if not -len(diagnosis.steps) <= step < len(diagnosis.steps):
         raise InputError(
-            problem=f"there is no step {step}", mend=f"there are {len(diagnosis.steps)}"
+            problem=f"step {step} does not exist",
+            mend=f"choose one of {len(diagnosis.steps)} steps",
         )
     found = diagnosis.steps[step]
     trials = sorted(found.trials, key=lambda t: -t.evidence)
     if not trials:
-        raise InputError(problem=f"nothing was tried at step {step}", mend="take an earlier step")
+        raise InputError(
+            problem=f"no candidates were tested at step {step}", mend="choose an earlier step"
+        )
     shown = _shown(trials)
     ax = one_axes(ax, (7.0, ranking_height(found)))
     y = np.arange(len(shown))
@@ -79,7 +82,7 @@ def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> A
             fontsize="x-small",
         )
     rest = len(trials) - len(shown)
-    more = f"; {rest} more have less" if rest else ""
+    more = f"; {rest} with less evidence omitted" if rest else ""
     beside = " + ".join([BARE, *found.effects])
-    dress(ax, f"Candidates beside the {beside}{more}", "Evidence", "")
+    dress(ax, f"Candidates added to the {beside}{more}", "Evidence", "")
     return ax

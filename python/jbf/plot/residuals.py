@@ -184,6 +184,6 @@ def residuals_in_a_row(fit: Fit, *, ax: Axes | None = None) -> Axes:
     noise_band(ax, fit.rms, "RMS", unit)
     if reach > 0.0:
         ax.set_ylim(-reach, reach)
-    dress(ax, "What the fit leaves, run after run", "Sample", f"Record minus model ({unit})")
+    dress(ax, "Residuals of the fit, run by run", "Sample", f"Record minus model ({unit})")
     ax.legend(loc="upper left", frameon=False, fontsize="small")
     return ax

@@ -51,7 +51,9 @@ def spectrum(
     ax.loglog(frequency[1:], np.sqrt(density[1:]), color=colour, linewidth=1.0, label=label)
     if not any(str(line.get_label()).startswith("white noise") for line in ax.lines):
         floor = comparison.noise_rms * np.sqrt(2.0 * step)
-        ax.axhline(floor, color=NOISE, linestyle="--", linewidth=1.2, label="white noise as large")
+        ax.axhline(
+            floor, color=NOISE, linestyle="--", linewidth=1.2, label="white noise of equal power"
+        )
     title = f"Spectrum of the residual, run {p.run.name}"
     dress(ax, title, "Frequency (Hz)", f"Density ({unit}/√Hz)")
     ax.legend(frameon=False, fontsize="small")

@@ -37,7 +37,7 @@ def stribeck(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
             markerfacecolor=MEASURED if own.way > 0.0 else "white",
             markersize=5,
             elinewidth=0.8,
-            label=None if number else "measured, with its scatter",
+            label=None if number else "measured, with standard deviation",
         )
         name = None if number else "model at the same samples"
         ax.plot(own.speed_m_s, own.modelled_n, "-", color=MODEL, linewidth=1.5, label=name)
@@ -60,7 +60,7 @@ def _steady(ax: Axes, comparison: Comparison, ways: tuple[OverSpeed, ...]) -> No
             steady = comparison.model.steady_friction(x)
         except InputError:
             return
-        name = None if number else "law alone, steady"
+        name = None if number else "base law, steady state"
         ax.plot(x, steady, ":", color=INK, linewidth=1.2, label=name)
 
 

@@ -66,7 +66,7 @@ def axes_or_new(
         found = list(np.ravel(np.asarray(axes, dtype=object)))
     if len(found) != wanted:
         raise InputError(
-            problem=f"{len(found)} axes were given", mend=f"this picture needs {wanted}"
+            problem=f"{len(found)} axes were given", mend=f"this picture requires {wanted}"
         )
     return found
 

@@ -10,13 +10,13 @@ from jbf.reporting.effect_words import summary_of
 from jbf.reporting.paragraphs import columns, hanging
 
 NEEDS = {
-    "transmitted": "an effect beside it whose force the drive transmits: gravity, inertia",
+    "transmitted": "another effect whose force the drive transmits: gravity, inertia",
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
     "position": "the column angle_rad or position_m in every run",
-    "temperatures": "the column temperature_c in every run, and temperatures that differ",
-    "loads": "runs under several loads (load_n, pressure_pa on an axis without a bearing, or "
-    "load_n_m on a rotary drive)",
+    "temperatures": "the column temperature_c in every run, with different temperatures",
+    "loads": "runs at several loads (load_n, pressure_pa on an axis without a bearing, "
+    "or load_n_m on a rotary drive)",
 }
 
 
@@ -59,7 +59,7 @@ def effects_page(
     lines: list[str] = []
     stage = None
     for effect in pages:
-        own = "" if effect.name in built_in() else "your own, "
+        own = "" if effect.name in built_in() else "user-defined, "
         if own + effect.stage != stage:
             stage = own + effect.stage
             lines += ([""] if lines else []) + [f"[{stage}]"]
@@ -97,4 +97,4 @@ def _parameter_row(p: Parameter) -> tuple[str, str, str, str, str, str]:
 
 def meaning_of(p: Parameter) -> str:
     """Return the meaning of a parameter, marked if it is stated by the user and not fitted."""
-    return f"{p.meaning} (stated, not fitted)" if p.stated else p.meaning
+    return f"{p.meaning} (specified, not fitted)" if p.stated else p.meaning

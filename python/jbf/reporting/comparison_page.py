@@ -35,7 +35,7 @@ def comparison_page(comparison: Comparison, command: str = "") -> str:
             "Friction of the worst run in time, measured and modelled, and the residual",
         ),
         map_picture=svg([friction_map(comparison)], "Samples of all runs over speed and friction"),
-        residual_picture=svg([residual_map(comparison)], "What the model leaves, in all runs"),
+        residual_picture=svg([residual_map(comparison)], "Residual in all runs"),
         unit=model.rig.quantities.force,
         runs=run_rows(comparison),
         findings=finding_rows(comparison.findings),

@@ -60,6 +60,6 @@ def plot_robustness(outcomes: Sequence[Outcome], figure: Figure | None = None) -
     ax.axvline(1.0, color="black", linewidth=1.0)
     ax.set_xscale("log")
     ax.set_yticks(range(len(outcomes)), [o.name for o in reversed(outcomes)], fontsize="small")
-    title = "Error with the observed compensator over that without; left of 1 it helps"
+    title = "Ratio of the errors with and without the observed compensator (below 1: improvement)"
     dress(ax, title, "Ratio of true RMS errors, worst row marked", "")
     return made

@@ -16,7 +16,7 @@ _FLAGS = {
     FROZEN: "encoder frozen",
     JUMPED: "encoder jumped",
     NOT_FINITE: "reference not finite",
-    FALLBACK: "control law alone",
+    FALLBACK: "control law only",
 }
 
 
@@ -38,7 +38,7 @@ def runs_text(results: Sequence[Result]) -> str:
         head += f" at {task.frequency_rad_s:g} rad/s"
     head += f", {task.seconds:g} s"
     if task.skip_s:
-        head += f", the first {task.skip_s:g} s left out"
+        head += f", without the first {task.skip_s:g} s"
     rows = [("scheme", f"RMS, {task.unit}", "peak", "true RMS", "status")]
     rows += [
         (r.scheme, number(r.rms), number(r.peak), number(r.true_rms), status_words(r))
@@ -65,9 +65,8 @@ def robustness_text(outcomes: Sequence[Outcome]) -> str:
     summary = ", ".join(f"{word} {count}" for word, count in counted.items())
     return "\n".join(
         [
-            "True RMS error with compensation over that without; the compensator carries the bare "
-            "law.",
-            f"help: every row below {HELP:g}; harm: a row above {HARM:g}; p position, v velocity.",
+            "Ratio of the true RMS errors with and without compensation (by the base law).",
+            f"help: all ratios below {HELP:g}; harm: one above {HARM:g}; p position, v velocity.",
             "",
             *columns(rows, "<" + ">" * (len(names) + 1) + "<"),
             "",

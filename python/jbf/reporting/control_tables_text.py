@@ -57,7 +57,7 @@ def tables_text(tables: Tables) -> str:
             for c in (tables[row, column] for column in COLUMNS)
         ]
         rows.append((row, *cells, *(_three(tables[row, c].peak) for c in extra)))
-    lines += ["", "Peak error, likewise: bench / thesis", ""]
+    lines += ["", "Peak error, rad or rad/s: bench / thesis", ""]
     lines += columns(rows, "<" * len(head))
     return "\n".join(lines)
 
@@ -74,12 +74,12 @@ def score_text(tables: Tables) -> str:
         if c.ratio is not None and not 1.0 / _FAR <= c.ratio <= _FAR
     ]
     lines = [
-        f"Fitted: the seven cells without compensation, worst {100.0 * worst:.0f} % off.",
-        f"Predicted: of {len(tables.predicted)} cells {tables.within(2.0)} within a factor of 2, "
-        f"{tables.within(1.5)} within 1.5.",
+        f"Fitted: the seven cells without compensation, largest deviation {100.0 * worst:.0f} %.",
+        f"Predicted: {tables.within(2.0)} of {len(tables.predicted)} cells within a "
+        f"factor of 2, {tables.within(1.5)} within 1.5.",
     ]
     if far:
-        lines.append(f"Further off: {'; '.join(far)}.")
+        lines.append(f"Larger deviations: {'; '.join(far)}.")
     return "\n".join(lines)
 
 
@@ -90,7 +90,7 @@ def assumptions_text(found: Sequence[tuple[str, Tables]]) -> str:
         learning = " ".join(_ratio(c) for c in tables.column("learning"))
         coulomb = " ".join(_ratio(c) for c in tables.column("coulomb"))
         rows.append((name, learning, coulomb, str(tables.within(2.0)), str(tables.within(1.5))))
-    head = "Other assumptions: ratios of the RMS, row by row, and cells within a factor"
+    head = "Alternative assumptions: RMS ratios row by row, and number of cells within a factor"
     return "\n".join([head, "", *columns(rows, "<<<>>")])
 
 
@@ -100,7 +100,7 @@ def better_text(tables: Tables) -> str:
     The criterion is the true RMS error of the shaft.
     """
     gains = tables.gains()
-    rows: list[tuple[str, ...]] = [("", "dynamic model", "Coulomb", "observed", "times better")]
+    rows: list[tuple[str, ...]] = [("", "dynamic model", "Coulomb", "observed", "improvement")]
     for row, gain in gains.items():
         cells = (_three(tables[row, c].true_rms) for c in ("learning", "coulomb", "observed"))
         rows.append((row, *cells, f"{gain:.1f}"))
@@ -110,8 +110,9 @@ def better_text(tables: Tables) -> str:
             "",
             *columns(rows, "<>>>>"),
             "",
-            f"The observed compensator has the lower error in {sum(g > 1 for g in gains.values())} "
-            f"of {len(gains)} rows, {statistics.median(gains.values()):.1f} times in the median.",
+            "The observed compensator has the lower error in "
+            f"{sum(g > 1 for g in gains.values())} of {len(gains)} rows; the median "
+            f"improvement is {statistics.median(gains.values()):.1f}.",
         ]
     )
 
@@ -134,8 +135,7 @@ def tables_report(tables: Tables, others: Sequence[tuple[str, Tables]]) -> str:
             "",
             better_text(tables),
             "",
-            "docs/control.md says how scale, clock, start and missing effect were settled, and why "
-            "the",
-            "cells that are off are off.",
+            "docs/control.md describes how scale, clock, start and missing effect were determined,",
+            "and explains the larger deviations.",
         ]
     )

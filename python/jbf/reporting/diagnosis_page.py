@@ -85,7 +85,7 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         findings=finding_rows(diagnosis.findings),
         failures=failure_cards(diagnosis),
         residual_structure=remainder_cards(diagnosis),
-        residual_picture=svg([residual_map(after)], "What the final model leaves, in all runs"),
+        residual_picture=svg([residual_map(after)], "Residual of the final model in all runs"),
         last_picture=_last(diagnosis),
         taken_out=listed(non_friction_effects(after)),
         friction_picture=_friction(diagnosis),
@@ -131,7 +131,7 @@ def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[st
     unit = diagnosis.model.rig.quantities.force
     if not diagnosis.effects:
         return ("run", "samples", f"RMS ({unit})", "RMS / noise"), run_rows(before)
-    head = ("run", "samples", f"bare law ({unit})", f"final model ({unit})", "final / noise")
+    head = ("run", "samples", f"base law ({unit})", f"final model ({unit})", "final / noise")
     return head, [
         (
             x.name,
@@ -209,10 +209,10 @@ def _before(diagnosis: Diagnosis) -> Markup | str:
     loops(before, index, ax=left, colour=BEFORE, title=f"Run {before.runs[index].name}")
     draw_model(left, after, index, colour=MODEL, label="final")
     handles, labels = left.get_legend_handles_labels()
-    labels[labels.index("model")] = "bare law"
+    labels[labels.index("model")] = "base law"
     left.legend(handles, labels, frameon=False, fontsize="small")
     before_and_after(diagnosis, means_along(before, None), right)
-    return svg([left, right], "Bare law and final model, in one run and along the worst axis")
+    return svg([left, right], "Base law and final model, in one run and along the worst axis")
 
 
 def _last(diagnosis: Diagnosis) -> Markup:
@@ -245,7 +245,7 @@ def _power(diagnosis: Diagnosis) -> Markup | str:
     try:
         return svg(
             [power(diagnosis, ax=_wide(3.6))],
-            "Chance that such runs show an effect, over its strength",
+            "Detection probability over the strength of each effect",
         )
     except InputError:
         return ""

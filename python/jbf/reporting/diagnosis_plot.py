@@ -37,7 +37,7 @@ def plot_diagnosis(diagnosis: Diagnosis, axes: Sequence[Axes] | None = None) -> 
     before_and_after(diagnosis, means_along(before, None), residual)
     index = largest_error_run(before, after)
     name = before.runs[index].name
-    loops(before, index, ax=first, colour=BEFORE, title=f"Bare law, run {name}")
+    loops(before, index, ax=first, colour=BEFORE, title=f"Base law, run {name}")
     if diagnosis.effects:
         loops(after, index, ax=last, title=f"Final model, run {name}")
         last.set_ylim(first.get_ylim())
@@ -56,7 +56,7 @@ def before_and_after(
     said = diagnosis.model.rig.quantities
     noise_band(ax, diagnosis.before.noise_rms, unit=said.force)
     changed = bool(diagnosis.model.effects) and diagnosis.after is not diagnosis.before
-    draw_means(ax, pattern, BEFORE, said, "bare law" if changed else "")
+    draw_means(ax, pattern, BEFORE, said, "base law" if changed else "")
     if changed:
         draw_means(ax, means_along(diagnosis.after, pattern.axis), MODEL, said, "final")
     if titled:

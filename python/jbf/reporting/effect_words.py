@@ -18,15 +18,19 @@ def summary_of(effect: Effect, said: Quantities) -> str:
     own = {
         "sensor_offset": f"offset of {said.sensor}, or a constant {said.noun} "
         "(gravity on an inclined axis, a spring, a counterweight)",
-        "sensor_drift": f"the zero of {said.sensor} drifts steadily during a run",
-        "sensor_lag": f"{said.sensor} or its filter follows the {said.noun} with a delay",
+        "sensor_drift": f"zero of {said.sensor} drifts linearly during a run",
+        "sensor_lag": f"{said.sensor} or its filter follows the {said.noun} with a time lag",
         "sensor_hysteresis": f"{said.sensor} reads less while the {said.noun} rises than while it "
         "falls: play or friction in the force path",
-        "sensor_nonlinearity": f"{said.sensor} is not linear at a large {said.noun}",
-        "inertia": f"{inertia} that the drive accelerates, contained in {said.sensor}",
+        "sensor_nonlinearity": (
+            f"nonlinear {said.sensor}: it reads a large {said.noun} too large or too small"
+        ),
+        "inertia": (
+            f"{inertia} that the drive accelerates, contained in the reading of {said.sensor}"
+        ),
         "drive_compliance": "elasticity of a belt, coupling or shaft between the position sensor "
         "and the load",
-        "cogging": f"{said.noun} of the motor that varies periodically with position, also at rest",
+        "cogging": f"{said.noun} of the motor that is periodic in the position, also at rest",
     }
     return own.get(effect.name) or _here(effect.summary, said)
 
@@ -41,9 +45,8 @@ def limits_of(effect: Effect, said: Quantities) -> str:
 def _here(words: str, said: Quantities) -> str:
     """Replace the terms of a bearing rig in a catalogue text."""
     for of_bearing, here in (
-        ("the cell", said.sensor),
         ("the journal", "the load"),
-        ("which gamma takes up", "which the viscous friction of the law takes up"),
+        ("which gamma represents", "which the viscous friction of the law represents"),
     ):
         words = words.replace(of_bearing, here)
     return words

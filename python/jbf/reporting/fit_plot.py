@@ -37,7 +37,7 @@ def plot_bootstrap(found: Bootstrap, axes: Sequence[Axes] | None = None) -> list
     """Plot the parameters with their intervals and the bootstrap estimates, on one axes."""
     (ax,) = axes_or_new(axes, 1, 1, (7.0, height(found.values)))
     parameters(found.fit, answers=found.values, ax=ax)
-    ax.set_title("Parameters, and the answers of repeated fits", loc="left", fontsize="medium")
+    ax.set_title("Parameters with estimates from repeated fits", loc="left", fontsize="medium")
     return [ax]
 
 

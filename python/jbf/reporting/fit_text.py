@@ -33,7 +33,7 @@ def lines_of_parameters(fit: Fit) -> list[str]:
 def noise_floor_words(fit: Fit) -> str:
     """Format the noise of the records, and the ratio of the residual to it."""
     if fit.noise_floor is None:
-        return "not known"
+        return "unknown"
     ratio = fit.rms / fit.noise_floor
     return (
         f"{number(fit.noise_floor)} {fit.model.rig.quantities.force} "
@@ -67,9 +67,9 @@ def fit_report(fit: Fit) -> str:
     if fit.noise_floor is not None and fit.rms > ABOVE * fit.noise_floor:
         lines += hanging(
             "note: ",
-            "the residual is larger than the noise of the records: an effect is missing "
-            "(`jbf diagnose` identifies it), or the fit ended in a local minimum (choose other "
-            "start values: `--start NAME=VALUE`).",
+            "the residual exceeds the noise of the records: an effect is missing (`jbf "
+            "diagnose` identifies it), or the fit ended in a local minimum (choose "
+            "other start values: `--start NAME=VALUE`).",
             4,
         )
     pairs = correlation_pairs(fit)

@@ -35,21 +35,21 @@ Array = npt.NDArray[np.float64]
 SIZE = (4.7, 3.0)
 LEAST_SHARE = 0.08
 """Smallest share of a pattern from which an effect is named as its cause."""
-UNCONFIRMED = "predicts runs left out no better"
+UNCONFIRMED = "does not improve the held-out prediction"
 """Wording of the reason for a candidate that fits better but is rejected."""
 CONFIRMED = 0.6
 """Total share of a pattern from which the effects are named as its full cause, not a part."""
 SEEN_ALONG = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
 
 TITLES = {
-    "frequency": "In the spectrum",
+    "frequency": "Spectral lines",
     "bursts": "In bursts",
-    "way": "Over the way",
-    "period": "Again with each period",
-    "stroke": "From stroke to stroke",
-    "parameters": "Runs that disagree on parameters",
-    "effects": "More effects",
-    "unconfirmed": "An effect that runs left out do not confirm",
+    "way": "Periodic in the position",
+    "period": "Periodic in time",
+    "stroke": "Variation between strokes",
+    "parameters": "Parameters that differ between runs",
+    "effects": "More effects than the limit",
+    "unconfirmed": "Effects without held-out confirmation",
 }
 """Titles of residual structure that lies along no axis."""
 
@@ -96,13 +96,13 @@ def _failed(diagnosis: Diagnosis, failure: Failure, made: Mapping[str, Sequence[
     if shares and sum(shares.values()) >= CONFIRMED:
         cause = f"{causes}."
     elif shares:
-        cause = f"In part {causes}. The rest is usually {advice.causes}."
+        cause = f"Partly {causes}. The usual cause of the rest: {advice.causes}."
     else:
-        cause = f"No effect that was added. Usually {advice.causes}."
+        cause = f"No added effect. Usual cause: {advice.causes}."
     if fails:
-        to_do = f"With the final model {fell}, and a pattern stays. {_sentence(advice.to_do)}"
+        to_do = f"With the final model {fell}, but a pattern remains. {_sentence(advice.to_do)}"
     elif now < first:
-        to_do = f"Nothing more: with the final model {fell}, and no pattern is left along it."
+        to_do = f"No action needed: with the final model {fell}, without a remaining pattern."
     else:
         to_do = _sentence(advice.to_do)
     share = f"{100 * failure.share:.0f} % of the mean square"
@@ -132,13 +132,13 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
         legend_above(ax, 2)
     else:
         residual_in_time(after, largest_error_run(after), ax=ax)
-    alt = f"What remains along {remainder.axis}"
+    alt = f"Residual structure along {remainder.axis}"
     return Card(
         TITLES.get(kind, f"Along {remainder.axis}"),
         f"{100 * remainder.share:.0f} % of the mean square",
         svg([ax], alt),
         _sentence(remainder.where),
-        f"None in the catalogue. Usually {advice.causes}.",
+        f"No effect of the catalogue. Usual cause: {advice.causes}.",
         _sentence(advice.to_do),
     )
 

@@ -43,5 +43,5 @@ def file_rows(runs: Iterable[Run]) -> list[tuple[str, str, str]]:
         try:
             rows.append((run.name, str(run.path), file_hash(run.path)[:SHOWN]))
         except OSError:
-            rows.append((run.name, str(run.path), "no longer there"))
+            rows.append((run.name, str(run.path), "no longer present"))
     return rows

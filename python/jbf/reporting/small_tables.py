@@ -34,7 +34,7 @@ from jbf.reporting.words import (
     verdict_sentence,
 )
 
-POWER_HEAD = ("effect", "found from", "of friction", "alone from", "else it could be")
+POWER_HEAD = ("effect", "detectable from", "of friction", "distinct from", "confounded with")
 PARAMETER_HEAD = ("parameter", "value", "standard error", "", "unit", "note")
 
 

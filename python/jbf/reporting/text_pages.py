@@ -35,15 +35,15 @@ def _page(title: str, words: str, axes: Sequence[Axes], alt: str) -> str:
 
 def fit_page(fit: Fit) -> str:
     """Return the HTML text of a fit's page."""
-    alt = "Parameters with standard errors; residuals run after run"
+    alt = "Parameters with standard errors; residuals of all runs in sequence"
     return _page("Fit", fit_report(fit), plot_fit(fit), alt)
 
 
 def bootstrap_page(found: Bootstrap) -> str:
     """Return the HTML text of a bootstrap's page."""
-    alt = "Parameters, and the answers of repeated fits"
+    alt = "Parameters with estimates from repeated fits"
     words = bootstrap_report(found)
-    return _page("Fit, with errors from fits again", words, plot_bootstrap(found), alt)
+    return _page("Fit with bootstrap standard errors", words, plot_bootstrap(found), alt)
 
 
 def trajectory_page(fit: TrajectoryFit) -> str:
@@ -54,7 +54,7 @@ def trajectory_page(fit: TrajectoryFit) -> str:
 
 def loop_page(run: LoopRun) -> str:
     """Return the HTML text of the page of one control-loop run."""
-    alt = "Response, error, friction and what was learned"
+    alt = "Response, error, friction and learned parameters"
     return _page(f"Loop: {run.scheme}", runs_text([run]), plot_run_of_loop(run), alt)
 
 

@@ -40,7 +40,7 @@ def law_and_effects(model: Model) -> str:
     return " + ".join([law_words(model), *model.effects])
 
 
-UNKNOWN = "not known"
+UNKNOWN = "unknown"
 
 
 def noise_words(noise_rms: float, unit: str) -> str:
@@ -178,10 +178,10 @@ def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
     added = listed(diagnosis.effects)
     fall = f"the held-out error falls from {number(first.held_out_rms)} {unit} to {reached}"
     if diagnosis.verdict == "adequate":
-        law = f"the bare {diagnosis.model.law} law"
+        law = f"the {diagnosis.model.law} law without effects"
         if diagnosis.machine:
             terms = listed(diagnosis.machine)
-            law = f"the {diagnosis.model.law} law with the machine's own {terms}"
+            law = f"the {diagnosis.model.law} law with {terms}"
         held_out = "runs" if len(diagnosis.before.campaign.prepared) > 1 else "parts of the run"
         return f"Nothing is missing: {law} predicts held-out {held_out} within {reached}."
     if diagnosis.verdict == "missing":

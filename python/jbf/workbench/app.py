@@ -54,9 +54,9 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
                 try:
                     content = json.loads(body or b"{}")
                 except ValueError:
-                    return _refused("the body is no JSON", 400)
+                    return _refused("the body is not valid JSON", 400)
                 if not isinstance(content, dict):
-                    return _refused("the body is no object", 400)
+                    return _refused("the body is not an object", 400)
                 parameters = content
             return await run_in_threadpool(_answered, action, session, parameters)
 
@@ -101,9 +101,7 @@ def _answered(action: Action, session: Session, parameters: Parameters) -> Respo
     except JbfError as error:
         return _refused(str(error))
     except (KeyError, TypeError, ValueError) as error:
-        return _refused(
-            f"the request is incomplete or wrong ({type(error).__name__}: {error})", 400
-        )
+        return _refused(f"the request is not valid ({type(error).__name__}: {error})", 400)
     return found if isinstance(found, Response) else JSONResponse(found)
 
 
@@ -119,7 +117,7 @@ async def _page(request: Request) -> Response:
 async def _vendored(request: Request) -> Response:
     found = vendored.file(request.path_params["name"])
     if found is None:
-        return _refused("no such file", 404)
+        return _refused("file not found", 404)
     kind = "text/css" if found.suffix == ".css" else "text/javascript"
     return Response(found.read_bytes(), media_type=kind)
 

@@ -76,7 +76,7 @@ class Bench:
         for run in self.runs:
             if run.name == name:
                 return run
-        raise InputError(file=name, problem="no run on the bench is called so", mend="choose one")
+        raise InputError(file=name, problem="this run is not open", mend="select an open run")
 
     def trim(self, name: str, span: Span | None) -> None:
         """Restrict a run to an interval; None restores all of it.
@@ -92,11 +92,13 @@ class Bench:
             return
         first, last = sorted(map(float, span))
         if not math.isfinite(first + last):
-            raise InputError(file=name, problem="an end is no number", mend="give two instants, s")
+            raise InputError(
+                file=name, problem="an end is not a number", mend="give two instants, s"
+            )
         left = int(((run.time_s >= first) & (run.time_s <= last)).sum())
         if left < MIN_SAMPLES:
-            problem = f"{left} samples would be left"
-            raise InputError(file=name, problem=problem, mend=f"leave {MIN_SAMPLES} or more")
+            problem = f"only {left} samples would remain"
+            raise InputError(file=name, problem=problem, mend=f"keep at least {MIN_SAMPLES}")
         self.trims[name] = (first, last)
 
     def leave_out(self, name: str, out: bool) -> None:
@@ -114,7 +116,7 @@ class Bench:
         """
         found = tuple(self._trimmed(run) for run in self.runs if run.name not in self.excluded)
         if not found:
-            raise InputError(problem="every run is left out", mend="take one in")
+            raise InputError(problem="all runs are excluded", mend="include at least one")
         return found
 
     def _trimmed(self, run: Run) -> Run:

@@ -39,7 +39,7 @@ class Folder:
         """
         root = Path(os.path.realpath(path))
         if not root.is_dir():
-            raise InputError(file=path, problem="is not a folder", mend="name one that is there")
+            raise InputError(file=path, problem="is not a folder", mend="name an existing folder")
         return cls(root)
 
     def path(self, name: str) -> Path:
@@ -57,7 +57,7 @@ class Folder:
             if found.is_relative_to(self.root) and found != self.root:
                 return found
         raise InputError(
-            file=quoted(name), problem="is not a name in the folder", mend="choose one that is"
+            file=quoted(name), problem="is not a name in the folder", mend="choose an existing one"
         )
 
     def name(self, path: Path) -> str:
@@ -78,12 +78,12 @@ class Folder:
         if "/" in name or "\\" in name or name.startswith(".") or kind not in _UPLOADS:
             known = ", ".join(sorted(_UPLOADS))
             raise InputError(
-                file=quoted(name), problem="is no recording, rig or map", mend=f"give {known}"
+                file=quoted(name), problem="is not a recording, rig or map", mend=f"give {known}"
             )
         path = self.path(name)
         if os.path.lexists(self.root / name):
             raise InputError(
-                file=quoted(name), problem="is there already", mend="rename one of the two"
+                file=quoted(name), problem="already exists", mend="rename one of the two"
             )
         return path
 

@@ -109,16 +109,18 @@ class Guard:
             return 400, "this server answers to 127.0.0.1 and localhost alone"
         origin = headers.get("origin")
         if origin is not None and origin not in {f"http://{host}" for host in self.hosts}:
-            return 403, "another page may not ask"
+            return 403, "requests from other pages are not allowed"
         if headers.get("sec-fetch-site", "none") not in ("same-origin", "none"):
-            return 403, "another page may not ask"
+            return 403, "requests from other pages are not allowed"
         given = headers.get(TOKEN, "").encode()
         if path.startswith("/api/") and not secrets.compare_digest(given, self.token.encode()):
-            return 403, "the token is missing or wrong: open the address that jbf workbench printed"
+            return 403, (
+                "the token is missing or wrong: open the address that jbf workbench printed"
+            )
         size = headers.get("content-length", "0")
         if not size.isdigit() or int(size) > self.largest:
             return 413, self._too_large()
         return None
 
     def _too_large(self) -> str:
-        return f"more than {self.largest >> 20} MiB: copy the file into the folder by hand"
+        return f"more than {self.largest >> 20} MiB: copy the file into the folder manually"

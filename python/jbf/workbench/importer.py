@@ -67,7 +67,7 @@ def _first_joint(path: Path) -> tuple[Guess, list[str]]:
         return look(path), []
     except JointNotChosen as several:
         first, *others = several.joints
-        said = f"joint: the columns are those of {first}; there are {', '.join(others)}, too"
+        said = f"joint: columns of {first}; others: {', '.join(others)}"
         return look(path, first), [said]
 
 
@@ -98,7 +98,7 @@ def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict
     """Import into a new folder of the given name; returns its rig and its runs."""
     out = folder.path(into)
     if out.exists():
-        raise InputError(file=into, problem="is there already", mend="name another folder")
+        raise InputError(file=into, problem="already exists", mend="name another folder")
     paths, cut = _paths(folder, names), _cut_file(folder, text)
     beside = _additional_files(folder, text)
     with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
@@ -113,7 +113,7 @@ def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict
 
 def _paths(folder: Folder, names: Sequence[str]) -> list[Path]:
     if not names:
-        raise InputError(problem="no recording is chosen", mend="tick one")
+        raise InputError(problem="no recording is selected", mend="select one")
     paths = [folder.path(name) for name in names]
     for name, path in zip(names, paths, strict=True):
         if not path.is_file():

@@ -100,7 +100,7 @@ class Jobs:
                 self._cancelled = True
                 process.kill()
                 return True
-            self._cancelled, self.job.message = True, "stopping; cancel again to drop it"
+            self._cancelled, self.job.message = True, "stopping; cancel again to abort"
             with contextlib.suppress(OSError):  # it has just ended
                 self._connection.send(STOP)
         patience = threading.Timer(PATIENCE_S, process.kill)
@@ -112,7 +112,7 @@ class Jobs:
         self, connection: Any, process: BaseProcess, ended: Ended, part: Part | None
     ) -> None:
         ending: Ending = "error"
-        answer: Answer | str = "the fit's process ended without an answer (out of memory?)"
+        answer: Answer | str = "the fit process ended without a result (out of memory?)"
         job = self.job
         assert job is not None
         try:

@@ -42,7 +42,10 @@ def next_run_text(session: Session) -> str:
     """Return the motion of the next experiment as CSV."""
     diagnosis = session.models.node().get("diagnosis") or {}
     if not diagnosis.get("next_run"):
-        raise InputError(problem="no next run was proposed", mend="diagnose; a tie proposes one")
+        raise InputError(
+            problem="no next run was proposed",
+            mend="run a diagnosis; it proposes a run if effects are tied",
+        )
     return str(diagnosis["next_run"])
 
 
@@ -65,7 +68,7 @@ def text_of(session: Session, what: str) -> tuple[str, str]:
         The kind is unknown, or not available for this model.
     """
     if what not in TEXTS:
-        raise InputError(problem=f"nothing is called {what!r}", mend=f"one of {', '.join(TEXTS)}")
+        raise InputError(problem=f"{what!r} is not known", mend=f"choose one of {', '.join(TEXTS)}")
     name, text = TEXTS[what]
     return name, text(session)
 

@@ -35,22 +35,22 @@ WORDS = {
     "time_s": "time",
     "position_m": "position of the slide",
     "angle_rad": "angle of the shaft or joint",
-    "weight_angle_rad": "angle of a link behind several joints, over which its weight acts",
-    "velocity_m_s": "speed of the slide, or at the surface",
-    "velocity_rad_s": "speed of the joint, as an angle",
-    "speed_rpm": "speed of the shaft or joint, in turns",
+    "weight_angle_rad": "angle of a link behind several joints, on which its weight acts",
+    "velocity_m_s": "speed of the slide or surface",
+    "velocity_rad_s": "angular speed of the joint",
+    "speed_rpm": "speed of the shaft or joint, in revolutions",
     "friction_n": "friction force",
     "torque_n_m": "torque at the joint",
     "motor_torque_n_m": "torque of the motor",
     "current_a": "motor current",
-    "torque_percent": "torque, % of the rated one",
-    "force_percent": "force, % of the rated one",
+    "torque_percent": "torque, % of the rated torque",
+    "force_percent": "force, % of the rated force",
     "load_n": "load (normal force)",
     "temperature_c": "temperature",
     "pressure_pa": "pressure",
     "motor_angle_rad": "angle of the motor",
-    "motor_velocity_rad_s": "speed of the motor, as an angle",
-    "motor_speed_rpm": "speed of the motor, in turns",
+    "motor_velocity_rad_s": "angular speed of the motor",
+    "motor_speed_rpm": "speed of the motor, in revolutions",
 }
 """Plain description of each column of a run."""
 SUGGESTED = (
@@ -213,7 +213,9 @@ def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, A
         key = str(row["key"])
         if key in columns:
             words = WORDS.get(key, key)
-            raise InputError(problem=f"two columns are the {words}", mend="keep one of them")
+            raise InputError(
+                problem=f"two columns are assigned to {words}", mend="keep one of them"
+            )
         columns[key] = expression_of(row)
     kept = {k: v for k, v in formulas.items() if k not in columns}
     numbers = {place: _number(value) for place, value in rig.items()}
@@ -257,7 +259,9 @@ def _parsed(text: str) -> Any:
     try:
         return tomlkit.parse(text)
     except TOMLKitError as error:
-        raise InputError(problem=f"the map is no TOML ({error})", mend="correct it") from None
+        raise InputError(
+            problem=f"the map is not valid TOML ({error})", mend="correct it"
+        ) from None
 
 
 def _map_of(text: str) -> Map:

@@ -29,8 +29,10 @@ def listening(port: int) -> socket.socket:
         listener.bind((HOST, port))
     except (OSError, OverflowError) as error:
         listener.close()
-        problem = f"port {port} cannot be had ({error})"
-        raise InputError(file="--port", problem=problem, mend="leave it out: any") from None
+        problem = f"port {port} is not available ({error})"
+        raise InputError(
+            file="--port", problem=problem, mend="omit it: a free port is used"
+        ) from None
     return listener
 
 
@@ -52,7 +54,7 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
         raise InputError(problem="Starlette or uvicorn is not installed", mend=mend) from None
     if not vendored.is_complete():
         mend = "python -m jbf.workbench.vendored (once, with a network)"
-        raise InputError(problem=f"{vendored.NAME} was not fetched when this was built", mend=mend)
+        raise InputError(problem=f"{vendored.NAME} was not fetched at build time", mend=mend)
     listener = listening(port)
     session = Session(Folder.of(folder))
     try:

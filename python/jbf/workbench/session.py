@@ -77,7 +77,7 @@ class Session:
             No rig is open.
         """
         if self.bench is None:
-            raise InputError(problem="nothing is on the bench", mend="open a rig and its runs")
+            raise InputError(problem="no runs are open", mend="open a rig and its runs")
         return self.bench
 
     def open(self, rig_name: str, run_names: Sequence[str]) -> None:
@@ -124,7 +124,9 @@ class Session:
                 find_effect(name)
             if kind == "round" and law == AUTO:
                 mend = "choose a law, or diagnose"
-                raise InputError(problem="auto is a choice that a diagnosis makes", mend=mend)
+                raise InputError(
+                    problem="a diagnosis selects the law for auto; a fit requires one", mend=mend
+                )
             place = self._new_place()
             order = Order(kind, bench.rig, bench.taken(), place, law, effects=tuple(effects))
             words = _words(kind, law, effects)
@@ -195,12 +197,12 @@ class Session:
         if ending == "done":
             with self.lock:
                 node.update(answer)
-            noise = f"the noise is {written(node['noise_rms'])} {unit}"
+            noise = f"noise {written(node['noise_rms'])} {unit}"
             self.say("done", f"{node['words']}: RMS {written(node['rms'])} {unit}; {noise}")
         elif ending == "stopped":
             with self.lock:
                 node["trials"] = []
-            self.say("done", f"{node['words']}: kept; what else could be missing was cancelled")
+            self.say("done", f"{node['words']}: kept; the test of further candidates was cancelled")
         else:
             self.say("error", f"{node['words']}: {answer}")
 
@@ -212,9 +214,9 @@ class Session:
             self.say("done", f"{words}: done")
         elif ending == "stopped" and answer:
             self._added({**answer, "trials": []}, parent, "stopped at: ", law, place)
-            self.say("done", f"{words}: cancelled; its best so far is kept, and not finished")
+            self.say("done", f"{words}: cancelled; the best model so far is kept, unfinished")
         elif ending == "stopped":
-            self.say("done", f"{words}: cancelled before there was a model of it")
+            self.say("done", f"{words}: cancelled before a model was found")
         else:
             self.say("error", f"{words}: {answer}")
 

@@ -58,9 +58,13 @@ def load(session: Session) -> bool:
         content = json.loads(read_text(path))
     except json.JSONDecodeError as error:
         mend = "remove it"
-        raise InputError(file=path, row=error.lineno, problem="is no JSON", mend=mend) from None
+        raise InputError(
+            file=path, row=error.lineno, problem="is not valid JSON", mend=mend
+        ) from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise InputError(file=path, problem=f"is not of the format {FORMAT!r}", mend="remove it")
+        raise InputError(
+            file=path, problem=f"does not have the format {FORMAT!r}", mend="remove it"
+        )
     try:
         bench = Bench.read(session.folder, str(content["rig"]), list(map(str, content["runs"])))
         for name, span in content["trims"].items():
@@ -73,12 +77,12 @@ def load(session: Session) -> bool:
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         if isinstance(error, InputError):
             raise
-        problem = f"is broken ({type(error).__name__}: {error})"
+        problem = f"is not valid ({type(error).__name__}: {error})"
         raise InputError(file=path, problem=problem, mend="remove it") from None
     session.put(bench, models, law)
     if current is not None:
         session.show(int(current))
-    session.say("done", f"the session of {path.name} goes on")
+    session.say("done", f"the session of {path.name} was restored")
     return True
 
 

@@ -107,7 +107,7 @@ def _marked(
 ) -> dict[str, Mask]:
     node = session.models.node(number)
     if not 0 <= place < len(node["failures"]):
-        raise InputError(problem="the model has no such failure", mend="choose one of the list")
+        raise InputError(problem="the model has no such lack of fit", mend="choose one of the list")
     ranges = node["failures"][place]["ranges_s"]
     names = node["record_names"]
     found = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}

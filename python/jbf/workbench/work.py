@@ -91,7 +91,7 @@ def main(connection: Connection, order: Order) -> None:
     except JbfError as error:
         last = ("error", str(error))
     except MemoryError:
-        last = ("error", "not enough memory: take fewer runs, or shorter ones")
+        last = ("error", "not enough memory: use fewer or shorter runs")
     connection.send(last)
     connection.close()
 

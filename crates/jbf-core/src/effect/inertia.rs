@@ -28,7 +28,7 @@ impl<T: Real> Effect<T> for Inertia<T> {
         .parameters(&[Parameter::new(
             "m_e",
             "kg",
-            "effective mass at the journal's surface",
+            "effective mass at the sliding surface",
             [0.0, 1e6],
             &[4.0, 100.0],
         )

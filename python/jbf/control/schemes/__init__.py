@@ -40,7 +40,7 @@ def scheme(name: str, model: Model | None = None, settings: Settings | None = No
         "repetitive": Repetitive,
     }
     if name not in plain:
-        raise InputError(problem=f'there is no scheme "{name}"', mend=did_you_mean(name, SCHEMES))
+        raise InputError(problem=f'scheme "{name}" is not known', mend=did_you_mean(name, SCHEMES))
     return plain[name]()
 
 

@@ -56,7 +56,7 @@ class Learning(Unguarded):
         """
         if model.law != "journal":
             raise InputError(
-                problem=f"the learning scheme runs the journal's film, this is {model.law}",
+                problem=f"the learning scheme requires the law journal, not {model.law}",
                 mend="choose another scheme",
             )
         values = {n: p.value for n, p in model.parameters.items()}

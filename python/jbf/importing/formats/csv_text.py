@@ -239,7 +239,7 @@ class TextSource(Source):
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return the rows of words among the samples, and the damaged rows."""
         words = (
-            [(len(self._words), "the column contains only words", self._words[0])]
+            [(len(self._words), "the row contains only words", self._words[0])]
             if self._words
             else []
         )

@@ -57,7 +57,7 @@ export async function follow(received, lost) {
         rest = parts.pop();
         for (const part of parts) if (part.startsWith("data: ")) received(JSON.parse(part.slice(6)));
       }
-      lost("The server has ended: start jbf workbench again.");
+      lost("The server has stopped: start jbf workbench again.");
     } catch (error) { lost(error.message); }
     await new Promise((resolve) => setTimeout(resolve, 2000));
   }

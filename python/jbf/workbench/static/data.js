@@ -33,20 +33,20 @@ export class DataSection {
       ondragover: (e) => { e.preventDefault(); drop.classList.add("over"); },
       ondragleave: () => drop.classList.remove("over"),
       ondrop: (e) => { e.preventDefault(); drop.classList.remove("over"); this.take(e.dataTransfer.files); } },
-    h("b", {}, "Your own recording: "), "drop it here, or choose it: ", input);
+    h("b", {}, "Your own recording: "), "drop a file here, or choose it: ", input);
     const campaigns = found.campaigns.filter((c) => c.rig !== state.rig);
     put(this.files,
       h("p", { class: "faint" }, state.folder, state.rig ? ` · open: ${state.rig}` : ""),
       h("div", { class: "two" },
         h("div", {},
-          some ? null : h("div", { class: "row" }, h("button", { class: "main", "data-key": "demo", onclick: () => this.page.do("demo") }, "Open the demo's data"), h("span", { class: "faint" }, "five runs of a bearing, with something hidden in them")),
-          campaigns.length ? [h("h3", {}, some ? "Open another rig with its runs" : "Rigs with their runs, in this folder"),
+          some ? null : h("div", { class: "row" }, h("button", { class: "main", "data-key": "demo", onclick: () => this.page.do("demo") }, "Open the demo data"), h("span", { class: "faint" }, "five runs of a bearing with a hidden effect")),
+          campaigns.length ? [h("h3", {}, some ? "Open another rig with its runs" : "Rigs and their runs in this folder"),
             h("ul", { class: "plain" }, campaigns.map((c) => h("li", {},
               h("button", { "data-key": `open-${c.rig}`, onclick: () => open(c.rig, c.runs) }, "Open"), ` ${c.rig}, ${c.runs.length} run${c.runs.length === 1 ? "" : "s"}`)))] : null,
           this.picker(found, open)),
         h("div", {}, drop, this.recordings(found),
-          found.more ? h("p", { class: "faint" }, "There are more files: name a smaller folder.") : null,
-          some ? h("div", { class: "row" }, h("button", { "data-key": "demo", onclick: () => this.page.do("demo") }, "Open the demo's data")) : null)));
+          found.more ? h("p", { class: "faint" }, "More files are not shown: choose a smaller folder.") : null,
+          some ? h("div", { class: "row" }, h("button", { "data-key": "demo", onclick: () => this.page.do("demo") }, "Open the demo data")) : null)));
   }
 
   // A rig and runs that do not lie together.
@@ -54,7 +54,7 @@ export class DataSection {
     if (!found.rigs.length || !found.csv.length) return null;
     const rig = h("select", { "aria-label": "rig" }, found.rigs.map((name) => h("option", { value: name }, name)));
     const runs = h("select", { multiple: true, size: 4, "aria-label": "runs" }, found.csv.map((name) => h("option", { value: name }, name)));
-    return h("details", {}, h("summary", { "data-key": "picker" }, "Choose a rig and runs that lie apart"), h("div", { class: "row" }, rig, runs,
+    return h("details", {}, h("summary", { "data-key": "picker" }, "Choose a rig and runs from different folders"), h("div", { class: "row" }, rig, runs,
       h("button", { onclick: () => open(rig.value, [...runs.selectedOptions].map((o) => o.value)) }, "Open")));
   }
 
@@ -63,11 +63,11 @@ export class DataSection {
     const names = [...found.other, ...found.csv.filter((f) => !found.campaigns.some((c) => c.runs.includes(f)))];
     if (!names.length) return null;
     this.picked = new Set([...this.picked].filter((name) => names.includes(name)));
-    const go = h("button", { "data-key": "import-chosen", disabled: !this.picked.size, onclick: () => this.look([...this.picked]) }, "Import the ticked …");
+    const go = h("button", { "data-key": "import-chosen", disabled: !this.picked.size, onclick: () => this.look([...this.picked]) }, "Import the selected files …");
     const tick = (name, on) => { this.picked[on ? "add" : "delete"](name); go.disabled = !this.picked.size; };
-    return [h("h3", {}, "Recordings in the folder, as a logger wrote them"), h("ul", { class: "plain list" }, names.map((name) => h("li", {},
+    return [h("h3", {}, "Logger files in this folder"), h("ul", { class: "plain list" }, names.map((name) => h("li", {},
       h("label", {}, h("input", { type: "checkbox", "data-key": `pick-${name}`, checked: this.picked.has(name), onchange: (e) => tick(name, e.target.checked) }), ` ${name}`)))),
-    h("div", { class: "row" }, go, h("span", { class: "faint" }, "one map for all: tick what has the same columns"))];
+    h("div", { class: "row" }, go, h("span", { class: "faint" }, "one map for all: select files with the same columns"))];
   }
 
   async take(files) {
@@ -103,7 +103,7 @@ export class DataSection {
     if (!this.chart || this.drawn !== run.name) {
       const force = h("div", { class: "plot" }), speed = h("div", { class: "plot" }), { units } = page;
       this.trims = h("div");
-      put(this.raw, h("h2", {}, `${run.name}, as it was read`), this.trims, force, speed);
+      put(this.raw, h("h2", {}, `${run.name}, as recorded`), this.trims, force, speed);
       const zoomed = (from, to) => page.look({ span: [from, to] });
       this.chart = new Chart(force, { curves: [curve("friction_n", "measured", "measured")], unit: `${units.noun} (${units.force})`, zoomed, sync: "data" });
       this.speed = new Chart(speed, { curves: [curve("velocity_m_s", "speed", "model")], unit: `speed (${units.speed})`, height: 130, zoomed, sync: "data", legend: false });
@@ -129,10 +129,10 @@ export class DataSection {
     const end = (which, words, value) => h("label", {}, `${words} `,
       h("input", { type: "number", class: "short", step: "any", value: Number(value.toPrecision(8)), "aria-label": `${words}, s`, "data-key": `trim-n-${which}`, onchange: (e) => set(which, e.target.value) }), " s");
     put(this.trims, h("div", { class: "row" }, end(0, "Use from", from), end(1, "to", to),
-      h("button", { "data-key": "untrim", disabled: !run.trim, onclick: () => this.page.do("trim", { run: run.name }) }, "All of it"),
-      h("span", { class: "faint" }, "The handles in the plot trim; dragging zooms, a double click shows all.")),
-    run.findings === null ? h("p", { class: "faint" }, "Looking at what the recording did…")
-      : findings.length ? [h("h3", {}, "What the recording did"), h("ul", {}, findings.map((f) => h("li", {}, `${f.words}${f.done && f.done !== "none" ? ` (${f.done})` : ""}`)))]
-        : h("p", { class: "faint" }, "Nothing odd was found in the recording."));
+      h("button", { "data-key": "untrim", disabled: !run.trim, onclick: () => this.page.do("trim", { run: run.name }) }, "Reset trim"),
+      h("span", { class: "faint" }, "Handles in the plot trim the run; drag to zoom, double-click to reset.")),
+    run.findings === null ? h("p", { class: "faint" }, "Checking the data quality…")
+      : findings.length ? [h("h3", {}, "Data quality"), h("ul", {}, findings.map((f) => h("li", {}, `${f.words}${f.done && f.done !== "none" ? ` (${f.done})` : ""}`)))]
+        : h("p", { class: "faint" }, "No finding."));
   }
 }

@@ -2,9 +2,9 @@
 import { h, number, put } from "./dom.js";
 
 const RIG = {
-  motion: "moves", friction: "friction is measured as", rated_torque_n_m: "100 % is, N m", rated_force_n: "100 % is, N",
-  torque_constant_n_m_a: "1 A of the motor is, N m", force_constant_n_a: "1 A of the motor is, N",
-  pitch_m: "one turn of the screw moves, m", gear_ratio: "turns of the motor for one of the output",
+  motion: "motion", friction: "friction measured as", rated_torque_n_m: "rated torque (100 %), N m", rated_force_n: "rated force (100 %), N",
+  torque_constant_n_m_a: "torque per ampere, N m/A", force_constant_n_a: "force per ampere, N/A",
+  pitch_m: "travel per revolution, m", gear_ratio: "gear ratio (motor/output)",
 };
 const CHOICES = { motion: ["linear", "rotary"], friction: ["force", "torque", "current", "percent"] };
 // What a run calls a column that was converted.
@@ -58,23 +58,23 @@ export class ImportForm {
     text.value = this.text;
     const into = h("input", { value: this.into, "aria-label": "name of the campaign", "data-key": "into", oninput: (e) => { this.into = e.target.value; } });
     put(this.place, h("h2", {}, `Import ${names}`),
-      h("p", {}, "What is each column, and in which unit was it logged? On the right stands what will be read. Right? Then import."),
-      h("table", {}, h("thead", {}, h("tr", {}, ["column of the file", "first values", "is", "in", "minus", "will be read as"].map((w) => h("th", {}, w)))),
+      h("p", {}, "Assign a quantity and a unit to each column. Check the preview on the right, then import."),
+      h("table", {}, h("thead", {}, h("tr", {}, ["column", "first values", "quantity", "unit", "negate", "preview"].map((w) => h("th", {}, w)))),
         h("tbody", {}, found.columns.map((column) => this.row(column)))),
       this.formulas(), this.rig(),
       h("p", { class: ready ? "good" : "bad", role: "status", "data-key": "problem" }, this.says()),
-      h("div", { class: "row" }, h("label", {}, "Into the folder ", into),
+      h("div", { class: "row" }, h("label", {}, "Target folder ", into),
         h("button", { class: "main", "data-key": "import", disabled: !ready, onclick: () => this.keep() }, "Import"),
         h("button", { "data-key": "close-import", onclick: () => this.closed() }, "Close")),
-      h("details", { open: this.open, ontoggle: (e) => { this.open = e.target.open; } }, h("summary", { "data-key": "map-text" }, "The map as text (formulas, cutting, clocks)"), text));
+      h("details", { open: this.open, ontoggle: (e) => { this.open = e.target.open; } }, h("summary", { "data-key": "map-text" }, "Map as text (formulas, cuts, clocks)"), text));
   }
 
   says() {
     const { answer } = this;
     if (!answer) return "Reading…";
-    if (answer.problem) return `Not yet: ${this.questions.length ? this.questions.join("; ") : answer.problem}.`;
+    if (answer.problem) return `Incomplete: ${this.questions.length ? this.questions.join("; ") : answer.problem}.`;
     const runs = answer.runs.map((run) => `${run.name}: ${run.samples} samples`);
-    return `Good: ${runs.slice(0, 6).join("; ")}${runs.length > 6 ? ` and ${runs.length - 6} more runs` : ""}.`;
+    return `Ready: ${runs.slice(0, 6).join("; ")}${runs.length > 6 ? ` and ${runs.length - 6} more runs` : ""}.`;
   }
 
   row(column) {
@@ -82,12 +82,12 @@ export class ImportForm {
     const known = this.found.quantities.find((q) => q.key === key), list = `units-${column.name}`;
     const other = key && !known ? [h("option", { value: key, selected: true }, key)] : [];
     return h("tr", { class: row ? "" : "unused" }, h("td", {}, column.name), h("td", { class: "faint" }, column.first.join(", ")),
-      h("td", {}, h("select", { "data-key": `is-${column.name}`, "aria-label": `what ${column.name} is`, onchange: (e) => this.change(column, { key: e.target.value }) },
+      h("td", {}, h("select", { "data-key": `is-${column.name}`, "aria-label": `quantity of ${column.name}`, onchange: (e) => this.change(column, { key: e.target.value }) },
         h("option", { value: "", selected: !row }, "not used"), other,
         this.found.quantities.map((q) => h("option", { value: q.key, selected: q.key === key }, q.words)))),
-      h("td", {}, row ? [h("input", { class: "short", list, value: row.unit === "?" ? "" : row.unit ?? column.unit ?? "", placeholder: "which?", "data-key": `unit-${column.name}`, "aria-label": `unit of ${column.name}`,
+      h("td", {}, row ? [h("input", { class: "short", list, value: row.unit === "?" ? "" : row.unit ?? column.unit ?? "", placeholder: "unit?", "data-key": `unit-${column.name}`, "aria-label": `unit of ${column.name}`,
         onchange: (e) => this.change(column, { unit: e.target.value }) }), h("datalist", { id: list }, (known?.units ?? []).map((u) => h("option", { value: u })))] : null),
-      h("td", {}, row ? h("input", { type: "checkbox", checked: row.turned, "data-key": `turned-${column.name}`, "aria-label": `${column.name} with a minus`, title: "with a minus",
+      h("td", {}, row ? h("input", { type: "checkbox", checked: row.turned, "data-key": `turned-${column.name}`, "aria-label": `negate ${column.name}`, title: "negate",
         onchange: (e) => this.change(column, { turned: e.target.checked }) }) : null),
       h("td", { class: "n" }, row ? this.read(key) : ""));
   }
@@ -109,7 +109,7 @@ export class ImportForm {
     const fields = Object.entries(this.form.rig).flatMap(([section, part]) => Object.entries(part).map(([key, value]) => ({ section, key, value })));
     if (!fields.length) return null;
     const set = (field) => (e) => this.send({ rows: this.rows(), rig: { [`${field.section}.${field.key}`]: e.target.value } });
-    return h("div", { class: "row" }, h("b", {}, "The machine"), fields.map((field) => {
+    return h("div", { class: "row" }, h("b", {}, "Machine"), fields.map((field) => {
       const common = { "data-key": `rig-${field.section}.${field.key}`, onchange: set(field) };
       const input = CHOICES[field.key]
         ? h("select", common, CHOICES[field.key].map((c) => h("option", { value: c, selected: c === field.value }, c)))

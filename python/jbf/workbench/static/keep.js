@@ -1,21 +1,21 @@
-// Section 4: the session, the model, its report, constants for firmware, and the same by command.
+// Section 4: the session, the model, its report, constants for firmware, and the equivalent commands.
 import { h, put } from "./dom.js";
 
 const THINGS = [
-  ["session", "The session (workbench.json)", "all models and trims; jbf workbench on this folder goes on with it", null],
-  ["model", "The model (model.toml)", "for jbf predict, compare, export", "model.toml"],
-  ["report", "The report (report.html)", "one page with pictures, to send", "report.html"],
+  ["session", "Session (workbench.json)", "all models and trims; jbf workbench in this folder restores it", null],
+  ["model", "Model (model.toml)", "for jbf predict, compare, export", "model.toml"],
+  ["report", "Report (report.html)", "one page with pictures", "report.html"],
   ["rust", "Constants in Rust (model.rs)", "for a controller with jbf-core", "model.rs"],
   ["c", "Constants in C (model.h)", "for a controller with jbf-c", "model.h"],
-  ["next_run", "The next run's motion (next_run.csv)", "to be played by the rig", "next_run.csv"],
-  ["trimmed", "The runs as trimmed (trimmed/)", "CSV files, without the runs left out", null],
+  ["next_run", "Motion of the next run (next_run.csv)", "reference for the rig", "next_run.csv"],
+  ["trimmed", "Trimmed runs (trimmed/)", "CSV files, without excluded runs", null],
 ];
 
 export class KeepSection {
   constructor(page, place) {
     this.page = page; this.place = place;
     this.list = h("div"); this.words = h("p", { role: "status" }); this.same = h("div");
-    place.append(h("h2", {}, "What to keep"), h("p", { class: "faint" }, "Of the model that is chosen at the left."), this.list, this.words, this.same);
+    place.append(h("h2", {}, "Export"), h("p", { class: "faint" }, "Of the selected model."), this.list, this.words, this.same);
   }
 
   update() {
@@ -26,8 +26,8 @@ export class KeepSection {
       h("td", {}, h("button", { "data-key": `keep-${what}`, disabled: !there(what), onclick: () => this.keep(what) }, "Save in the folder")),
       h("td", {}, file ? h("button", { "data-key": `get-${what}`, disabled: !there(what), onclick: () => this.get(what, file) }, "Download") : null),
       h("td", {}, title), h("td", { class: "faint" }, why))))));
-    put(this.same, page.state.command ? [h("h2", {}, node ? "The same by command" : "By command"), this.copied("command", page.state.command),
-      h("h2", {}, node ? "The same in Python" : "In Python"), this.copied("python", page.state.python)] : null);
+    put(this.same, page.state.command ? [h("h2", {}, node ? "Equivalent commands" : "Commands"), this.copied("command", page.state.command),
+      h("h2", {}, node ? "Equivalent Python code" : "Python code"), this.copied("python", page.state.python)] : null);
   }
 
   looked() {}
@@ -40,7 +40,7 @@ export class KeepSection {
   async keep(what) {
     put(this.words, "…");
     const found = await this.page.do("keep", { what });
-    put(this.words, found ? `Written: ${found.written.join(", ")} in ${this.page.state.folder}${found.replaced.length ? ` (in the place of an earlier ${found.replaced.join(", ")})` : ""}` : "");
+    put(this.words, found ? `Written: ${found.written.join(", ")} in ${this.page.state.folder}${found.replaced.length ? ` (replaced ${found.replaced.join(", ")})` : ""}` : "");
   }
 
   get(what, file) { return this.page.download(what, file); }

@@ -14,8 +14,8 @@ export class LearnSection {
     this.sketch = h("div", { class: "plot" }); this.sketched = h("p", { class: "faint" });
     place.append(this.head, this.verdict,
       h("div", { class: "two wide" },
-        h("section", {}, h("h2", {}, "The error falling"), this.ledger, h("h2", {}, "What the chosen effect would add"), this.sketched, this.sketch),
-        h("section", {}, h("h2", {}, "What could be missing"), this.ranks)),
+        h("section", {}, h("h2", {}, "Error by step"), this.ledger, h("h2", {}, "Predicted contribution of the selected effect"), this.sketched, this.sketch),
+        h("section", {}, h("h2", {}, "Candidates"), this.ranks)),
       h("h2", {}, "Parameters"), this.values, this.more);
   }
 
@@ -31,17 +31,17 @@ export class LearnSection {
     const { page } = this, { state } = page, node = page.model, busy = Boolean(state.job) || !state.runs.length;
     this.lead();
     const law = h("select", { "aria-label": "law", "data-key": "law", disabled: busy, onchange: (e) => page.do("law", { law: e.target.value }) },
-      state.laws.map((name) => h("option", { value: name, selected: name === state.law }, name === "auto" ? "auto (the data choose)" : name)));
+      state.laws.map((name) => h("option", { value: name, selected: name === state.law }, name === "auto" ? "auto (selected from the data)" : name)));
     put(this.head, h("label", {}, "Law ", law),
-      h("button", { "data-key": "fit-law", disabled: busy || state.law === "auto", title: state.law === "auto" ? "choose a law first" : "", onclick: () => page.do("fit", { effects: [], parent: null }) }, "Fit the law alone"),
-      h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose: let jbf decide"),
-      state.law === "auto" && !node ? h("span", { class: "faint" }, "To go step by step choose a law.") : null);
+      h("button", { "data-key": "fit-law", disabled: busy || state.law === "auto", title: state.law === "auto" ? "choose a law first" : "", onclick: () => page.do("fit", { effects: [], parent: null }) }, "Fit the base law"),
+      h("button", { class: "main", "data-key": "diagnose", disabled: busy, onclick: () => page.do("diagnose", { parent: node?.id ?? null }) }, "Diagnose (automatic)"),
+      state.law === "auto" && !node ? h("span", { class: "faint" }, "For a manual fit choose a law.") : null);
     put(this.verdict, node?.diagnosis ? node.diagnosis.sentence : "");
     showLedger(page, this.ledger); showRanking(page, this.ranks);
     put(this.values, node ? h("div", { class: "two" }, parameters(node), node.correlations ? correlations(node.correlations) : h("div")) : h("p", { class: "faint" }, "None yet."));
     put(this.more, node?.diagnosis ? this.diagnosis_details(node.diagnosis) : null,
-      node?.power?.length ? h("details", { open: Boolean(node.diagnosis) }, h("summary", { "data-key": "power" }, "Power: what these runs would have shown"), power(node.power)) : null,
-      node?.diagnosis ? h("details", {}, h("summary", { "data-key": "words" }, "In words"), h("pre", {}, node.diagnosis.summary)) : null);
+      node?.power?.length ? h("details", { open: Boolean(node.diagnosis) }, h("summary", { "data-key": "power" }, "Detection limits of these runs (80 % power)"), power(node.power)) : null,
+      node?.diagnosis ? h("details", {}, h("summary", { "data-key": "words" }, "Summary"), h("pre", {}, node.diagnosis.summary)) : null);
     this.draw();
   }
 
@@ -56,22 +56,22 @@ export class LearnSection {
 
   async draw() {
     const { page } = this, node = page.model, ask = Symbol(); this.ask = ask;
-    if (!node?.records || !page.effect || !page.run || node.effects.includes(page.effect)) { put(this.sketch); this.chart = null; put(this.sketched, "Its name in the ranking draws it over the residual."); return; }
+    if (!node?.records || !page.effect || !page.run || node.effects.includes(page.effect)) { put(this.sketch); this.chart = null; put(this.sketched, "Select an effect in the ranking to draw it over the residual."); return; }
     try {
       const found = await get("signature", { run: page.run, model: node.id, effect: page.effect, from_s: page.span[0], to_s: page.span[1], pixels: 800 });
       if (this.ask !== ask) return;
-      this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("signature_n", "what it would add", "beside", { width: 1.8 })],
+      this.chart ??= new Chart(this.sketch, { unit: page.units.force, height: 190, curves: [curve("residual_n", "record minus model", "measured"), curve("signature_n", "predicted contribution", "beside", { width: 1.8 })],
         zoomed: (from, to) => page.look({ span: [from, to] }) });
       this.chart.show(found);
-      put(this.sketched, `${page.effect} on ${page.run}: nearest to the residual at ${number(found.times_usual, 2)} times its usual strength. Other runs: at the left.`);
+      put(this.sketched, `${page.effect} on ${page.run}: fits the residual best at ${number(found.times_usual, 2)} times its typical strength. Select another run on the left.`);
     } catch (error) { put(this.sketch); this.chart = null; put(this.sketched, `${page.effect}: ${error.message}`); }
   }
 
   diagnosis_details(d) {
     return [
-      d.residual_structure.length ? h("section", {}, h("h2", {}, "What remains"), h("ul", {}, d.residual_structure.map((r) => h("li", {}, `${r.axis}: ${r.where}`)))) : null,
-      d.next_experiment ? h("section", {}, h("h2", {}, "The next experiment"), h("p", {}, d.next_experiment), d.next_run ? h("p", {},
-        h("button", { "data-key": "next-run", onclick: () => this.page.download("next_run", "next_run.csv") }, "Download its motion (next_run.csv)")) : null) : null,
+      d.residual_structure.length ? h("section", {}, h("h2", {}, "Residual structure"), h("ul", {}, d.residual_structure.map((r) => h("li", {}, `${r.axis}: ${r.where}`)))) : null,
+      d.next_experiment ? h("section", {}, h("h2", {}, "Next experiment"), h("p", {}, d.next_experiment), d.next_run ? h("p", {},
+        h("button", { "data-key": "next-run", onclick: () => this.page.download("next_run", "next_run.csv") }, "Download the motion (next_run.csv)")) : null) : null,
     ];
   }
 }

@@ -1,4 +1,4 @@
-// The error falling: bars on a logarithmic scale, so that each step can be seen, however small the last ones are.
+// Error by step: bars on a logarithmic scale, so that each step can be seen, however small the last ones are.
 import { h, key, number, put, s } from "./dom.js";
 
 // What one model has that the one before it has not, and the other way round.
@@ -6,8 +6,8 @@ const newly = (now, before) => [...now.filter((e) => !before.includes(e)).map((e
 
 export function showLedger(page, place) {
   const node = page.model, steps = node?.diagnosis ? node.diagnosis.steps : page.state.ledger, unit = page.units.force;
-  const line = steps.map((step, i) => ({ ...step, words: i ? newly(step.effects, steps[i - 1].effects) : newly(step.effects, []) || "the law alone" }));
-  if (!line.length) { put(place, h("p", { class: "faint" }, "Each model gets its bars here: fit the law alone, or diagnose.")); return; }
+  const line = steps.map((step, i) => ({ ...step, words: i ? newly(step.effects, steps[i - 1].effects) : newly(step.effects, []) || "base law" }));
+  if (!line.length) { put(place, h("p", { class: "faint" }, "No model yet: fit the base law, or diagnose.")); return; }
   const noise = line.at(-1).noise_rms, values = line.flatMap((l) => [l.rms, l.held_out_rms]).filter((v) => v > 0);
   const low = Math.log(0.8 * Math.min(noise, ...values)), high = Math.log(1.05 * Math.max(noise, ...values));
   const x = (v) => 150 + 240 * (Math.log(v) - low) / (high - low);
@@ -23,5 +23,5 @@ export function showLedger(page, place) {
   });
   const foot = line.length * 40;
   picture.append(s("line", { class: "floor", x1: x(noise), x2: x(noise), y1: 0, y2: foot }), s("text", { x: x(noise), y: foot + 16, "text-anchor": "middle", class: "faint" }, `noise ${number(noise)} ${unit}`));
-  put(place, picture, h("p", { class: "faint" }, key("model", "in the fit"), key("out", "on runs left out"), key("noise", "noise"), " · logarithmic scale"));
+  put(place, picture, h("p", { class: "faint" }, key("model", "fit"), key("out", "held out"), key("noise", "noise"), " · logarithmic scale"));
 }

@@ -8,7 +8,7 @@ import { KeepSection } from "./keep.js";
 import { showNext } from "./next.js";
 import { showModels, showRuns } from "./side.js";
 
-const SECTIONS = { Data: DataSection, See: SeeSection, Learn: LearnSection, Keep: KeepSection };
+const SECTIONS = { Data: DataSection, Explore: SeeSection, Model: LearnSection, Export: KeepSection };
 const place = (id) => document.getElementById(id);
 
 class Page {

@@ -6,7 +6,7 @@ export class RunsMap {
   constructor(place, chosen) {
     this.chosen = chosen; this.cells = []; this.at = null;
     this.canvas = h("canvas", { class: "mine", tabindex: 0, "data-key": "runs-map",
-      "aria-label": "Mean of record minus model, a row a run, a column a speed; arrows move over the cells, Enter selects one" });
+      "aria-label": "Mean residual by run (rows) and speed (columns); arrow keys move over the cells, Enter selects one" });
     this.words = h("figcaption");
     place.append(h("figure", {}, this.canvas, this.words));
     const cell = (event) => [Math.floor((event.offsetY - 2) / this.row), Math.floor((event.offsetX - this.left) / this.col)];
@@ -81,7 +81,7 @@ export class RunsMap {
       ctx.textAlign = align; ctx.fillText(number(edges[Math.round(k)], 2), name + k * this.col, high - 20);
     }
     ctx.textAlign = "center"; ctx.fillText(`${this.units.velocity} (${this.units.speed})`, name + this.wide / 2, high - 5);
-    this.scale = `Full colour: ${number(most, 2)} ${this.units.force}; orange: the record lies above the model; blue: below; no colour: nothing moved so fast. A click selects a cell.`;
+    this.scale = `Full colour: ${number(most, 2)} ${this.units.force}; orange: record above the model; blue: below; no colour: no samples. Click a cell to select it.`;
     this.words.textContent = this.scale;
   }
 

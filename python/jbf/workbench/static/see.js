@@ -16,8 +16,8 @@ export class SeeSection {
     place.append(this.words, this.head, this.status,
       h("div", { class: "two" }, h("section", {}, h("h2", {}, "In time"), force, this.residual),
         h("section", {}, h("div", { class: "row tight" }, h("h2", {}, "Friction against speed"), this.which), plane)),
-      h("div", { class: "two" }, h("section", {}, h("h2", {}, "Where it fails, worst first"), this.fails),
-        h("section", {}, h("h2", {}, "Means over speed, all runs (Stribeck)"), speeds)),
+      h("div", { class: "two" }, h("section", {}, h("h2", {}, "Lack of fit, largest first"), this.fails),
+        h("section", {}, h("h2", {}, "Stribeck curve, means of all runs"), speeds)),
       h("section", {}, h("h2", {}, "Record minus model, by run and speed"), map));
     const { units } = page;
     const brushed = (from, to) => this.select({ run: page.run, from_s: from, to_s: to });
@@ -27,7 +27,7 @@ export class SeeSection {
       curve("friction_n", "measured", "measured"), curve("model_n", "model", "model", { width: 1.6 }),
       curve("compared_n", "beside", "beside", { dash: [6, 4], width: 1.4 })] });
     this.rest = new Chart(rest, { ...common, unit: units.force, height: 140, legend: false, curves: [
-      curve("compared_residual_n", "of the other", "beside", { width: 0.8 }), curve("residual_n", "record minus model", "measured")] });
+      curve("compared_residual_n", "other model", "beside", { width: 0.8 }), curve("residual_n", "record minus model", "measured")] });
     this.plane = new Plane(plane, { brushed: (box) => this.select(box && { box }), height: 360 });
     this.speeds = new Stribeck(speeds, { brushed: (box) => this.select(box && { box }) });
     this.map = new RunsMap(map, (run, box) => page.look({ run, span: [null, null], ...(box ? { selection: { run, box } } : {}) }));
@@ -41,26 +41,26 @@ export class SeeSection {
 
   looked(changes) {
     const { page } = this;
-    if (!page.run) { put(this.words, "Nothing is open."); return; }
+    if (!page.run) { put(this.words, "No run is open."); return; }
     this.heading(); this.failures(); this.draw(changes);
   }
 
   heading() {
     const { page } = this, node = page.model, unit = page.units.force;
     put(this.words, node
-      ? `${node.words}: RMS ${number(node.rms)} ${unit} where the noise is ${number(node.noise_rms)} ${unit}${node.held_out_rms ? `; on runs left out ${number(node.held_out_rms)} ${unit}` : ""}.`
-      : "The records alone: there is no model yet.");
+      ? `${node.words}: RMS ${number(node.rms)} ${unit} (noise ${number(node.noise_rms)} ${unit}${node.held_out_rms ? `, held out ${number(node.held_out_rms)} ${unit}` : ""}).`
+      : "Data only: no model yet.");
     this.residual.style.display = node ? "" : "none";
     const way = (mode, words) => h("label", {}, h("input", { type: "radio", name: "drag", checked: this.drag === mode, "data-key": `drag-${mode}`,
       onchange: () => { this.drag = mode; } }), ` ${words} `);
     const end = (which, words) => h("label", {}, `${words} `, h("input", { type: "number", class: "short", step: "any", value: this.ends[which], "data-key": `from-to-${which}`,
-      "aria-label": `${which ? "end" : "begin"} of a stretch, s`, onchange: (e) => { this.ends[which] = e.target.value; this.heading(); } }));
+      "aria-label": `${which ? "end" : "start"} of the interval, s`, onchange: (e) => { this.ends[which] = e.target.value; this.heading(); } }));
     const [from, to] = this.ends.map(Number), there = this.ends.every((v) => v !== "") && from < to;
     put(this.head, "Dragging", way("brush", "selects"), way("zoom", "zooms"),
       end(0, "Time from"), end(1, "to"), "s",
       h("button", { "data-key": "select-stretch", disabled: !there, onclick: () => this.select({ run: page.run, from_s: from, to_s: to }) }, "Select"),
       h("button", { "data-key": "zoom-stretch", disabled: !there, onclick: () => page.look({ span: [from, to] }) }, "Zoom"),
-      h("button", { "data-key": "all-time", disabled: page.span[0] === null, onclick: () => page.look({ span: [null, null] }) }, "All of the time"),
+      h("button", { "data-key": "all-time", disabled: page.span[0] === null, onclick: () => page.look({ span: [null, null] }) }, "Full time range"),
       h("button", { "data-key": "no-selection", disabled: !page.selection, onclick: () => this.select(null) }, "Clear selection"));
     const runs = (all, words) => h("label", {}, h("input", { type: "radio", name: "plane", checked: this.all === all, "data-key": all ? "all-runs" : "this-run",
       onchange: () => { this.all = all; this.looked({}); } }), ` ${words} `);
@@ -71,15 +71,15 @@ export class SeeSection {
 
   failures() {
     const { page } = this, node = page.model, unit = page.units.force;
-    if (!node) { put(this.fails, h("p", { class: "faint" }, "Nothing to compare with: fit a model first.")); return; }
+    if (!node) { put(this.fails, h("p", { class: "faint" }, "No model: fit one first.")); return; }
     const marked = page.selection?.mark;
     put(this.fails, node.failures.length ? h("table", {}, h("tbody", {}, node.failures.map((f, i) =>
       h("tr", { class: marked === i ? "now" : "" },
-        h("td", {}, h("button", { "data-key": `fail-${i}`, "aria-pressed": String(marked === i), title: "mark it in every plot",
+        h("td", {}, h("button", { "data-key": `fail-${i}`, "aria-pressed": String(marked === i), title: "mark in all plots",
           onclick: () => (marked === i ? this.select(null) : this.mark(i)) }, `along ${f.axis}`)),
-        h("td", {}, `${(100 * f.share).toFixed(0)} % of the mean square error: ${f.where}.`, marked === i ? h("div", { class: "faint" }, `Usually ${f.causes}. To see more: ${f.to_do}.`) : null)))))
-      : h("p", {}, `Nowhere: what is left (${number(node.rms)} ${unit}) has no pattern along speed, direction, regime, time, angle or run.`),
-      node.findings.length ? [h("h3", {}, "What the recording did"), h("ul", {}, node.findings.map((f) => h("li", {}, f.words)))] : null);
+        h("td", {}, `${(100 * f.share).toFixed(0)} % of the mean square error: ${f.where}.`, marked === i ? h("div", { class: "faint" }, `Usual cause: ${f.causes}. Next: ${f.to_do}.`) : null)))))
+      : h("p", {}, `No lack of fit: the residual (${number(node.rms)} ${unit}) has no pattern along speed, direction, regime, time, angle or run.`),
+      node.findings.length ? [h("h3", {}, "Data quality"), h("ul", {}, node.findings.map((f) => h("li", {}, f.words)))] : null);
   }
 
   // A failure, in a run that has it.
@@ -121,8 +121,8 @@ export class SeeSection {
 
   say(brushed) {
     const { page } = this, unit = page.units.force, mark = page.selection?.mark;
-    if (!brushed) { this.status.textContent = "Select by dragging in any plot: it is shown in all of them."; return; }
-    const there = brushed.rms === null ? "" : `; record minus model there: mean ${number(brushed.mean_n)} ${unit}, RMS ${number(brushed.rms)} ${unit}`;
+    if (!brushed) { this.status.textContent = "Drag in any plot to select samples in all plots."; return; }
+    const there = brushed.rms === null ? "" : `; residual: mean ${number(brushed.mean_n)} ${unit}, RMS ${number(brushed.rms)} ${unit}`;
     const runs = Object.entries(brushed.by_run).map(([name, one]) => `${name} ${one.samples}`);
     const named = runs.length ? ` (${runs.slice(0, 4).join(", ")}${runs.length > 4 ? ", …" : ""})` : "";
     this.status.textContent = `${mark === undefined ? "Selected" : `Marked: ${page.model.failures[mark].bin}`}: ${brushed.samples} samples${named}${there}.`;

@@ -15,7 +15,7 @@ function runNote(page, run) {
   const parts = [`${number(run.duration_s)} s, ${run.samples} samples`];
   const own = page.model?.runs.find((r) => r.name === run.name);
   if (own) parts.push(`RMS ${number(own.rms)} ${page.units.force}`);
-  if (run.excluded) parts.push("left out");
+  if (run.excluded) parts.push("excluded");
   if (run.trim) parts.push("trimmed");
   if (run.findings === null) parts.push("looking…");
   else if (run.findings.length) parts.push([...new Set(run.findings.map((f) => f.kind.replaceAll("_", " ")))].join(", "));
@@ -30,11 +30,11 @@ export function showModels(page, place) {
   const rows = [];
   const walk = (parent, depth) => {
     for (const node of nodes.filter((n) => n.parent === parent)) {
-      const outside = node.held_out_rms === null || node.held_out_rms === undefined ? "" : `; left out ${number(node.held_out_rms)}`;
+      const outside = node.held_out_rms === null || node.held_out_rms === undefined ? "" : `; held out ${number(node.held_out_rms)}`;
       const item = h("div", { class: `item${node.id === current ? " now" : ""}${node.id === compared ? " beside" : ""}` },
         h("button", { "data-key": `model-${node.id}`, "aria-pressed": String(node.id === current), onclick: () => page.do("show", { model: node.id }) },
           node.words, h("br"), h("small", {}, `${number(node.rms)} ${page.units.force}${outside}`)),
-        h("label", { title: "draw it beside the current model" },
+        h("label", { title: "draw together with the current model" },
           h("input", { type: "checkbox", checked: node.id === compared, disabled: node.id === current, "data-key": `beside-${node.id}`,
             "aria-label": `draw ${node.words} beside`,
             onchange: (event) => page.do("compare_with", { model: event.target.checked ? node.id : null }) }),
@@ -46,6 +46,6 @@ export function showModels(page, place) {
   };
   walk(null, 0);
   put(place, h("div", { class: "row" },
-    h("button", { "data-key": "undo", disabled: current === null, title: "back to where this model came from (key z); it stays in the list", onclick: () => page.do("undo") }, "Undo"),
-    h("button", { "data-key": "records", disabled: current === null, onclick: () => page.do("show", { model: null }) }, "Records alone")), rows);
+    h("button", { "data-key": "undo", disabled: current === null, title: "return to the parent model (key z)", onclick: () => page.do("undo") }, "Undo"),
+    h("button", { "data-key": "records", disabled: current === null, onclick: () => page.do("show", { model: null }) }, "Data only")), rows);
 }

@@ -4,7 +4,7 @@ import { Axes } from "./axes.js";
 
 export class Stribeck {
   constructor(place, { brushed, height = 250 }) {
-    this.canvas = h("canvas", { class: "mine", height, "aria-label": "Means of the friction at each speed, of record and model" });
+    this.canvas = h("canvas", { class: "mine", height, "aria-label": "Mean friction at each speed, record and model" });
     this.words = h("figcaption");
     this.height = height; this.node = null; this.speeds = null; this.drag = null;
     place.append(h("figure", {}, this.canvas, this.words));
@@ -22,7 +22,7 @@ export class Stribeck {
   show(node, units) {
     this.node = node; this.units = units;
     this.canvas.style.display = node ? "" : "none";
-    this.words.textContent = node ? "Inertia, weight and zero are taken out. Dots: measured, with their scatter; line: the model; dotted: the law alone at steady speed." : "No model yet.";
+    this.words.textContent = node ? "Without inertia, weight and offset. Dots: measured, with standard deviation; line: model; dotted: base law at steady speed." : "No model yet.";
     this.draw();
   }
 

@@ -28,6 +28,6 @@ export function correlations({ names, matrix }) {
 }
 
 export function power(rows) {
-  return h("table", {}, head(["effect", "found in 80 of 100 from", "that is, of the friction", "named alone from", "else it could be"]),
+  return h("table", {}, head(["effect", "detectable from", "of friction", "distinct from", "confounded with"]),
     h("tbody", {}, rows.map((p) => h("tr", {}, h("td", {}, p.effect), [p.found, p.share, p.alone, p.like].map((words) => h("td", { class: "n" }, words))))));
 }

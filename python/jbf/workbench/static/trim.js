@@ -18,7 +18,7 @@ export class TrimHandles {
   }
 
   handle(which) {
-    const words = which ? "end of what is used" : "begin of what is used";
+    const words = which ? "end of the used interval" : "start of the used interval";
     const handle = h("div", { class: `handle ${which ? "end" : "begin"}`, role: "slider", tabindex: 0, "aria-label": words, title: `${words}: drag, or arrow keys`, "data-key": `trim-${which}`,
       // The plot's own dragging begins with the mouse, too.
       onmousedown: (e) => e.stopPropagation(),

@@ -250,13 +250,13 @@ def page(effect: Effect) -> str:
         "",
         f"**Source.** {effect.source}.",
         "",
-        f"**Where this form stops being true.** {effect.limits}.",
+        f"**Limits of validity.** {effect.limits}.",
     ]
     if effect.needs:
         needs = [words for need, words in NEEDS.items() if need in effect.needs]
-        lines += ["", f"**Needs.** {'; '.join(needs)}."] if needs else []
+        lines += ["", f"**Requirements.** {'; '.join(needs)}."] if needs else []
     if effect.refused:
-        lines += ["", f"**Not with these laws.** {refused_words(effect)}."]
+        lines += ["", f"**Cannot be combined with.** {refused_words(effect)}."]
     lines += [
         "",
         "On your rig and runs:",

@@ -290,10 +290,10 @@ class Laws:
     tie_sigma: float = documented(
         2.0,
         "standard errors, between sections of the records, up to which a law is tied with the best",
-        "one in forty by chance",
+        "1 in 40 by chance",
     )
     same_ratio: float = documented(
-        1.005, "ratio of held-out errors up to which two laws are the same", "1 in 40 by chance"
+        1.005, "ratio of held-out errors up to which two laws are the same", "0.5 %"
     )
     sections: int = documented(
         40,

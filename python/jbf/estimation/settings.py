@@ -32,8 +32,8 @@ class NoiseSettings:
     )
     max_gain_factor: float = documented(
         4.0,
+        "multiple of the gain that a quadratic model predicts from which on no colour is searched",
         "bounds the error of the quadratic model; avoids an unnecessary search",
-        "bounds the error of the quadratic model; avoids a search in vain",
     )
     max_rms_ratio: float = documented(
         1.02,
@@ -86,8 +86,8 @@ class VarianceSettings:
     )
     chance: float = documented(
         0.01,
+        "significance level at which the scatter of windows or runs exceeds that of white noise",
         "1 in 100",
-        "one in a hundred",
     )
 
 

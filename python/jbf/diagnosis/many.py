@@ -63,8 +63,8 @@ def diagnose_many(
     >>> v = 0.1 * np.sin(3.0 * t)
     >>> noise = 0.2 * np.random.default_rng(0).standard_normal(len(t))
     >>> run = jbf.Run.from_arrays(t, v, 5.0 * np.sign(v) + 20.0 * v + noise)
-    >>> found = jbf.diagnose_many({"slide": (jbf.Rig(), [run])}, law="coulomb")
-    >>> found["slide"].verdict
+    >>> results = jbf.diagnose_many({"slide": (jbf.Rig(), [run])}, law="coulomb")
+    >>> results["slide"].verdict
     'adequate'
     """
     for option in options:
@@ -78,13 +78,13 @@ def diagnose_many(
             problem=f"campaigns is {described(campaigns)}",
             mend="give a dict of names to (rig, runs), or to a folder",
         )
-    found: dict[str, Diagnosis | JbfError] = {}
+    results: dict[str, Diagnosis | JbfError] = {}
 
     def keep(name: str, result: Diagnosis | JbfError) -> None:
-        found[name] = result
+        results[name] = result
         if progress is not None:
-            said = result.verdict if isinstance(result, Diagnosis) else str(result)
-            progress(f"{name}: {said}", len(found), len(campaigns))
+            outcome = result.verdict if isinstance(result, Diagnosis) else str(result)
+            progress(f"{name}: {outcome}", len(results), len(campaigns))
 
     if executor is None:
         for name, given in campaigns.items():
@@ -96,7 +96,7 @@ def diagnose_many(
                 keep(running[future], future.result())
             except Exception as error:  # a worker that died: record the error as the result
                 keep(running[future], _lost(error))
-    return {name: found[name] for name in campaigns}
+    return {name: results[name] for name in campaigns}
 
 
 def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError:

@@ -90,7 +90,7 @@ class HeldOut:
 
 def allowed(rig: Rig) -> list[str]:
     """Laws to compare: those whose requirements a rig satisfies."""
-    found = []
+    allowed_laws = []
     for name in laws():
         if name in ON_REQUEST:
             continue
@@ -98,8 +98,8 @@ def allowed(rig: Rig) -> list[str]:
             check_rig(rig, name)
         except InputError:
             continue
-        found.append(name)
-    return found
+        allowed_laws.append(name)
+    return allowed_laws
 
 
 def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str]]:
@@ -108,7 +108,7 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
     A law is excluded where its film is too fast for the records, or where steady states do not show
     its memory.
     """
-    found, refused = [], {}
+    resolved, refused = [], {}
     for name in allowed(campaign.rig):
         try:
             check_film(campaign, name, clock)
@@ -118,8 +118,8 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
         if campaign.steady and memories(name, ()):
             refused[f"law {name}"] = "steady states do not show its memory"
             continue
-        found.append(name)
-    return found, refused
+        resolved.append(name)
+    return resolved, refused
 
 
 def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
@@ -146,7 +146,7 @@ def which_law(
         not evaluated, with the reasons.
     """
     names, refused = followed(campaign, clock)
-    left: dict[str, HeldOut] = {}
+    held_out: dict[str, HeldOut] = {}
     for i, name in enumerate(names):
         if progress is not None:
             progress(f"trying the law {name}", i, len(names))
@@ -154,11 +154,11 @@ def which_law(
         if errors is None:
             refused[f"law {name}"] = "exceeds the computing time limit on these records"
         else:
-            left[name] = errors
-    if not left:
+            held_out[name] = errors
+    if not held_out:
         raise Unfinished(steps=campaign.work.most, file=campaign.named)
-    counts = [len(find_law(name).parameters) for name in left]
-    tried = _compared(list(left), counts, list(left.values()), policy, campaign)
+    counts = [len(find_law(name).parameters) for name in held_out]
+    tried = _compared(list(held_out), counts, list(held_out.values()), policy, campaign)
     first = min((t for t in tried if t.tied), key=lambda t: t.parameters)
     return (first, *(t for t in tried if t is not first)), refused
 
@@ -166,12 +166,12 @@ def which_law(
 def _compared(
     names: Sequence[str],
     parameters: Sequence[int],
-    left: Sequence[HeldOut],
+    held_out: Sequence[HeldOut],
     policy: Policy,
     campaign: Campaign,
 ) -> list[LawTried]:
     """Apply `compared` with the motion errors of a campaign."""
-    errors, white = [h.errors for h in left], [h.white for h in left]
+    errors, white = [h.errors for h in held_out], [h.white for h in held_out]
     share = policy.least_share(campaign.motion_share)
     return compared(names, parameters, errors, policy, white=white, least_share=share)
 
@@ -181,11 +181,11 @@ def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldO
 
     None where its share of the computing budget is not sufficient.
     """
-    own = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
+    limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
     try:
-        candidates = Candidates(settled_campaign(own, law, clock), law, clock, policy)
-        beside = tuple(effect for effect in TERMS if effect in candidates.names)
-        return held_out_errors(candidates, beside)
+        candidates = Candidates(settled_campaign(limited, law, clock), law, clock, policy)
+        terms = tuple(effect for effect in TERMS if effect in candidates.names)
+        return held_out_errors(candidates, terms)
     except Unfinished:
         return None
 
@@ -202,8 +202,8 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
         samples = _with_starts(samples, Samples.of(problem.campaign.prepared))
     every = [np.zeros(len(c)) for c in samples.counted]
     for part in held_out_parts(problem, solution):
-        for i, left, residual in zip(part.runs, part.left, part.residuals, strict=True):
-            every[i][left] = residual[left]
+        for i, held_out, residual in zip(part.runs, part.left, part.residuals, strict=True):
+            every[i][held_out] = residual[held_out]
     white = every if samples.motion is None else samples.innovations(every, solution.noise)
     errors, white = (
         [np.where(c, e, np.nan) for e, c in zip(rows, samples.counted, strict=True)]
@@ -215,9 +215,9 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
 def _with_starts(samples: Samples, every: Samples) -> Samples:
     """Add the samples of another selection that precede the first selected sample of each run."""
     counted = []
-    for own, other in zip(samples.counted, every.counted, strict=True):
-        before = np.arange(len(own)) < (int(np.argmax(own)) if own.any() else 0)
-        counted.append(own | (other & before))
+    for selected, other in zip(samples.counted, every.counted, strict=True):
+        start = int(np.argmax(selected)) if selected.any() else 0
+        counted.append(selected | (other & (np.arange(len(selected)) < start)))
     weight = [np.where(w > 0.0, w, c) for w, c in zip(samples.weight, counted, strict=True)]
     return replace(samples, counted=tuple(counted), weight=tuple(weight))
 
@@ -225,7 +225,7 @@ def _with_starts(samples: Samples, every: Samples) -> Samples:
 def compared(
     names: Sequence[str],
     parameters: Sequence[int],
-    left: Sequence[Sequence[Array]],
+    errors: Sequence[Sequence[Array]],
     policy: Policy,
     *,
     white: Sequence[Sequence[Array]] | None = None,
@@ -235,22 +235,22 @@ def compared(
 
     Parameters
     ----------
-    left
+    errors
         Held-out errors of each model, N, one array per run; NaN at samples that do not count.
     white
-        `left` whitened for the errors of the motion, where these are known. They decide, since an
+        `errors` whitened for the errors of the motion, where these are known. They decide, since an
         elastic law would smooth the errors of the acceleration next to a reversal.
     least_share
         Share of the mean square by which models must differ.
     """
     plain, decisive = (
         np.array([np.concatenate(rows) ** 2 for rows in kind])
-        for kind in (left, left if white is None else white)
+        for kind in (errors, errors if white is None else white)
     )
     shared = np.isfinite(plain).all(axis=0)
     if not shared.any():
-        own = [float(np.sqrt(np.nanmean(rows))) for rows in plain]
-        return [LawTried(n, k, e, True) for n, k, e in zip(names, parameters, own, strict=True)]
+        each = [float(np.sqrt(np.nanmean(rows))) for rows in plain]
+        return [LawTried(n, k, e, True) for n, k, e in zip(names, parameters, each, strict=True)]
     rms, decisive = np.sqrt(plain[:, shared].mean(axis=1)), decisive[:, shared]
     # Errors of neighbouring samples are correlated; sections are nearly independent.
     parts = np.array_split(decisive, min(policy.laws.sections, decisive.shape[1]), axis=1)
@@ -271,13 +271,13 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     One law may replace several effects. Effects that are not friction are kept. None where no such
     law exists.
     """
-    policy, whole = candidates.policy, candidates.campaign
+    policy, campaign = candidates.policy, candidates.campaign
     kept = tuple(effect for effect in effects if effect in TERMS)
     most = len(candidates.fitted(effects).problem.open)
-    left, names, counts = [held_out_errors(candidates, effects)], [""], [most]
-    for name in followed(whole, clock)[0]:
-        own = replace(whole, work=whole.work.part(policy.laws.budget_share))
-        other = Candidates(own, name, clock, policy)
+    held_out, names, counts = [held_out_errors(candidates, effects)], [""], [most]
+    for name in followed(campaign, clock)[0]:
+        limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
+        other = Candidates(limited, name, clock, policy)
         count = len(other.fitted(kept).problem.open)
         if name == candidates.law or count > most:
             continue
@@ -288,10 +288,10 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
         except Unfinished:
             continue
         if errors is not None:
-            left.append(errors)
+            held_out.append(errors)
             names.append(name)
             counts.append(count)
-    tried = _compared(names, counts, left, policy, whole)
+    tried = _compared(names, counts, held_out, policy, campaign)
     here = next(t for t in tried if t.law == "")
     others = [t for t in tried if t.law and t.tied]
     # Of equivalent laws prefer the one with the fewest parameters, whichever is ahead by chance.

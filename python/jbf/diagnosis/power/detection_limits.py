@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -23,7 +23,6 @@ from jbf.diagnosis.power.distinction import (
 )
 from jbf.diagnosis.power.strength import PresentRuns, Strength, strength_of
 from jbf.estimation.parallel_fits import fits_at_once, in_parallel
-from jbf.estimation.solution import Solution
 from jbf.models.catalogue import can_be_added
 
 Array = npt.NDArray[np.float64]
@@ -130,33 +129,37 @@ def power(
         list(models.values()),
         fits_at_once(candidates.campaign, candidates.law, candidates.names),
     )
-    detectable = dict(zip(models, limits, strict=True))
-    return tuple(
-        _power(candidates, runs, models, detectable, name) for name in models if name in wanted
-    )
+    effects, tie = dict(zip(models, limits, strict=True)), candidates.policy.selection.tie
+    return tuple(_power(runs, effects, name, tie) for name in effects if name in wanted)
 
 
 @dataclass(frozen=True)
 class _Detectable:
-    """Detectable strength of an effect, in multiples of its usual strength, and its change there.
+    """Detectable strength of an effect, and its change of the record there.
 
     Attributes
     ----------
+    model, parameters, price
+        The effect, its number of parameters, and the threshold for its gain.
     times
-        One for each of `LEVELS`; nan where no strength is sufficient.
+        Detectable strength for each of `LEVELS`, in multiples of the usual strength; nan where no
+        strength is sufficient.
     change
-        Change of the record at the first strength, and at `FURTHER` times that strength.
+        Change of the record at the first strength.
     share
         RMS change of the friction, as a share of the friction's RMS.
     """
 
+    model: Strength
+    parameters: int
+    price: float
     times: tuple[float, ...]
     change: Change
     share: float
 
     @classmethod
     def of(cls, candidates: Candidates, runs: PresentRuns, model: Strength) -> _Detectable:
-        parameters = _parameters(runs.base, model)
+        parameters = max(len(model.problem.open) - runs.base.free, 1)
         price = price_of(candidates, parameters)
         discounts = runs.discounts(runs.unexplained(runs.change(model, 1.0))[:, 0])
         least = [non_centrality(price, parameters, p, discounts) for p in LEVELS]
@@ -168,7 +171,15 @@ class _Detectable:
                 times = _required_multiples(runs, model, [wanted / share for wanted in least], near)
         at = _finite_or_one(times[0])
         size = runs.samples.rms(runs.change(model, at)) / max(runs.friction, 1e-300)
-        return cls(tuple(times), Change.of(runs, model, at), size)
+        return cls(model, parameters, price, tuple(times), Change.of(runs, model, at), size)
+
+    def change_at(self, runs: PresentRuns, factor: float) -> Change:
+        """Change at a multiple of the first strength, or of the usual one where none is enough."""
+        return Change.of(runs, self.model, factor * _finite_or_one(self.times[0]))
+
+    def parameter_value(self, times: float) -> float | None:
+        """Value of the parameter at a multiple of the usual strength; None where not finite."""
+        return float(self.model.values(times)[self.model.which]) if np.isfinite(times) else None
 
 
 def _finite_or_one(times: float) -> float:
@@ -182,14 +193,10 @@ def _required_multiples(
     multiples, times, last = [], near, least[0]
     for wanted in least:
         # The non-centrality is nearly proportional to the square of the strength.
-        times = _times(runs, model, wanted, times * float(np.sqrt(wanted / last)))
+        times = _sufficient_multiple(runs, model, wanted, times * float(np.sqrt(wanted / last)))
         multiples.append(times)
         times, last = (times, wanted) if np.isfinite(times) else (near, least[0])
     return multiples
-
-
-def _parameters(base: Solution, model: Strength) -> int:
-    return max(len(model.problem.open) - base.free, 1)
 
 
 @lru_cache(maxsize=64)
@@ -218,7 +225,7 @@ def non_centrality(
     return float(optimize.brentq(surplus, 1e-3, top)) ** 2
 
 
-def _times(runs: PresentRuns, model: Strength, wanted: float, times: float) -> float:
+def _sufficient_multiple(runs: PresentRuns, model: Strength, wanted: float, times: float) -> float:
     """Multiple of the usual strength that gives a required non-centrality; nan where none does.
 
     The search assumes a power law, at first of exponent two and then as observed between successive
@@ -254,91 +261,61 @@ def _times(runs: PresentRuns, model: Strength, wanted: float, times: float) -> f
     return times if reached > 0.5 * wanted else np.nan
 
 
-def _power(
-    candidates: Candidates,
-    runs: PresentRuns,
-    models: dict[str, Strength],
-    detectable: dict[str, _Detectable],
-    name: str,
-) -> Power:
+def _power(runs: PresentRuns, effects: Mapping[str, _Detectable], name: str, tie: float) -> Power:
     """Power for one effect, relative to the changes of all other effects."""
-    model, effect = models[name], detectable[name]
-
-    def strength(times: float) -> float | None:
-        return float(model.values(times)[model.which]) if np.isfinite(times) else None
-
+    effect = effects[name]
     factor, confounded = np.inf, []
     if np.isfinite(effect.times[0]):
-        parameters, tie = _parameters(runs.base, model), candidates.policy.selection.tie
-        price = price_of(candidates, parameters)
         rivals: dict[str, tuple[float, float]] = {}
-        for other, rival in detectable.items():
+        for other, rival in effects.items():
             if other != name:
-                dearer = price - price_of(candidates, _parameters(runs.base, models[other]))
-                least = max(tie + dearer, 0.25 * tie)
+                least = max(tie + (effect.price - rival.price), 0.25 * tie)
                 rivals[other] = (distinguishable_size(effect.change, rival.change, runs), least)
         chances = {other: distinction_probability(*rival) for other, rival in rivals.items()}
         confounded = sorted(
             (o for o, chance in chances.items() if chance < LEVELS[0]), key=chances.__getitem__
         )
-        threshold = (price, parameters, non_centrality(price, parameters, LEVELS[0]))
+        required = non_centrality(effect.price, effect.parameters, LEVELS[0])
+        threshold = (effect.price, effect.parameters, required)
         factor = distinction_factor(*threshold, rivals, LEVELS[0])
         for _ in range(MOST_ITERATIONS):
             if not 1.0 + AGREES < factor < np.inf:
                 break
             before = factor
-            least_gains = {rival: rivals[rival][1] for rival in confounded}
-            rivals |= _rivals_at(runs, models, detectable, name, factor, least_gains)
+            closest = {other: effects[other] for other in confounded}
+            sizes = _sizes_at(runs, effect, closest, factor)
+            rivals |= {other: (size, rivals[other][1]) for other, size in sizes.items()}
             factor = distinction_factor(*threshold, rivals, LEVELS[0])
             if abs(np.log(factor / before)) < AGREES:
                 break
     return Power(
         effect=name,
-        parameter=model.page.name,
-        unit=model.page.unit,
-        detectable_80=strength(effect.times[0]),
-        detectable_95=strength(effect.times[1]),
-        always=_weakest(model, effect.times[0]),
+        parameter=effect.model.page.name,
+        unit=effect.model.page.unit,
+        detectable_80=effect.parameter_value(effect.times[0]),
+        detectable_95=effect.parameter_value(effect.times[1]),
+        always=_weakest(effect.model, effect.times[0]),
         share_80=effect.share if np.isfinite(effect.times[0]) else None,
-        distinguishable_80=strength(effect.times[0] * factor) if np.isfinite(factor) else None,
+        distinguishable_80=effect.parameter_value(effect.times[0] * factor),
         confounded_with=tuple(confounded),
         hidden=not effect.times[0] <= 1.0,
     )
 
 
-def _rivals_at(
-    runs: PresentRuns,
-    models: dict[str, Strength],
-    detectable: dict[str, _Detectable],
-    name: str,
-    factor: float,
-    rivals: dict[str, float],
-) -> dict[str, tuple[float, float]]:
-    """Compare rivals again at a multiple of the detectable strength of an effect.
+def _sizes_at(
+    runs: PresentRuns, effect: _Detectable, rivals: Mapping[str, _Detectable], factor: float
+) -> dict[str, float]:
+    """Unexplained parts, per unit of strength, at a multiple of the detectable strength.
 
-    Only pairs are considered in which one effect moves jumps, so that changes are not proportional
-    to the strength.
-
-    Parameters
-    ----------
-    rivals
-        Required difference of the gains, by rival.
-
-    Returns
-    -------
-    dict
-        For each rival, the unexplained part per unit of strength and the required difference of the
-        gains.
+    Only rivals are evaluated for which one of the two effects moves jumps, so that the changes are
+    not proportional to the strength.
     """
-    effect, compared = detectable[name], {}
-    change = Change.of(runs, models[name], factor * effect.times[0])
-    for other, least in rivals.items():
-        rival = detectable[other]
-        if effect.change.shares is None and rival.change.shares is None:
-            continue
-        rival_change = Change.of(runs, models[other], factor * _finite_or_one(rival.times[0]))
-        compared[other] = (distinguishable_size(change, rival_change, runs) / factor, least)
-    return compared
+    change = effect.change_at(runs, factor)
+    return {
+        name: distinguishable_size(change, rival.change_at(runs, factor), runs) / factor
+        for name, rival in rivals.items()
+        if effect.change.shares is not None or rival.change.shares is not None
+    }
 
 
 def _weakest(model: Strength, times: float) -> bool:

@@ -25,13 +25,14 @@ ifeq ($(and $(wildcard python/jbf/_core*.so),$(wildcard $(VENV)/bin/jbf)),)
 $(shell rm -f $(BUILT))
 endif
 
-.PHONY: help venv quick demo docs figures test test-extended lint format bench counts bits bits-table fuzz miri sanitize supply faults mutation firmware \
+.PHONY: help venv quick demo docs figures generated test test-extended lint format bench counts bits bits-table fuzz miri sanitize supply faults mutation firmware \
 	sbom coverage licences publish-check wheel wheel-test reproducible lowest free-threaded clean
 
 help:
 	@echo "make demo    the whole story on shipped data, in under a minute"
 	@echo "make docs    the site, in target/site/html; every snippet of every page is run"
 	@echo "make figures  every picture and generated table of the docs anew, from this commit"
+	@echo "make generated  everything generated anew: figures, reference pages, tables, the table of bits"
 	@echo "make test    Rust and Python tests: before every pull request"
 	@echo "make test-extended  what takes minutes: statistical studies, long simulations, all seeds"
 	@echo "make lint    formatting, clippy, ruff, codespell, gitlint, mypy, rustdoc"
@@ -84,6 +85,12 @@ docs: $(TOOLS)
 # ONLY="docs/laws.py ..." makes those alone; the page then tells which stand as they were.
 figures: $(TOOLS)
 	$(VENV)/bin/python docs/site/figures.py $(ONLY)
+
+# Every file that a program writes into the repository. Afterwards `git diff` shows what a change alters.
+generated: $(TOOLS)
+	$(MAKE) bits-table licences
+	$(VENV)/bin/python benches/promises.py
+	$(MAKE) figures
 
 # The extension (jbf-predict, jbf-py) is tested from Python; `make lint` compiles the benches.
 NO_RUST_TESTS := $(addprefix --exclude ,jbf-predict jbf-py jbf-py-module jbf-benches)

@@ -31,6 +31,7 @@ SCRIPTS = {
     "docs/reduction.py": ("images/reduction.png",),
     "docs/workbench_pictures.py": ("images/workbench_*.png",),
     "docs/site/commands.py": ("reference/commands.md",),
+    "docs/policy.py": ("reference/policy.md",),
 }
 """Files written by each script, relative to docs."""
 NOT_ANEW = {

@@ -1,4 +1,4 @@
-"""What a logger's treatment of the force channel makes of a diagnosis.
+"""Influence of a logger's treatment of the force channel on a diagnosis.
 
     .venv/bin/python benches/logger_artefacts.py
 

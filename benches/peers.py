@@ -1,4 +1,4 @@
-"""jbf beside the best peers, in one run: `python benches/peers.py FOLDER`.
+"""Compare jbf with the best peers in one run: `python benches/peers.py FOLDER`.
 
 FOLDER holds the peers: C kernels (`c/kern.h`, `c/peers.c`, `c/Makefile`) for T1, numbalsoda
 (`solvers.py`, `common.py`) for T2 and T3, `t4.py` for T4. They are not distributed with jbf.

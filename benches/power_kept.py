@@ -1,7 +1,7 @@
-"""Whether effects are found as often as their power says: `python benches/power_kept.py`.
+"""Whether effects are detected as often as their power predicts: `python benches/power_kept.py`.
 
 The diagnosis of simulated campaigns without hidden effects reports two strengths per effect. At
-`detectable_80`, 80 of 100 similar campaigns would show it; at `distinguishable_80`, it would be
+`detectable_80`, 80 % of similar campaigns would show it; at `distinguishable_80`, it would be
 named alone. The fitted model then simulates the same motions with the effect at that strength and
 with similar noise, and the campaign is diagnosed. `--out F` stores one JSON line per campaign, in
 the format of `benches/promises.py`; a second call with the same file continues.

@@ -1,4 +1,4 @@
-"""How long a run's file takes to read, beside numpy's reader of nothing but numbers:
+"""Time to read the file of a run, compared with numpy's reader of plain numbers:
 `python benches/reading.py`.
 
 Pairs of readings in turn, in processor time; the result is the median of their ratios. Most of the

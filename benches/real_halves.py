@@ -11,7 +11,7 @@ and position_m or angle_rad. Every other run, stroke pair or cycle is fitted, or
 By hand: inertia, offset and, with an angle, gravity, with each law of `HAND_LAWS` and each set of
 `HAND_EFFECTS`, fitted to the same half; the one that predicts the other half best is reported,
 a choice that nobody has who knows the first half alone. Without the recordings, which are not
-distributed, it says so and does nothing.
+distributed, it reports this and does nothing.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def strokes(path: Path) -> Halves:
 
 
 def all_strokes(folder: Path) -> Halves:
-    """The same of several pressures at once."""
+    """Samples of several pressures at once."""
     fitted, left = [], []
     for path in sorted(folder.glob("NAP310_*bar.csv")):
         for some, into in zip(strokes(path), (fitted, left), strict=True):
@@ -140,7 +140,7 @@ def halved(path: Path) -> Halves:
 
 def runs_of(path: Path) -> Halves:
     """Every other run of a file with a column `run`, and the others; those with power if a column
-    `powered` says so."""
+    `powered` marks it."""
     c = columns(path)
     on = c.get("powered", np.ones(len(c["time_s"]))) == 1.0
     parts = [np.flatnonzero((c["run"] == k) & on) for k in np.unique(c["run"])]

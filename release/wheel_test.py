@@ -1,4 +1,4 @@
-"""A wheel as a stranger gets it: installed from a package alone, asked for a diagnosis, tested.
+"""Test a wheel as a user gets it: install it from the package alone, run a diagnosis and the tests.
 
 `python release/wheel_test.py dist/*.whl`. Uses a new environment in a separate folder, and compiles
 nothing (`--only-binary`). The tests are copied there without the package, so that they can import

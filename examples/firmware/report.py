@@ -1,4 +1,4 @@
-"""What the loop costs on a Cortex-M4F: builds the programs, runs them in QEMU, prints tables.
+"""Cost of the loop on a Cortex-M4F: builds the programs, runs them in QEMU, prints tables.
 
 `make firmware`, or `python examples/firmware/report.py`. Fails where a step costs more than its
 budget, where a bit differs from a laptop's, where the loop could panic, or where it is too large.
@@ -50,7 +50,7 @@ def stop(reason: str) -> NoReturn:
 
 
 def quiet(*command: str) -> str | None:
-    """What a command prints, or none where it fails or is missing."""
+    """Output of a command; None if it fails or is missing."""
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=HERE)
     except (OSError, subprocess.CalledProcessError):
@@ -132,7 +132,7 @@ def costs(report: str) -> list[str]:
         elif word == "precision":
             share = float(rest[0])
             print(
-                f"\nFull model, f32 beside f64, 2 rad/s, 2 ms: {share:.1e} of the loop's peak "
+                f"\nFull model, f32 against f64, 2 rad/s, 2 ms: {share:.1e} of the loop's peak "
                 f"(at most {PRECISION:g})\n"
             )
             if not share <= PRECISION:

@@ -1,4 +1,4 @@
-//! What an accurate trajectory costs: eight two-way motions, w = 0.0055 to 2 rad/s, two periods
+//! Cost of an accurate trajectory: eight two-way motions, w = 0.0055 to 2 rad/s, two periods
 //! each with 2000 samples in the second, for both models. The error is the largest over all
 //! samples against the same run at a tolerance of 1e-12; times are of one thread.
 //!

@@ -1,4 +1,4 @@
-//! What explicit Euler, the thesis's stepper, costs in accuracy at each loop period: friction
+//! Accuracy of explicit Euler, the thesis's stepper, at each loop period: friction
 //! along a reversal of U = 0.127 sin(2 t), against a trajectory right to 1e-9.
 //!
 //! `cargo run --release -p jbf-core --example euler_loop`

@@ -1,5 +1,5 @@
 //! The full model, inertia included, in a 2 ms loop: an explicit step would have to be shorter
-//! than its fastest time constant, ten nanoseconds at a crawl. Prints friction beside a trajectory right
+//! than its fastest time constant, ten nanoseconds at a crawl. Prints friction next to a trajectory right
 //! to 1e-8, and what a step costs.
 //!
 //! `cargo run --release -p jbf-core --example implicit_full_2ms`

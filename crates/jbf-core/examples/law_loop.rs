@@ -1,4 +1,4 @@
-//! Prints the loop of any law in newtons, friction against place over one stroke and back, beside
+//! Prints the loop of any law in newtons, friction against place over one stroke and back, with
 //! its steady curve: what bends, what falls, what lags.
 //!
 //! `cargo run -p jbf-core --example law_loop -- lugre`

@@ -1,4 +1,4 @@
-//! What the loop's own stepper, Runge-Kutta, leaves of the error that Euler makes: friction
+//! Error of the loop's own stepper, Runge-Kutta, relative to that of Euler: friction
 //! along a reversal of U = 0.127 sin(2 t), against a trajectory right to 1e-9.
 //!
 //! `cargo run --release -p jbf-core --example rk4_loop`

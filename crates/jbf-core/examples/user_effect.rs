@@ -1,4 +1,4 @@
-//! An effect that is in no catalogue, beside those that are: a wiper that drags harder in one
+//! An effect that is not in the catalogue, together with catalogue effects: a wiper that drags harder in one
 //! half of each turn. The crate is not touched.
 //!
 //! ```text

@@ -30,7 +30,7 @@ impl<T: Real> Law<T> for FallingPower<T> {
     fn set_load(&self, _state: &mut (), _load_n: T) {}
 
     fn friction(&self, _state: &(), velocity_m_s: T) -> Friction<T> {
-        // Bounded where the speed is none: a step never gives what is not finite.
+        // Bounded at zero speed: a step never returns a value that is not finite.
         let speed = velocity_m_s.abs().max(T::of(1e-6)) / self.unit_speed_m_s;
         Friction {
             jump: self.at_unit_speed_n * (-self.power * speed.ln()).exp(),

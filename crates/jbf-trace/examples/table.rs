@@ -1,4 +1,4 @@
-//! Prints every fingerprint and says whether it is the table's; ends with code 1 where one is not.
+//! Prints every fingerprint and whether it agrees with the table; ends with code 1 if one does not.
 //! `make bits` runs it in every build that a user may make; `--write FILE` writes the table anew.
 
 use jbf_trace::check;

@@ -15,7 +15,7 @@ const COUNTER: usize = 0x4000_1004;
 const AMPLIFIER: usize = 0x4002_8000;
 
 fn read(address: usize) -> u32 {
-    // A register of this board; reading it has no effect beside its value.
+    // A register of this board; reading it has no effect other than its value.
     unsafe { ptr::read_volatile(address as *const u32) }
 }
 
@@ -69,7 +69,7 @@ impl Instructions {
     }
 }
 
-/// Instructions of so many ticks: 64 ns each.
+/// Instructions of a number of ticks: 64 ns each.
 pub fn instructions(ticks: u32) -> u32 {
     ticks * 40 / 64
 }

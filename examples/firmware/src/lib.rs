@@ -1,4 +1,4 @@
-//! What the programs share: the board, and what happens on a panic.
+//! Parts that the programs share: the board and the panic handler.
 #![no_std]
 
 pub mod board;

@@ -1,4 +1,4 @@
-//! What a step costs here: instructions and stack, over many steps.
+//! Cost of a step: instructions and stack, over many steps.
 
 use crate::board::{instructions, Instructions};
 use core::hint::black_box;

@@ -101,7 +101,7 @@ class Policy:
         return min(motion_share, self.motion.max_structure_share)
 
     def least_effect_share(self, motion_share: float) -> float:
-        """Share of the mean square that an effect must explain that is no filter."""
+        """Share of the mean square that an effect other than a filter must explain."""
         return min(motion_share, self.motion.max_effect_share)
 
     def with_values(self, values: Mapping[str, Any]) -> Policy:

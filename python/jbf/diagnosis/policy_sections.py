@@ -182,7 +182,7 @@ class Delays:
 
 @dataclass(frozen=True)
 class Quantisation:
-    """Bias of the readings of a converter with coarse steps."""
+    """Bias of the readings of a converter with coarse quantisation."""
 
     min_bias_change: float = documented(
         0.01,

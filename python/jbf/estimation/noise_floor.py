@@ -26,10 +26,10 @@ def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     runs are of this kind: the floor is then unknown.
 
     The white part is estimated from third differences of the record. It is at least the
-    quantisation error of a converter (Widrow 1956), because with coarse steps most readings equal
-    those before them. A coloured part does not appear in differences. It appears where the same
-    motion repeats a period later, and where the shaft rests. The larger estimate is used where it
-    is clearly larger.
+    quantisation error of a converter (Widrow 1956), because with coarse quantisation most readings
+    equal those before them. A coloured part does not appear in differences. It appears where the
+    same motion repeats a period later, and where the shaft rests. The larger estimate is used where
+    it is clearly larger.
     """
     noisy = [i for i, p in enumerate(prepared) if p.has_noise]
     if not noisy:

@@ -30,7 +30,7 @@ def power(
 ) -> Axes:
     """Plot the probability that such runs show an effect, over its share of the friction.
 
-    Each curve passes through the strengths that are detected in 80 and in 95 of 100 campaigns. The
+    Each curve passes through the strengths that are detected in 80 % and 95 % of campaigns. The
     log-likelihood gain of an effect grows as the square of its strength. The probability is the
     normal distribution function of a deviate that is linear in the strength.
 
@@ -84,7 +84,7 @@ def _has_curve(p: Power) -> bool:
 def deviate(p: Power, share: np.ndarray) -> np.ndarray:
     """Return the normal deviate of the detection probability at shares of the friction.
 
-    It is linear in the share, through the points of 80 and 95 of 100 campaigns.
+    It is linear in the share, through the points of 80 % and 95 %.
     """
     from scipy.special import ndtri
 

@@ -171,7 +171,7 @@ def residual_in_time(
 def residuals_in_a_row(fit: Fit, *, ax: Axes | None = None) -> Axes:
     """Plot the residual of a fit, one run after another."""
     ax = one_axes(ax)
-    # Samples next to a reversal have no weight and may be far off.
+    # Samples next to a reversal have no weight and may be outliers.
     reach = 5.0 * fit.rms
     start = 0
     for i, residual in enumerate(fit.residuals):

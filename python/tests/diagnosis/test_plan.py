@@ -49,7 +49,7 @@ def candidate_runs() -> list[tuple[str, Run]]:
 def worth(information: Array, laws: int, prices: Array) -> float:
     """Sum over effects of the logarithm of their information relative to their threshold.
 
-    Information is what remains after the law and after the rival with the largest correlation.
+    Information is the residual after the law and after the rival with the largest correlation.
     """
     size = np.sqrt(np.maximum(np.diag(information), 1e-300))
     scaled = information / np.outer(size, size)

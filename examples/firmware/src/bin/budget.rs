@@ -1,4 +1,4 @@
-//! What every observer, model and loop costs on this target; `make firmware` makes a table of it.
+//! Cost of every observer, model and loop on this target; `make firmware` makes a table of it.
 
 #![no_std]
 #![no_main]
@@ -222,7 +222,7 @@ impl LoopVisitor<f32> for Looped {
     }
 }
 
-/// The full model in single precision beside double, as a share of the loop's peak.
+/// The full model in single precision against double, as a share of the loop's peak.
 fn precision() -> Result<(), ParameterError> {
     let bearing = Bearing::THESIS;
     let single = JournalFull::<f32>::new(&bearing, 104.0, &table_4_2(), Clock::Journal)?;

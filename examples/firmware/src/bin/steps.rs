@@ -1,5 +1,5 @@
 //! Every law, stepper, effect and loop, single and double precision, and nothing else: a program whose
-//! symbols show that no step can panic. What it computes, `bits` compares.
+//! symbols show that no step can panic. `bits` compares its results.
 
 #![no_std]
 #![no_main]

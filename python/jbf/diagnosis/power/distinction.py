@@ -33,7 +33,7 @@ It enters no verdict.
 MOST = 9.0
 """Limit of the squared change of one sample, in units of the noise variance.
 
-A single larger change is no evidence of a law. It is an outlier, or the uncertain instant of a
+A single larger change is not evidence of a law. It is an outlier, or the uncertain instant of a
 reversal. It enters no verdict.
 """
 FURTHER = 2.0

@@ -9,7 +9,7 @@ effects.
 | --- | --- |
 | `random_effects` | offset, drift and gain by run, temperature of the oil by run |
 | `delays` | delay of the force by run, drift of its clock |
-| `quantiser` | mean reading of a converter with coarse steps |
+| `quantiser` | mean reading of a converter with coarse quantisation |
 | `noise_variance` | variance by force and by run, heavy tails |
 | `motion` | errors of the estimated motion |
 """

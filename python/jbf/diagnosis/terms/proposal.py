@@ -46,7 +46,7 @@ class Proposal:
 
     @property
     def evidence(self) -> float:
-        """Gain less price, comparable with the evidence for an effect."""
+        """Gain minus threshold, comparable with the evidence for an effect."""
         return self.gain - self.price
 
 

@@ -1,7 +1,7 @@
 """A recorded speed that was derived from the recorded path: a difference over some samples.
 
-Such a speed is redundant, has coarse steps, and is delayed if it is a backward difference. It is
-identified where it equals the difference within 5 % of its step in 90 % of the samples in motion.
+Such a speed is redundant, is coarsely quantised, and is delayed if it is a backward difference. It
+is identified where it equals the difference within 5 % of its step in 90 % of the moving samples.
 """
 
 from __future__ import annotations

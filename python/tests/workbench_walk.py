@@ -84,7 +84,7 @@ class Said:
 
 
 @contextmanager
-def looked_at(address: str) -> Iterator[tuple[Page, Said]]:
+def examine_runs(address: str) -> Iterator[tuple[Page, Said]]:
     """The page at an address, 1,280 pixels wide."""
     from playwright.sync_api import sync_playwright
 

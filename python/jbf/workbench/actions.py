@@ -13,7 +13,7 @@ from urllib.parse import quote
 from starlette.responses import Response
 
 from jbf.errors import InputError
-from jbf.workbench import importer, kept, views
+from jbf.workbench import importer, saved_files, views
 from jbf.workbench.session import Session
 
 Parameters = dict[str, Any]
@@ -121,20 +121,20 @@ def _holds(folder: Path, shipped: Path) -> bool:
 
 def look(session: Session, parameters: Parameters) -> Any:
     """Return the guessed assignment of a file's columns."""
-    return importer.looked(session.folder, str(parameters["file"]))
+    return importer.guess_map(session.folder, str(parameters["file"]))
 
 
 def try_map(session: Session, parameters: Parameters) -> Any:
     """Return the runs that a map yields from files."""
     form = parameters.get("form")
     told = None if form is None else dict(form)
-    return importer.tried(session.folder, _files(parameters), str(parameters["map"]), told)
+    return importer.try_map(session.folder, _files(parameters), str(parameters["map"]), told)
 
 
 def import_files(session: Session, parameters: Parameters) -> Any:
     """Import files as runs and open them."""
     into = str(parameters["into"])
-    found = importer.imported(session.folder, _files(parameters), str(parameters["map"]), into)
+    found = importer.import_runs(session.folder, _files(parameters), str(parameters["map"]), into)
     session.open(found["rig"], found["files"])
     return found
 
@@ -210,12 +210,12 @@ def undo(session: Session, parameters: Parameters) -> Any:
 
 def keep(session: Session, parameters: Parameters) -> Any:
     """Write a file into the folder."""
-    return kept.keep(session, str(parameters["what"]))
+    return saved_files.save_as_file(session, str(parameters["what"]))
 
 
 def text(session: Session, parameters: Parameters) -> Any:
     """Return the content of such a file as a download."""
-    name, content = kept.text_of(session, str(parameters["what"]))
+    name, content = saved_files.text_of(session, str(parameters["what"]))
     said = f"attachment; filename*=UTF-8''{quote(name)}"
     # Never displayed as a page of this server: a report is opened from disk.
     return Response(content, headers={"content-disposition": said}, media_type="text/plain")

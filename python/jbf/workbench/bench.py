@@ -106,7 +106,7 @@ class Bench:
         self.run(name)
         (self.excluded.add if out else self.excluded.discard)(name)
 
-    def taken(self) -> tuple[Run, ...]:
+    def used_runs(self) -> tuple[Run, ...]:
         """Return the runs that fits use, trimmed.
 
         Raises
@@ -138,7 +138,7 @@ class Bench:
             trims=dict(self.trims),
         )
 
-    def looked_at(self, changed: Any) -> None:
+    def examine_runs(self, changed: Any) -> None:
         """Examine the recordings in a thread; `changed` is called after each run."""
 
         def look() -> None:

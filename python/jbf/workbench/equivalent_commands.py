@@ -44,7 +44,7 @@ def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
         into = f"--map {shlex.quote(steps.map)} --folder {shlex.quote(steps.out)}"
         lines.append(f"jbf import {files} {into} --force")
     if steps.trims:
-        lines.append("# trimmed/ is saved on page 4 (Export): Trimmed runs")
+        lines.append("# trimmed/ is saved in section 4 (Export): Trimmed runs")
     files = shlex.join([steps.rig, *([TRIMMED] if steps.trims else steps.runs)])
     if node is None:
         lines.append(f"jbf diagnose {files} --out model.toml --report report.html")

@@ -36,7 +36,7 @@ SI_OF = {
 }
 
 
-def looked(folder: Folder, name: str) -> dict[str, Any]:
+def guess_map(folder: Folder, name: str) -> dict[str, Any]:
     """Guess the map of a file.
 
     Returns its text, open questions, and a name for the new campaign.
@@ -71,7 +71,7 @@ def _first_joint(path: Path) -> tuple[Guess, list[str]]:
         return look(path, first), [said]
 
 
-def tried(
+def try_map(
     folder: Folder, names: Sequence[str], text: str, form: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
     """Try a map on files: smallest, median and largest value of each run's columns in SI units.
@@ -94,7 +94,7 @@ def tried(
     return answer
 
 
-def imported(folder: Folder, names: Sequence[str], text: str, into: str) -> dict[str, Any]:
+def import_runs(folder: Folder, names: Sequence[str], text: str, into: str) -> dict[str, Any]:
     """Import into a new folder of the given name; returns its rig and its runs."""
     out = folder.path(into)
     if out.exists():

@@ -99,7 +99,7 @@ class Session:
             self.bench, self.models = bench, models
             self._loaded = {}
             self.law = law or first_law(bench.rig)
-        bench.looked_at(self.changed)
+        bench.examine_runs(self.changed)
 
     def choose_law(self, law: str) -> None:
         """Choose the base law of models without a parent."""
@@ -128,7 +128,7 @@ class Session:
                     problem="a diagnosis selects the law for auto; a fit requires one", mend=mend
                 )
             place = self._new_place()
-            order = Order(kind, bench.rig, bench.taken(), place, law, effects=tuple(effects))
+            order = Order(kind, bench.rig, bench.used_runs(), place, law, effects=tuple(effects))
             words = _words(kind, law, effects)
 
             made: list[int] = []
@@ -166,7 +166,7 @@ class Session:
         place = self._new_place()
         file = place.with_suffix(".toml")
         file.write_text(node["model"], encoding="utf-8")
-        order = Order("compare", bench.rig, bench.taken(), place, model=file)
+        order = Order("compare", bench.rig, bench.used_runs(), place, model=file)
 
         def ended(ending: Ending, answer: Any) -> None:
             if ending == "done":

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from jbf import Run
 from jbf.records.motion.estimated_motion import estimate_motion
-from jbf.records.motion.jitter import shaken_path, uneven_stamps
+from jbf.records.motion.jitter import jittered_path, uneven_stamps
 from known_motions import integrated, path_of, quantised, speed_of, white
 
 STEP_S = 0.01
@@ -49,7 +49,7 @@ def shaken(size_s: float, count: float = 1e-12, samples: int = 4000, ripple: boo
     wave = np.sin(2.0 * np.pi / 6.0 * np.arange(samples))
     off_s = size_s * (wave if ripple else white(samples, 6))
     path = path_of(0.2 * (time_s + off_s)) / 0.2
-    return shaken_path("a", time_s, quantised(path, count), speed_of(0.2 * time_s))
+    return jittered_path("a", time_s, quantised(path, count), speed_of(0.2 * time_s))
 
 
 def test_position_jitter_is_recovered_from_noise_that_grows_with_the_speed() -> None:
@@ -69,9 +69,9 @@ def test_position_noise_that_does_not_grow_with_speed_is_not_reported_as_jitter(
     time_s: Any = STEP_S * np.arange(4000)
     path = path_of(0.2 * time_s) / 0.2 + white(4000, 7, 1e-4)
     speed = speed_of(0.2 * time_s)
-    assert shaken_path("a", time_s, path, speed) is None
+    assert jittered_path("a", time_s, path, speed) is None
     uneven = time_s + 2e-3 * np.random.default_rng(8).uniform(-1.0, 1.0, 4000)
-    assert shaken_path("a", uneven, path, speed) is None
+    assert jittered_path("a", uneven, path, speed) is None
 
 
 @pytest.mark.parametrize("slow_noise", [0.0, 5e-5])
@@ -83,7 +83,7 @@ def test_position_noise_at_low_speed_is_subtracted_from_the_jitter(slow_noise: f
     delay_s, unit = 2e-3, 32.0 / 0.6745 / np.sqrt(252.0)
     speed: Any = np.repeat([0.1, 0.45, 1.0], 300)
     path = integrated(speed, STEP_S) + (delay_s * speed + slow_noise) * ALTERNATING[:900]
-    finding: Any = shaken_path("a", STEP_S * np.arange(900), path, speed)
+    finding: Any = jittered_path("a", STEP_S * np.arange(900), path, speed)
     floor = np.min(np.abs(np.diff(path))) / np.sqrt(12.0)
     slow = max(unit * (0.1 * delay_s + slow_noise), floor)
     fast = unit * (delay_s + slow_noise)

@@ -8,7 +8,7 @@ from jbf import Run
 from jbf.records.motion.compared import compared
 from jbf.records.motion.derived_speed import derived_speed
 from jbf.records.motion.estimated_motion import estimate_motion
-from jbf.records.motion.lateness import filtered_speed
+from jbf.records.motion.speed_delay import filtered_speed
 from jbf.records.motion.speed_zero import speed_zero
 from known_motions import STEP_S, TIME_S, Array, integrated, path_of, quantised, speed_of, white
 

@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("starlette", reason="the workbench's server is an extra")
 
 from workbench_parts import slide_log
-from workbench_walk import looked_at, served, why_not
+from workbench_walk import examine_runs, served, why_not
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -64,7 +64,7 @@ def assert_page_fits_the_window(page: Page) -> None:
 
 @pytest.mark.extended
 def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path: Path) -> None:
-    with served(tmp_path) as address, looked_at(address) as (page, messages):
+    with served(tmp_path) as address, examine_runs(address) as (page, messages):
         click(page, "demo")
         page.wait_for_selector("#runs [data-key^=run-]")
         page.wait_for_selector("[data-drawn] canvas")
@@ -120,7 +120,7 @@ def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path:
 
     model = jbf.Model.load(tmp_path / "model.toml")
     assert set(model.effects) == {"sensor_lag", "coulomb_drag"}
-    with served(tmp_path) as address, looked_at(address) as (page, messages):
+    with served(tmp_path) as address, examine_runs(address) as (page, messages):
         await_models(page, 3)
         assert models(page) == saved
         assert messages.complaints == []
@@ -139,7 +139,7 @@ FOCUSED = """() => {
 
 @pytest.mark.extended
 def test_keyboard_reaches_every_control_visibly_and_selects_samples(tmp_path: Path) -> None:
-    with served(tmp_path, "--demo") as address, looked_at(address) as (page, messages):
+    with served(tmp_path, "--demo") as address, examine_runs(address) as (page, messages):
         page.wait_for_selector("[data-drawn] canvas")
         for number in (1, 2, 3, 4):
             open_tab(page, number)
@@ -195,7 +195,7 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
         force = 12.0 * np.sign(v) + 40.0 * v - 3.0 * w**2 * x + noise
         (tmp_path / f"log{number}.csv").write_text(slide_log(t, x, force))
 
-    with served(folder) as address, looked_at(address) as (page, messages):
+    with served(folder) as address, examine_runs(address) as (page, messages):
         logs = [str(path) for path in sorted(tmp_path.glob("*.csv"))]
         page.set_input_files("input[type=file]", logs)
         page.wait_for_selector("text=log1: 3000 samples")

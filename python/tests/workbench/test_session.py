@@ -12,7 +12,7 @@ import jbf
 from conftest import NOISE_N
 from jbf.cli import main
 from jbf.errors import InputError
-from jbf.workbench import kept
+from jbf.workbench import saved_files
 from jbf.workbench.files import Folder
 from jbf.workbench.session import Session
 from jbf.workbench.session_file import FILE, load, save
@@ -98,7 +98,7 @@ def test_model_is_not_saved_through_a_link_out_of_the_folder(fitted: Session) ->
     outside = fitted.folder.root.parent / "outside.toml"
     (fitted.folder.root / "model.toml").symlink_to(outside)
     with pytest.raises(InputError, match="not a name in the folder"):
-        kept.keep(fitted, "model")
+        saved_files.save_as_file(fitted, "model")
     assert not outside.exists()
 
 
@@ -130,20 +130,23 @@ def test_showing_the_parent_of_a_model_keeps_the_model(fitted: Session) -> None:
 
 
 def test_saved_model_report_and_source_code_contain_the_effect(fitted: Session) -> None:
-    assert kept.keep(fitted, "model") == {"written": ["model.toml"], "replaced": []}
+    assert saved_files.save_as_file(fitted, "model") == {"written": ["model.toml"], "replaced": []}
     model = jbf.Model.load(fitted.folder.root / "model.toml")
     assert model.effects == ("coulomb_drag",)
-    kept.keep(fitted, "report")
+    saved_files.save_as_file(fitted, "report")
     page = (fitted.folder.root / "report.html").read_text()
     assert page.rstrip().endswith("</html>")
     assert "coulomb_drag" in page
     for what in ("rust", "c"):
-        assert "2.0" in kept.text_of(fitted, what)[1] or "coulomb" in kept.text_of(fitted, what)[1]
+        assert (
+            "2.0" in saved_files.text_of(fitted, what)[1]
+            or "coulomb" in saved_files.text_of(fitted, what)[1]
+        )
 
 
 def test_saving_the_next_run_is_refused_if_none_was_proposed(fitted: Session) -> None:
     with pytest.raises(InputError, match="no next run"):
-        kept.text_of(fitted, "next_run")
+        saved_files.text_of(fitted, "next_run")
 
 
 @pytest.mark.usefixtures("inside_folder")

@@ -16,10 +16,10 @@ from jbf.records.motion.glitches import (
     mend_speed,
     mend_speed_ends,
 )
-from jbf.records.motion.jitter import shaken_path, uneven_stamps
-from jbf.records.motion.lateness import filtered_speed
+from jbf.records.motion.jitter import jittered_path, uneven_stamps
 from jbf.records.motion.position import recorded_position
 from jbf.records.motion.roughness import quantum_of, step_of
+from jbf.records.motion.speed_delay import filtered_speed
 from jbf.records.motion.speed_zero import speed_zero
 from jbf.records.motion.stale_positions import replace_stale_positions
 from jbf.records.motion.units import wrong_unit
@@ -139,7 +139,7 @@ def corrected_records(
         path = position.path_m
     else:
         speed = centred_speed(time, path)
-    shaken = stamps or shaken_path(name, time, path, speed)
+    shaken = stamps or jittered_path(name, time, path, speed)
     scale = None if unit is None else unit.finding
     findings = _present(astray, *ends, zero, scale, aside, odd, held, shaken)
     return CorrectedRecords(path, step, speed, measured, findings, loose, position.arm_m, hum)
@@ -158,7 +158,7 @@ def _without_speed(
     speed = centred_speed(time, path)
     words = "no speed was recorded"
     made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "derived from the position", words)
-    shaken = () if found else _present(shaken_path(name, time, path, speed))
+    shaken = () if found else _present(jittered_path(name, time, path, speed))
     return CorrectedRecords(path, step, speed, False, (made, *found, *shaken), loose)
 
 

@@ -32,10 +32,10 @@ from jbf.records.motion.position import recorded_position
 from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.rests import (
     backward_near_rest,
+    certain_rests,
     rest_edges,
     resting_samples,
     still_samples,
-    sure_rests,
     uncertain_near_rest,
     without_swings,
 )
@@ -268,7 +268,7 @@ def estimate_motion(
     errors = smoothed.errors
     smooth_path = smoothed.mean[:, 0]
     sd = np.sqrt(np.maximum(smoothed.covariance[:, 1, 1], 0.0))
-    rest &= sure_rests(rest) | (np.abs(smoothed.mean[:, 1]) <= AT_REST_SIGMA * sd)
+    rest &= certain_rests(rest) | (np.abs(smoothed.mean[:, 1]) <= AT_REST_SIGMA * sd)
     velocity, acceleration = np.where(rest, 0.0, smoothed.mean[:, 1:3].T)
     error = np.where(rest, 0.0, sd)
     sign_known = rest | (np.abs(velocity) > SIGN_SIGMA * error)
@@ -349,7 +349,7 @@ def _late(run: Run, delay_s: float) -> list[Finding]:
 def _readings(records: CorrectedRecords, time: Array, rest: Mask) -> Readings:
     """Return the readings of a motion, with their smallest possible errors."""
     n, path, speed = len(time), records.path, records.speed
-    sure = sure_rests(rest)
+    sure = certain_rests(rest)
     position, velocity = np.full(n, np.nan), np.where(sure, 0.0, np.nan)
     top, position_step = float(np.max(np.abs(speed), initial=0.0)), 0.0
     way = top * float(np.median(np.diff(time))) if n > 1 else top

@@ -55,7 +55,7 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
     return Finding("jitter", "time_s", name, size, "s", done, words)
 
 
-def shaken_path(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
+def jittered_path(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
     """Find a path whose noise grows with the speed.
 
     The encoder was then read at other instants than the stamps state.

@@ -127,7 +127,7 @@ def _reverses(time_s: Array, velocity: Array, first: int, end: int, step: float)
     return bool(time_s[end - 1] - time_s[first] < LONGER * still_s)
 
 
-def sure_rests(rest: Mask) -> Mask:
+def certain_rests(rest: Mask) -> Mask:
     """Mask of the inner part of each rest; near its ends the motion may be less than a count.
 
     Ends at the first or the last sample are not shortened.

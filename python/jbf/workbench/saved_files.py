@@ -25,7 +25,7 @@ def report_text(session: Session) -> str:
     if "report" in node:
         return str(node["report"])
     model = session.model(int(node["id"]))
-    return comparison_page(compare(model, session.on_bench().taken()))
+    return comparison_page(compare(model, session.on_bench().used_runs()))
 
 
 def rust_text(session: Session) -> str:
@@ -73,7 +73,7 @@ def text_of(session: Session, what: str) -> tuple[str, str]:
     return name, text(session)
 
 
-def keep(session: Session, what: str) -> dict[str, list[str]]:
+def save_as_file(session: Session, what: str) -> dict[str, list[str]]:
     """Write a file into the folder; returns the names of written files, and of replaced ones."""
     if what == "session":
         name = FILE
@@ -82,7 +82,7 @@ def keep(session: Session, what: str) -> dict[str, list[str]]:
         return {"written": [name], "replaced": [name] * before}
     if what == "trimmed":
         session.folder.path(TRIMMED).mkdir(exist_ok=True)
-        runs = session.on_bench().taken()
+        runs = session.on_bench().used_runs()
         texts = {f"{TRIMMED}/{run.name.replace('/', '-')}.csv": run.to_csv() for run in runs}
     else:
         name, text = text_of(session, what)

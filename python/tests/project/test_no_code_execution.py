@@ -103,4 +103,6 @@ def test_file_given_with_effects_from_is_run_and_the_help_documents_this(hostile
     assert "SystemExit: runs own.py" in done.stderr
     assert "own code ran" not in done.stdout
     done = watched(hostile, "compare", "--help")
-    assert "run this Python file first" in " ".join(done.stdout.split())
+    assert re.search(
+        r"--effects-from FILE\.py [^-]*\b(?:run|executed)\b", " ".join(done.stdout.split())
+    )

@@ -22,7 +22,7 @@ from typing import Any
 
 import jbf
 from jbf.diagnosis.power import Power
-from jbf.estimation.bootstrap import recorded_by
+from jbf.estimation.bootstrap import simulated_runs
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "simulator"))
 
@@ -52,7 +52,7 @@ def with_effect(
     bare: jbf.Model, strong: jbf.Model, runs: list[jbf.Run], draw: int
 ) -> list[jbf.Run]:
     """Simulate the runs again with noise, and add the change caused by the effect."""
-    again = recorded_by(bare, runs, (), draw)
+    again = simulated_runs(bare, runs, (), draw)
     changes = [
         a - b for a, b in zip(strong.predict_many(runs), bare.predict_many(runs), strict=True)
     ]

@@ -25,7 +25,7 @@ from jbf.estimation.held_out import (
     held_out_parts,
     indispensable_runs,
 )
-from jbf.estimation.held_out_comparison import Beyond, runs_beyond
+from jbf.estimation.held_out_comparison import ExtrapolatedRun, extrapolated_runs
 from jbf.estimation.identifiability import idle_effects
 from jbf.estimation.initial_state import has_unknown_start
 from jbf.estimation.jumps import spreads_jumps
@@ -352,9 +352,9 @@ class Candidates:
         return found
 
     @cached_property
-    def beyond(self) -> list[Beyond]:
+    def beyond(self) -> list[ExtrapolatedRun]:
         """The runs that exceed the range of all others; empty for a single run."""
-        return runs_beyond(self.campaign)
+        return extrapolated_runs(self.campaign)
 
     def held_out_rms(self, effects: Sequence[str]) -> float:
         """Held-out RMS, N.

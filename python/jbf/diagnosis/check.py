@@ -16,7 +16,7 @@ from typing import Any
 from jbf.diagnosis.policy import DEFAULT, Policy
 from jbf.diagnosis.recipe import diagnose
 from jbf.errors import InputError, JbfError
-from jbf.estimation.bootstrap import recorded_by
+from jbf.estimation.bootstrap import simulated_runs
 from jbf.models.model import Model
 from jbf.records.arguments import check_callable, checked_integer, list_of_runs, of_kind
 from jbf.records.run import Run
@@ -291,7 +291,7 @@ def _answered(tasks: Sequence[_Task], executor: Executor | None) -> Iterator[Ans
 def _answer(task: _Task) -> Answer:
     """Simulate and diagnose one campaign."""
     try:
-        again = recorded_by(task.model, task.runs, task.hidden, task.draw)
+        again = simulated_runs(task.model, task.runs, task.hidden, task.draw)
         diagnosis = diagnose(
             task.model.rig, again, law=task.model.law, clock=task.model.clock, policy=task.policy
         )

@@ -11,7 +11,7 @@ from scipy import special
 
 from jbf.diagnosis.policy import Policy
 from jbf.estimation.held_out import HeldOutPart, errors_by_run
-from jbf.estimation.held_out_comparison import independent_units, mean_square, surprise
+from jbf.estimation.held_out_comparison import independent_units, mean_square, predictive_deviance
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import common_samples
 from jbf.estimation.settings import HeldOutSettings
@@ -78,8 +78,8 @@ class Confirmation:
         # Compare on common samples: a model may exclude those next to its jumps.
         counted = common_samples(simpler.samples, richer.samples).counted
         errors = [
-            errors_by_run(simpler, left, apart=True, counted=counted),
-            errors_by_run(richer, richer_left, apart=True, counted=counted),
+            errors_by_run(simpler, left, deviations=False, counted=counted),
+            errors_by_run(richer, richer_left, deviations=False, counted=counted),
         ]
         before_n, after_n = (_rms(np.concatenate(list(own.values()))) for own in errors)
         better = [_rms(errors[1][i]) < _rms(own) for i, own in errors[0].items() if len(own)]
@@ -170,8 +170,8 @@ def _density_share(
     before, _ = mean_square(simpler, samples, noise)
     after, count = mean_square(richer, samples, noise)
     after = max(after, 1e-300)
-    gained = surprise(simpler, left, samples, noise, after)
-    gained -= surprise(richer, richer_left, samples, noise, after)
+    gained = predictive_deviance(simpler, left, samples, noise, after)
+    gained -= predictive_deviance(richer, richer_left, samples, noise, after)
     return gained / max(count * (before - after) / after, 1e-300)
 
 

@@ -36,7 +36,7 @@ from jbf.estimation.likelihood import effective_share, promised_gain, score_gain
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
-from jbf.estimation.variance import Places, blocks_of, sure_inflation
+from jbf.estimation.variance import Places, blocks_of, significant_inflation
 
 Array = npt.NDArray[np.float64]
 
@@ -197,7 +197,8 @@ class Directions:
         unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
         parts, settings = np.split(unit, ends), samples.settings.variance
         more = [
-            sure_inflation(np.split(way, ends), parts, samples.steps_s, settings) for way in ways.T
+            significant_inflation(np.split(way, ends), parts, samples.steps_s, settings)
+            for way in ways.T
         ]
         counted = np.array([min(share, 1.0 / m) for m in more])
         return cls(ways, unit, counted, blocks_of(samples, share), ends)

@@ -18,7 +18,7 @@ from jbf.diagnosis.selection import try_candidates
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, fit
-from jbf.estimation.transients import settled_again, settled_campaign
+from jbf.estimation.transients import without_further_transients, without_transients
 from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -91,9 +91,11 @@ def manual_round(
     comparison = compare_prepared(fitted.model, campaign)
     if fitted_as is not None:
         fitted_as(fitted, comparison)
-    candidates = Candidates(settled_campaign(campaign, law, clock), law, clock, policy, progress)
+    candidates = Candidates(without_transients(campaign, law, clock), law, clock, policy, progress)
     try:
-        settled = settled_again(candidates.fitted(chosen).problem, candidates.converge(chosen))
+        settled = without_further_transients(
+            candidates.fitted(chosen).problem, candidates.converge(chosen)
+        )
         if settled is not None:
             candidates = candidates.of(settled)
         trials = try_candidates(candidates, chosen).trials

@@ -34,8 +34,8 @@ from jbf.diagnosis.which_law import LawTried, comparable, simpler_law, which_law
 from jbf.errors import Stopped, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit, finish
-from jbf.estimation.initial_state import memories
-from jbf.estimation.transients import settled_campaign
+from jbf.estimation.initial_state import initial_memory
+from jbf.estimation.transients import without_transients
 from jbf.models.catalogue import find_clock, find_law
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import AUTO, Clock
@@ -188,7 +188,7 @@ def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
     first = laws[0].law
     if not find_law(first).has_bristle:
         return (first,)
-    without = [t.law for t in laws if not memories(t.law, ())]
+    without = [t.law for t in laws if initial_memory(t.law, ()) is None]
     return (*without[:1], first)
 
 
@@ -235,7 +235,7 @@ def _with_law(
         Whether the user chose the law; if so, a simpler law is also searched.
     """
     begun = time.monotonic()
-    campaign = settled_campaign(recorded, law, clock)
+    campaign = without_transients(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     candidates.reached = reached
     certain = with_errors_of_motion(candidates, start_model(candidates))

@@ -27,7 +27,7 @@ from jbf.estimation.held_out import errors_by_run
 from jbf.estimation.likelihood import likelihood_gain
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.samples import common_samples
-from jbf.estimation.transients import settled_again
+from jbf.estimation.transients import without_further_transients
 from jbf.models.catalogue import can_be_added
 
 
@@ -88,7 +88,9 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
     updates = 0
     while True:
         candidates.converge(present)
-        settled = settled_again(candidates.fitted(present).problem, candidates.converge(present))
+        settled = without_further_transients(
+            candidates.fitted(present).problem, candidates.converge(present)
+        )
         if settled is not None:
             candidates = candidates.of(settled)
             present = still_needed(candidates, present)

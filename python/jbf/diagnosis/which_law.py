@@ -22,9 +22,9 @@ from jbf.diagnosis.selection import start_model
 from jbf.errors import InputError, Unfinished
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.held_out import held_out_parts
-from jbf.estimation.initial_state import memories
+from jbf.estimation.initial_state import initial_memory
 from jbf.estimation.samples import Samples
-from jbf.estimation.transients import check_film, settled_campaign
+from jbf.estimation.transients import check_film_rate, without_transients
 from jbf.models.catalogue import find_law, laws
 from jbf.models.chain import check_rig
 from jbf.models.vocabulary import Clock
@@ -111,11 +111,11 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
     resolved, refused = [], {}
     for name in allowed(campaign.rig):
         try:
-            check_film(campaign, name, clock)
+            check_film_rate(campaign, name, clock)
         except InputError as error:
             refused[f"law {name}"] = error.problem
             continue
-        if campaign.steady and memories(name, ()):
+        if campaign.steady and initial_memory(name, ()) is not None:
             refused[f"law {name}"] = "steady states do not show its memory"
             continue
         resolved.append(name)
@@ -183,7 +183,7 @@ def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldO
     """
     limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
     try:
-        candidates = Candidates(settled_campaign(limited, law, clock), law, clock, policy)
+        candidates = Candidates(without_transients(limited, law, clock), law, clock, policy)
         terms = tuple(effect for effect in TERMS if effect in candidates.names)
         return held_out_errors(candidates, terms)
     except Unfinished:
@@ -202,7 +202,7 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
         samples = _with_starts(samples, Samples.of(problem.campaign.prepared))
     every = [np.zeros(len(c)) for c in samples.counted]
     for part in held_out_parts(problem, solution):
-        for i, held_out, residual in zip(part.runs, part.left, part.residuals, strict=True):
+        for i, held_out, residual in zip(part.runs, part.masks, part.residuals, strict=True):
             every[i][held_out] = residual[held_out]
     white = every if samples.motion is None else samples.innovations(every, solution.noise)
     errors, white = (

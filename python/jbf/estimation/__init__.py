@@ -3,7 +3,7 @@
 Input: a `Campaign` (runs prepared once), a law and effects. Output: `Fit`, `Bootstrap`,
 `TrajectoryFit`. `samples` defines the samples that count and their weights; `noise` is the noise
 model of the instrument. `problem` encodes parameters and predicts; `minimum` searches;
-`uncertainty` computes standard errors. `determined` is the rule by which a parameter is held.
+`standard_errors` computes the uncertainty; `identifiability` decides which parameters are held.
 
 May import: `jbf.records`, `jbf.models`, `jbf._core`.
 """

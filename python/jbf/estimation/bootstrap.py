@@ -24,7 +24,7 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.fit import Fit
-from jbf.estimation.identifiability import undetermined
+from jbf.estimation.identifiability import reason_not_identifiable
 from jbf.estimation.likelihood import effective_share, noise_at
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import Noise
@@ -172,31 +172,36 @@ def bootstrap(
     random = np.random.default_rng(seed)
     predictions = problem.predict(np.array([truth[name] for name in problem.names]))
     sigmas = innovation_sizes(fitted, campaign)
-    answers = []
+    estimates = []
     for k in range(repeats):
         if progress is not None:
             progress("fitting again", k, repeats)
-        again = [
+        simulated = [
             simulated_recording(p, f, fitted.noise, sigma, random)
             for p, f, sigma in zip(campaign.prepared, predictions, sigmas, strict=True)
         ]
-        campaign_again = Campaign.prepare(model.rig, again)
-        other = Problem(campaign_again, model.law, model.clock, model.effects, held, bounds)
-        answers.append(minimum(other, [named_values(start, problem.parameters)]).values)
-    values = dict(zip(problem.names, np.array(answers).T, strict=True))
+        refit = Problem(
+            Campaign.prepare(model.rig, simulated),
+            model.law,
+            model.clock,
+            model.effects,
+            held,
+            bounds,
+        )
+        estimates.append(minimum(refit, [named_values(start, problem.parameters)]).values)
+    values = dict(zip(problem.names, np.array(estimates).T, strict=True))
     parameters = {
         name: with_error(p, values[name], problem.parameters[name])
         for name, p in fitted.parameters.items()
     }
     model = replace(model, parameters=parameters, fit={**model.fit, "bootstrap": repeats})
-    told = [name for name, p in fitted.parameters.items() if not p.held]
-    kept = [k for k, name in enumerate(told) if not parameters[name].held]
-    among = fitted.correlations[kept][:, kept]
+    estimated = [name for name, p in fitted.parameters.items() if not p.held]
+    kept = [k for k, name in enumerate(estimated) if not parameters[name].held]
     fit = replace(
         fitted,
         model=model,
         parameters=parameters,
-        correlations=among,
+        correlations=fitted.correlations[kept][:, kept],
         doubtful=(),
         cov_type="bootstrap",
     )
@@ -209,10 +214,10 @@ def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
     For a run with fewer than 100 samples, that of all runs together.
     """
     samples = campaign.samples
-    whole = samples.innovations(fitted.residuals, fitted.noise)
-    pieces = [e[counted] for e, counted in zip(whole, samples.counted, strict=True)]
-    usual = float(np.sqrt(np.mean(np.concatenate(pieces) ** 2)))
-    return [float(np.sqrt(np.mean(e**2))) if len(e) >= 100 else usual for e in pieces]
+    every_run = samples.innovations(fitted.residuals, fitted.noise)
+    innovations = [e[counted] for e, counted in zip(every_run, samples.counted, strict=True)]
+    pooled = float(np.sqrt(np.mean(np.concatenate(innovations) ** 2)))
+    return [float(np.sqrt(np.mean(e**2))) if len(e) >= 100 else pooled for e in innovations]
 
 
 def simulated_recording(
@@ -232,12 +237,12 @@ def simulated_readings(prepared: Prepared, friction: Array, random: np.random.Ge
     """
     run, motion = prepared.run, prepared.motion
     n = len(run)
-    read = prepared.friction
-    friction = np.where(np.isfinite(read) & motion.sign_known, friction, read)
+    recorded = prepared.friction
+    friction = np.where(np.isfinite(recorded) & motion.sign_known, friction, recorded)
     # Recorded errors of the speed with random sign: equal in size and position.
-    off = (run.velocity - motion.velocity) * random.choice([-1.0, 1.0], n)
+    error = (run.velocity - motion.velocity) * random.choice([-1.0, 1.0], n)
     moving = ~motion.resting
-    velocity = np.where(moving, motion.velocity + off, run.velocity)
+    velocity = np.where(moving, motion.velocity + error, run.velocity)
     if "velocity_m_s" in motion.aside:
         velocity = run.velocity
     angle, position = run.angle_rad, run.position_m
@@ -257,34 +262,34 @@ def _simulated_path(
     For an encoder, its lines are shifted by a random phase. For a scale without lines, the sign of
     the recorded errors is random.
     """
-    off = recorded - true
     step = encoder_step(recorded[moving])
     if step > 0.0:
         phase = random.uniform(0.0, step)
-        again = np.round((true - phase) / step) * step + phase
+        simulated = np.round((true - phase) / step) * step + phase
     else:
-        again = true + off * random.choice([-1.0, 1.0], len(true))
-    read: Array = np.where(moving, again, recorded)
-    return read
+        simulated = true + (recorded - true) * random.choice([-1.0, 1.0], len(true))
+    return np.asarray(np.where(moving, simulated, recorded), dtype=np.float64)
 
 
-def with_error(value: ParameterValue, answers: Array, page: Parameter) -> ParameterValue:
+def with_error(value: ParameterValue, estimates: Array, page: Parameter) -> ParameterValue:
     """Return the parameter value with the standard error given by the scatter of its estimates."""
     if value.stderr is None:
         return value
-    off = answers - value.value
+    deviations = estimates - value.value
     if page.period is not None:
-        off -= page.period * np.round(off / page.period)
+        deviations -= page.period * np.round(deviations / page.period)
     # Central 68 %: estimates that ended on a distant maximum would dominate a standard deviation.
-    low, high = np.quantile(off, [0.15866, 0.84134])
+    low, high = np.quantile(deviations, [0.15866, 0.84134])
     # No error is smaller than that by the curvature (Cramer 1946, ch. 32); a small number of
     # estimates may scatter too little by chance.
     error = max(float(0.5 * (high - low)), value.stderr)
-    note = undetermined(page, value.value, error)
+    note = reason_not_identifiable(page, value.value, error)
     return replace(value, stderr=None if note else error, note=note, held=note is not None)
 
 
-def recorded_by(model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: int) -> list[Run]:
+def simulated_runs(
+    model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: int
+) -> list[Run]:
     """Simulate new recordings of the runs by a model, or by a model with only some of its effects.
 
     Parameters
@@ -299,19 +304,20 @@ def recorded_by(model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: 
     values = np.array([model.parameters[name].value for name in problem.names])
     samples = problem.samples_at(values)
     solution = problem.solution(values, samples, noise_at(problem, samples, values))
-    less = Problem(campaign, model.law, model.clock, hidden)
-    friction = less.predict(np.array([model.parameters[name].value for name in less.names]))
+    reduced = Problem(campaign, model.law, model.clock, hidden)
+    friction = reduced.predict(np.array([model.parameters[name].value for name in reduced.names]))
     random = np.random.default_rng([draw, len(hidden)])
-    errors = _errors(solution, campaign, random)
+    errors = _sign_randomised(solution, campaign, random)
     return [
         simulated_readings(p, f + e, random)
         for p, f, e in zip(campaign.prepared, friction, errors, strict=True)
     ]
 
 
-def _errors(solution: Solution, campaign: Campaign, random: np.random.Generator) -> list[Array]:
-    """Simulated noise of the runs, N, one array a run: innovations with random signs."""
-    # The innovation of a sample that does not count is meaningless; it is drawn from the others.
+def _sign_randomised(
+    solution: Solution, campaign: Campaign, random: np.random.Generator
+) -> list[Array]:
+    """Noise of the runs, N, one array a run: innovations with random signs by block."""
     plain = replace(
         solution.samples, weight=tuple(c.astype(float) for c in solution.samples.counted)
     )
@@ -324,12 +330,12 @@ def _errors(solution: Solution, campaign: Campaign, random: np.random.Generator)
     lengths = np.diff(np.append(starts, sum(map(len, innovations))))
     signs = np.repeat(random.choice([-1.0, 1.0], len(starts)), lengths)
     ends = np.cumsum([len(e) for e in innovations])[:-1].astype(np.intp)
-    found = []
-    for e, sign, at, p in zip(
+    noise = []
+    for e, sign, counts, p in zip(
         innovations, np.split(signs, ends), plain.counted, campaign.prepared, strict=True
     ):
         # The innovation of a sample that does not count is meaningless; it is drawn from the
         # others.
-        filled = np.where(at, e, random.choice(counted, len(e)))
-        found.append(solution.noise.coloured(sign * filled, p.step_s))
-    return found
+        filled = np.where(counts, e, random.choice(counted, len(e)))
+        noise.append(solution.noise.coloured(sign * filled, p.step_s))
+    return noise

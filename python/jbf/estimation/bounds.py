@@ -24,7 +24,7 @@ Bounds = dict[str, tuple[float, float]]
 
 
 def checked_bounds(
-    bounds: Mapping[str, tuple[float, float]] | None, known: Mapping[str, Parameter]
+    bounds: Mapping[str, tuple[float, float]] | None, pages: Mapping[str, Parameter]
 ) -> Bounds:
     """Resolve parameter names, and limit each interval to the bounds of the catalogue.
 
@@ -33,9 +33,9 @@ def checked_bounds(
     InputError
         A name is unknown, or an interval is empty or outside the bounds of the catalogue.
     """
-    found = {}
+    checked = {}
     for name, given in ({} if bounds is None else by_name(bounds, "bounds")).items():
-        full = find_parameter(name, known)
+        full = find_parameter(name, pages)
         pair = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else []
         if len(pair) != 2:
             raise InputError(
@@ -43,7 +43,7 @@ def checked_bounds(
                 problem=f"is {described(given)}",
                 mend="give a pair: (low, high)",
             )
-        page = known[full]
+        page = pages[full]
         low = max(number(pair[0], f"bounds.{full}"), page.lower)
         high = min(number(pair[1], f"bounds.{full}"), page.upper)
         if not low < high:
@@ -53,8 +53,8 @@ def checked_bounds(
                 f"to {page.upper:g}",
                 mend="give low < high; `fixed` holds a parameter at a value",
             )
-        found[full] = (low, high)
-    return found
+        checked[full] = (low, high)
+    return checked
 
 
 def bounded_page(page: Parameter, low: float, high: float) -> Parameter:
@@ -91,7 +91,7 @@ def at_bound(page: Parameter, value: float, bound: float, error: float) -> bool:
     often many times the value of any machine.
     """
     if page.log:
-        off = abs(np.log(value) - np.log(bound))
-        return bool(off < AT_BOUND * (np.log(page.upper) - np.log(page.lower)))
+        distance = abs(np.log(value) - np.log(bound))
+        return bool(distance < AT_BOUND * (np.log(page.upper) - np.log(page.lower)))
     sizes = [abs(value), abs(bound), error if math.isfinite(error) else 0.0]
     return abs(value - bound) <= AT_BOUND * max(sizes)

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.estimation.noise_floor import noise_upper_bound
 from jbf.estimation.prepared import NoMotion, Prepared, coasting
-from jbf.estimation.quantisation import curve_rms, noise_before
+from jbf.estimation.quantisation import bias_rms, noise_before_converter
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, MotionSettings, Settings
 from jbf.estimation.work import Work
@@ -100,7 +100,7 @@ class Campaign:
     def prepare(cls, rig: Rig, runs: Sequence[Run], settings: Settings = DEFAULT) -> Campaign:
         """Prepare each run, including the estimate of its motion.
 
-        A duplicate of a run is dropped. A run without motion is left out if another run has motion.
+        A duplicate of a run is dropped. A run without motion is excluded if another run has motion.
 
         Raises
         ------
@@ -112,12 +112,12 @@ class Campaign:
         if not runs:
             raise InputError(problem="no run was given", mend="name at least one CSV file")
         check_weight_angles(rig, runs)
-        again = copies(runs)
+        originals = copies(runs)
         ready, without_motion = _each(
-            rig, {i: r for i, r in enumerate(runs) if i not in again}, settings.motion
+            rig, {i: r for i, r in enumerate(runs) if i not in originals}, settings.motion
         )
         prepared = tuple(
-            p.finding([repeated(p.run, runs[k]) for k in again if again[k] == i])
+            p.finding([repeated(p.run, runs[k]) for k in originals if originals[k] == i])
             for i, p in ready.items()
         )
         if not any(np.any(p.friction) for p in prepared):
@@ -177,22 +177,23 @@ class Campaign:
     @property
     def has_loads(self) -> bool:
         """Whether the load varies, within a run or between runs."""
-        usual = self.rig.load.normal_n if self.rig.load is not None else None
+        stated = self.rig.load.normal_n if self.rig.load is not None else None
         loads = [recorded_load(self.rig, p.run) for p in self.prepared]
-        means = [usual if load is None else float(np.median(load)) for load in loads]
-        known = [m for m in means if m is not None]
+        means = [stated if load is None else float(np.median(load)) for load in loads]
+        recorded = [m for m in means if m is not None]
         spans = [_span(load) for load in loads if load is not None]
-        span = max([*spans, max(known) - min(known)]) if known else 0.0
-        return bool(known) and span > self.settings.conditions.min_load_difference * max(known)
+        span = max([*spans, max(recorded) - min(recorded)]) if recorded else 0.0
+        min_difference = self.settings.conditions.min_load_difference
+        return bool(recorded) and span > min_difference * max(recorded)
 
     @cached_property
     def temperature_range_c(self) -> tuple[float, float] | None:
         """Lowest and highest recorded temperature, C; None unless every run has temperatures."""
-        every = [recorded_temperature(p.run) for p in self.prepared]
-        known = [celsius for celsius in every if celsius is not None]
-        if not known or len(known) < len(every):
+        recorded = [recorded_temperature(p.run) for p in self.prepared]
+        temperatures = [celsius for celsius in recorded if celsius is not None]
+        if not temperatures or len(temperatures) < len(recorded):
             return None
-        return float(min(map(np.min, known))), float(max(map(np.max, known)))
+        return float(min(map(np.min, temperatures))), float(max(map(np.max, temperatures)))
 
     @property
     def temperatures_k(self) -> float | None:
@@ -264,25 +265,30 @@ class Campaign:
             return self.settings.quantisation.remaining_bias * taken
         pairs = zip(self.prepared, self.samples.counted, strict=True)
         moves = [np.diff(p.readings_n)[at[1:] & at[:-1]] for p, at in pairs]
-        noise_rms = noise_before(self.step_n, np.concatenate(moves))
-        return curve_rms(self.step_n, min(noise_rms, residual_rms))
+        noise_rms = noise_before_converter(self.step_n, np.concatenate(moves))
+        return bias_rms(self.step_n, min(noise_rms, residual_rms))
 
     @property
-    def moving(self) -> list[Mask]:
-        """Mask of the samples that count and are in motion, one a run."""
+    def arm_m(self) -> float:
+        """Radius that converts an angle to a travel, m; 1 for a drive."""
+        return 1.0 if self.rig.bearing is None else self.rig.bearing.radius_m
+
+    @property
+    def moving(self) -> list[tuple[Prepared, Mask]]:
+        """The runs, each with the mask of the samples that count and are in motion."""
         pairs = zip(self.prepared, self.samples.counted, strict=True)
-        return [_moving(p, counted) for p, counted in pairs]
+        return [(p, _moving(p, counted)) for p, counted in pairs]
 
     def without(self, masks: Sequence[Mask]) -> Campaign:
         """Return the campaign with additional samples excluded, one mask a run."""
         return replace(self, samples=self.samples.within([~m for m in masks]))
 
-    def only(self, which: Sequence[int]) -> Campaign:
+    def only(self, selection: Sequence[int]) -> Campaign:
         """Return the campaign of a selection of runs, with the same instruments and noise."""
         return replace(
             self,
-            prepared=tuple(self.prepared[i] for i in which),
-            samples=self.samples.only(which),
+            prepared=tuple(self.prepared[i] for i in selection),
+            samples=self.samples.only(selection),
         )
 
 
@@ -301,31 +307,33 @@ def _each(
     A run is prepared again where the other runs give information on the logger. This is its
     sampling rate of the force, or other starting values for the errors of the motion's readings.
     """
-    found: dict[int, Prepared] = {}
+    prepared: dict[int, Prepared] = {}
     refused: list[NoMotion] = []
     without_motion = []
     for i, run in runs.items():
         try:
-            found[i] = Prepared.of(rig, run, settings=settings)
+            prepared[i] = Prepared.of(rig, run, settings=settings)
         except NoMotion as error:
             refused.append(error)
             without_motion.append(_without_motion(run, error))
-    if not found:
+    if not prepared:
         raise refused[0]
-    rates = {i: rate for i, p in found.items() if (rate := p.drawn_at_hz) > 0.0}
+    rates = {i: rate for i, p in prepared.items() if (rate := p.drawn_at_hz) > 0.0}
     period_s = 1.0 / float(np.median(list(rates.values()))) if rates else None
-    errors = [p.motion.errors for p in found.values()]
+    errors = [p.motion.errors for p in prepared.values()]
     starts = further_starts(
         [e.smoothed for e in errors if e is not None and e.smoothed is not None]
     )
-    for i in found if starts or period_s is not None else ():
+    for i in prepared if starts or period_s is not None else ():
         with suppress(NoMotion):
-            found[i] = Prepared.of(rig, runs[i], None if i in rates else period_s, starts, settings)
-    return found, without_motion
+            prepared[i] = Prepared.of(
+                rig, runs[i], None if i in rates else period_s, starts, settings
+            )
+    return prepared, without_motion
 
 
 def _without_motion(run: Run, error: NoMotion) -> Finding:
-    """Finding for a run that is left out because nothing moves in it."""
+    """Finding for a run that is excluded because nothing moves in it."""
     words = f"{error.problem}: the run is left out"
     return Finding(
         "no_motion", "velocity_m_s", run.name, float(len(run)), "samples", "left out", words
@@ -336,5 +344,4 @@ def _moving(p: Prepared, counted: Mask) -> Mask:
     """Mask of samples in motion; noise near zero speed has neither a direction nor a travel."""
     speed = np.abs(p.motion.velocity)
     top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
-    found: Mask = counted & (speed > HUM * top)
-    return found
+    return np.asarray(counted & (speed > HUM * top))

@@ -29,7 +29,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.random_effects import spread_between
 from jbf.estimation.settings import DelaySettings
 from jbf.estimation.solution import Solution
-from jbf.estimation.standard_errors import Spread
+from jbf.estimation.standard_errors import StandardErrors
 from jbf.models.delayed_reading import TAU, DelayedChain
 
 Array = npt.NDArray[np.float64]
@@ -244,7 +244,7 @@ def _common(estimates: list[_Estimate]) -> tuple[float, float] | None:
 
 @dataclass(frozen=True, eq=False)
 class ExactDelay:
-    """Time delay determined by the jumps.
+    """Time delay of a model, estimated from the jumps of the friction.
 
     Attributes
     ----------
@@ -262,21 +262,21 @@ class ExactDelay:
 
 
 def exact_delay(
-    problem: Problem, solution: Solution, spread: Spread, values: Array
+    problem: Problem, solution: Solution, errors: StandardErrors, values: Array
 ) -> ExactDelay | None:
     """Estimate the delay by the likelihood of all samples; None if the model has no free delay."""
     if TAU not in problem.names or problem.names.index(TAU) not in problem.open:
         return None
-    which = problem.names.index(TAU)
-    k = problem.open.index(which)
+    index = problem.names.index(TAU)
+    k = problem.open.index(index)
     steps = [p.step_s for p in problem.campaign.prepared]
-    step_s, tau_s = float(np.median(steps)), float(values[which])
-    if not spread.moved[k] or tau_s < LEAST_STEPS * step_s:
+    step_s, tau_s = float(np.median(steps)), float(values[index])
+    if not errors.sensitive[k] or tau_s < LEAST_STEPS * step_s:
         return None
-    sd_s = spread.error(k)
+    sd_s = errors.error(k)
     if not np.isfinite(sd_s):
         return None
-    scan = _Scan.of(problem, solution, spread, values, k)
+    scan = _Scan.of(problem, solution, errors, values, k)
     reach = max(REACH * sd_s, LEAST_REACH_STEPS * step_s)
     delays = np.linspace(-reach, reach, COARSE) + tau_s
     delays = delays[delays > 0.0]
@@ -286,78 +286,89 @@ def exact_delay(
     finer = finer[(finer > 0.0) & ~np.isin(finer, delays)]
     costs = np.append(costs, [scan.cost(delay) for delay in finer])
     delays, first = np.unique(np.append(delays, finer), return_index=True)
-    likely = np.exp(-0.5 * (costs[first] - np.min(costs))) * np.gradient(delays)
-    likely /= np.sum(likely)
-    mean = float(np.sum(likely * delays))
-    spread_s = float(np.sqrt(np.sum(likely * (delays - mean) ** 2) + gap**2 / (12.0 * FINE**2)))
-    found = scan.along(mean)
-    return ExactDelay(found, spread_s, scan.residuals(found, spread_s))
+    likelihood = np.exp(-0.5 * (costs[first] - np.min(costs))) * np.gradient(delays)
+    likelihood /= np.sum(likelihood)
+    mean_s = float(np.sum(likelihood * delays))
+    variance = np.sum(likelihood * (delays - mean_s) ** 2) + gap**2 / (12.0 * FINE**2)
+    sd_s, at_mean = float(np.sqrt(variance)), scan.along(mean_s)
+    return ExactDelay(at_mean, sd_s, scan.residuals(at_mean, sd_s))
 
 
 @dataclass(frozen=True, eq=False)
 class _Scan:
-    """Likelihood of a delay with the other parameters following it."""
+    """Likelihood of a delay with the other parameters following it.
+
+    Attributes
+    ----------
+    friction
+        Record without the random effects of its run, N, one array a run.
+    direction
+        Derivative of the search variables with respect to the delay, 1/s.
+    share
+        Number of independent samples per sample.
+    """
 
     problem: Problem
     chain: DelayedChain
     friction: list[Array]
     values: Array
-    way: Array
-    """Derivative of the search variables with respect to the delay, 1/s."""
+    direction: Array
     noise_rms: float
     share: float
 
     @classmethod
     def of(
-        cls, problem: Problem, solution: Solution, spread: Spread, values: Array, k: int
+        cls, problem: Problem, solution: Solution, errors: StandardErrors, values: Array, k: int
     ) -> _Scan:
         rig, samples = problem.campaign.rig, solution.samples
         chain = DelayedChain(rig, problem.law, problem.clock, problem.effects, problem.names)
         with np.errstate(invalid="ignore", divide="ignore"):
-            way = spread.correlation[:, k] * spread.sd / spread.sd[k] / spread.scale[k]
-        left = samples.without_deviations(solution.residuals, solution.noise)
-        # A run's own zero or gain must not be taken for a delay.
+            direction = errors.correlation[:, k] * errors.sd / errors.sd[k] / errors.scale[k]
+        residuals = samples.without_deviations(solution.residuals, solution.noise)
+        # The offset or gain of a run must not be taken for a delay.
         friction = [
-            p.friction - (r - own)
-            for p, r, own in zip(problem.campaign.prepared, solution.residuals, left, strict=True)
+            p.friction - (a - b)
+            for p, a, b in zip(
+                problem.campaign.prepared, solution.residuals, residuals, strict=True
+            )
         ]
         # A sample of coloured residuals carries less information.
-        counted = [r * c for r, c in zip(left, samples.counted, strict=True)]
+        counted = [r * c for r, c in zip(residuals, samples.counted, strict=True)]
         share = independent_share(counted, samples.steps_s, samples.settings.noise)
-        noise_rms = max(samples.rms(left), 1e-300)
-        way = np.where(np.isfinite(way) & spread.moved, way, 0.0)
-        return cls(problem, chain, friction, values, way, noise_rms, share)
+        noise_rms = max(samples.rms(residuals), 1e-300)
+        direction = np.where(np.isfinite(direction) & errors.sensitive, direction, 0.0)
+        return cls(problem, chain, friction, values, direction, noise_rms, share)
 
     def along(self, delay_s: float) -> Array:
         """Values of all parameters for a given delay."""
-        late = delay_s - float(self.values[self.chain.tau])
-        moved = self.problem.encode(self.values) + self.way * late
-        there = self.problem.decode(moved, self.values)
-        there[self.chain.tau] = delay_s
-        return there
+        change = delay_s - float(self.values[self.chain.tau])
+        moved = self.problem.encode(self.values) + self.direction * change
+        values = self.problem.decode(moved, self.values)
+        values[self.chain.tau] = delay_s
+        return values
 
     def cost(self, delay_s: float) -> float:
         """Minus twice the log likelihood."""
         values, total = self.along(delay_s), 0.0
         for p, friction in zip(self.problem.campaign.prepared, self.friction, strict=True):
             reading = self.chain.read(values, p.run, *p.motion_as_read, 0.0)
-            far = [
+            before, after = (
                 np.minimum(((friction - f) / self.noise_rms) ** 2, CLIPPED**2)
                 for f in (reading.before_n, reading.after_n)
-            ]
+            )
             over = reading.over
-            doubt = np.minimum(over, 1.0 - over) > 0.5 * np.exp(-0.5 * BLURRED**2)
-            near = (1.0 - over) * np.exp(-0.5 * far[0]) + over * np.exp(-0.5 * far[1])
-            sure = np.where(over > 0.5, far[1], far[0])
+            mixed = np.minimum(over, 1.0 - over) > 0.5 * np.exp(-0.5 * BLURRED**2)
+            mixture = (1.0 - over) * np.exp(-0.5 * before) + over * np.exp(-0.5 * after)
+            one_side = np.where(over > 0.5, after, before)
             with np.errstate(divide="ignore"):
-                each = np.where(doubt, -2.0 * np.log(near), self.share * sure)
-            total += float(np.sum(each[p.examined.usable]))
+                costs = np.where(mixed, -2.0 * np.log(mixture), self.share * one_side)
+            total += float(np.sum(costs[p.examined.usable]))
         return total
 
     def residuals(self, values: Array, sd_s: float) -> list[Array]:
         """Record minus expected reading, N."""
-        left = []
+        residuals = []
         for p in self.problem.campaign.prepared:
             reading = self.chain.read(values, p.run, *p.motion_as_read, sd_s)
-            left.append(p.friction - reading.mean_n)
-        return left
+            residuals.append(p.friction - reading.mean_n)
+        return residuals

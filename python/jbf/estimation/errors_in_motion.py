@@ -53,13 +53,13 @@ class ErrorsInMotion:
     scale: float = 1.0
     by_delay: tuple[Array, ...] | None = None
 
-    def only(self, which: Sequence[int]) -> ErrorsInMotion:
+    def only(self, selection: Sequence[int]) -> ErrorsInMotion:
         """Return the errors of a selection of runs."""
         return replace(
             self,
-            errors=tuple(self.errors[i] for i in which),
-            sensitivity=tuple(self.sensitivity[i] for i in which),
-            by_delay=None if self.by_delay is None else tuple(self.by_delay[i] for i in which),
+            errors=tuple(self.errors[i] for i in selection),
+            sensitivity=tuple(self.sensitivity[i] for i in selection),
+            by_delay=None if self.by_delay is None else tuple(self.by_delay[i] for i in selection),
         )
 
     def stacked(
@@ -67,41 +67,41 @@ class ErrorsInMotion:
         residuals: Sequence[Array],
         jacobian: Sequence[Array],
         weights: Sequence[Array],
-        which: Sequence[int] | None = None,
+        selection: Sequence[int] | None = None,
     ) -> tuple[Array, Array]:
         """Independent residuals of standard deviation `noise` and their derivatives.
 
         Parameters
         ----------
         weights
-            Weight of each sample, 0 to 1; samples without weight are left out.
+            Weight of each sample, 0 to 1; samples without weight are excluded.
         which
             Indices of the runs to use; None for all runs.
         """
         white = []
-        for i in range(len(residuals)) if which is None else which:
+        for i in range(len(residuals)) if selection is None else selection:
             columns = [residuals[i], jacobian[i]]
             if self.by_delay is not None:
                 columns.append(self.by_delay[i])
             rows, _ = self._whitened(i, np.column_stack(columns), weights[i])
             white.append(rows[weights[i] > 0.0])
-        whole = np.concatenate(white)
+        stacked = np.concatenate(white)
         if self.by_delay is not None:
-            delay = whole[:, -1]
-            share = delay @ whole[:, :-1] / max(float(delay @ delay), 1e-300)
-            whole = whole[:, :-1] - np.outer(delay, share)
-        return whole[:, 0], whole[:, 1:]
+            delay = stacked[:, -1]
+            slopes = delay @ stacked[:, :-1] / max(float(delay @ delay), 1e-300)
+            stacked = stacked[:, :-1] - np.outer(delay, slopes)
+        return stacked[:, 0], stacked[:, 1:]
 
     def innovations(self, residuals: Sequence[Array], weights: Sequence[Array]) -> list[Array]:
         """Independent residuals of standard deviation `noise`, one array a run.
 
         They are zero at samples without weight.
         """
-        found = []
+        innovations = []
         for run, (residual, weight) in enumerate(zip(residuals, weights, strict=True)):
             white, _ = self._whitened(run, residual[:, None], weight)
-            found.append(white[:, 0] * (weight > 0.0))
-        return found
+            innovations.append(white[:, 0] * (weight > 0.0))
+        return innovations
 
     def deviance(self, residuals: Sequence[Array], weights: Sequence[Array]) -> float:
         """Minus twice the log likelihood of the residuals, up to an additive constant."""
@@ -127,6 +127,7 @@ class ErrorsInMotion:
         return float(np.mean(ratio / (1.0 + ratio))) if len(ratio) else 0.0
 
     def _whitened(self, run: int, columns: Array, weight: Array) -> tuple[Array, float]:
+        """Whitened columns of a run, and the log determinant of the covariance."""
         errors = self.errors[run]
         with np.errstate(divide="ignore"):
             variance = np.where(weight > 0.0, (self.noise / weight) ** 2, np.inf)

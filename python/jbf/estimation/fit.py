@@ -16,7 +16,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.delay_scan import exact_delay
 from jbf.estimation.estimates import Estimates
 from jbf.estimation.generalised_least_squares import with_motion_errors
-from jbf.estimation.identifiability import correlations, parameter_values, put_back
+from jbf.estimation.identifiability import correlations, parameter_values, reset_unidentified
 from jbf.estimation.likelihood import log_likelihood
 from jbf.estimation.minimum import minimum, not_above_nested
 from jbf.estimation.noise import WHITE, Noise
@@ -24,8 +24,8 @@ from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.problem import Problem, named_values
 from jbf.estimation.robust_fit import best_weighting
 from jbf.estimation.solution import Solution
-from jbf.estimation.standard_errors import doubtful_errors, spread
-from jbf.estimation.transients import check_film
+from jbf.estimation.standard_errors import doubtful_errors, standard_errors
+from jbf.estimation.transients import check_film_rate
 from jbf.models.catalogue import check_applies, find_effect, in_chain_order, parameters_of
 from jbf.models.chain import check_rig
 from jbf.models.delayed_reading import TAU
@@ -129,10 +129,10 @@ class Fit(Estimates):
     cov_type: CovType = "model"
 
     def __post_init__(self) -> None:
-        told = len(self.var_names)
-        if self.correlations.shape != (told, told):
+        count = len(self.var_names)
+        if self.correlations.shape != (count, count):
             shape = self.correlations.shape
-            raise ValueError(f"correlations of shape {shape} for {told} parameters not held")
+            raise ValueError(f"correlations of shape {shape} for {count} parameters not held")
 
     @property
     def covariance(self) -> Array:
@@ -195,16 +195,16 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
 
 def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | None = None) -> Fit:
     """Return a solution with standard errors as a fit; `start` holds the user's starting values."""
-    known = spread(problem, solution)
-    found = put_back(problem, solution, known, start or {})
-    delay = exact_delay(problem, solution, known, found.values)
+    errors = standard_errors(problem, solution)
+    reset = reset_unidentified(problem, solution, errors, start or {})
+    delay = exact_delay(problem, solution, errors, reset.values)
     if delay is not None:
-        found = replace(found, values=delay.values, residuals=delay.residuals)
-    named = parameter_values(problem, found, known)
+        reset = replace(reset, values=delay.values, residuals=delay.residuals)
+    named = parameter_values(problem, reset, errors)
     if delay is not None and not named[TAU].held:
         named[TAU] = replace(named[TAU], stderr=delay.sd_s)
     campaign, samples = problem.campaign, solution.samples.count
-    rms = solution.samples.rms(found.residuals)
+    rms = solution.samples.rms(reset.residuals)
     model = Model(
         campaign.rig,
         problem.law,
@@ -220,11 +220,11 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
     return Fit(
         model=model,
         parameters=named,
-        correlations=correlations(problem, named, known),
+        correlations=correlations(problem, named, errors),
         rms=rms,
         noise=solution.noise,
         nobs=samples,
-        residuals=list(found.residuals),
+        residuals=list(reset.residuals),
         converged=solution.converged,
         message=solution.message,
         fixed=tuple(name for name in problem.names if name in problem.fixed),
@@ -313,12 +313,12 @@ def fit(
     check_applies(law, chosen)
     campaign = Campaign.prepare(rig, runs)
     check_effects(campaign, chosen)
-    known = parameters_of(law, chosen)
-    limits = checked_bounds(bounds, known)
-    known = bounded_pages(known, limits)
-    problem = Problem(campaign, law, clock, chosen, named_values(fixed, known), limits)
-    given = named_values(start, known)
-    check_film(campaign, law, clock, {**given, **problem.fixed})
+    pages = parameters_of(law, chosen)
+    limits = checked_bounds(bounds, pages)
+    pages = bounded_pages(pages, limits)
+    problem = Problem(campaign, law, clock, chosen, named_values(fixed, pages), limits)
+    given = named_values(start, pages)
+    check_film_rate(campaign, law, clock, {**given, **problem.fixed})
     try:
         solution = not_above_nested(problem, minimum(problem, [given]))
         problem, solution = with_motion_errors(problem, solution)

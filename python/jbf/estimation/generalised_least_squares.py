@@ -1,4 +1,8 @@
-"""Refinement of a fit for the errors of the estimated motion, by generalised least squares."""
+"""Generalised least squares for the errors of the estimated motion.
+
+The covariance of the residuals follows from the errors of the motion (`errors_in_motion`). The
+noise, the scale of these errors and a common delay of the force are estimated with the model.
+"""
 
 from __future__ import annotations
 
@@ -67,10 +71,10 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     errors = [e for p in problem.campaign.prepared if (e := p.motion.errors) is not None]
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
     clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
-    ends = [_settled(problem, solution, clock_s) for clock_s in clocks]
+    ends = [_iterated(problem, solution, clock_s) for clock_s in clocks]
     # The steps in a delay may lead away from the minimum.
     ends += [
-        _settled(problem, solution, c, delays=False)
+        _iterated(problem, solution, c, delays=False)
         for c, e in zip(clocks, ends, strict=True)
         if e.delayed
     ]
@@ -102,7 +106,7 @@ def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Prob
     before = problem.campaign.samples.motion
     delayed = before is not None and before.by_delay is not None
     problem, solution = _likeliest_smoothness(problem, solution)
-    motion = errors_in_motion(problem, solution)
+    motion = estimate_motion_errors(problem, solution)
     return problem, _fitted(problem, solution, motion, delayed=delayed)
 
 
@@ -127,14 +131,14 @@ class _End:
     def deviance(self) -> float:
         """Minus twice the log likelihood, scaled to the samples before the force was shifted."""
         solution = self.solution
-        every = self.first.samples_at(solution.values)
-        motion = errors_in_motion(self.problem, solution)
-        own = motion.deviance(solution.residuals, solution.samples.weight)
-        counts = [sum(map(np.count_nonzero, s.weight)) for s in (every, solution.samples)]
-        return own * counts[0] / max(counts[1], 1)
+        samples = self.first.samples_at(solution.values)
+        motion = estimate_motion_errors(self.problem, solution)
+        deviance = motion.deviance(solution.residuals, solution.samples.weight)
+        counts = [sum(map(np.count_nonzero, s.weight)) for s in (samples, solution.samples)]
+        return deviance * counts[0] / max(counts[1], 1)
 
 
-def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool = True) -> _End:
+def _iterated(first: Problem, solution: Solution, clock_s: float, *, delays: bool = True) -> _End:
     """Iterate the fit with a delay `clock_s` of the force.
 
     With `delays`, a significant delay common to all runs is estimated as well.
@@ -145,7 +149,7 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
         problem = _delayed(first, late_s)
         solution = problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
     for _ in range(ROUNDS):
-        motion = errors_in_motion(problem, solution)
+        motion = estimate_motion_errors(problem, solution)
         share = motion.mean_share(solution.samples.weight)
         if late_s == 0.0 and share < settings.min_delay_share:
             break
@@ -157,10 +161,10 @@ def _settled(first: Problem, solution: Solution, clock_s: float, *, delays: bool
             problem = _delayed(first, late_s)
             values = solution.values
             solution = problem.solution(values, problem.samples_at(values), WHITE)
-            motion = errors_in_motion(problem, solution)
+            motion = estimate_motion_errors(problem, solution)
         before, solution = solution, _fitted(problem, solution, motion, delayed=late_s != clock_s)
-        apart = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
-        if solution.samples.rms(apart) < SETTLED * motion.noise:
+        changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
+        if solution.samples.rms(changes) < SETTLED * motion.noise:
             break
     return _End(first, problem, solution, late_s != clock_s)
 
@@ -171,7 +175,7 @@ def _with_smoothing(end: _End) -> Array:
     factor = problem.campaign.settings.motion.roughness_factor
     other = _rougher(problem, factor, same_corners=True)
     near = other.solution(solution.values, solution.samples, WHITE)
-    near = _fitted(other, near, errors_in_motion(other, near), delayed=end.delayed)
+    near = _fitted(other, near, estimate_motion_errors(other, near), delayed=end.delayed)
     return problem.encode(near.values) - problem.encode(solution.values)
 
 
@@ -183,27 +187,27 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
     if not problem.campaign.force_has_clock:
         return problem, solution
     settings = problem.campaign.settings
-    motion = errors_in_motion(problem, solution)
+    motion = estimate_motion_errors(problem, solution)
     if motion.mean_share(solution.samples.weight) < settings.conditions.max_motion_share:
         return problem, solution
     samples = solution.samples
 
     def fitted_with(tried: Problem) -> tuple[float, Solution]:
         near = tried.solution(solution.values, samples, WHITE)
-        found = _fitted(tried, near, errors_in_motion(tried, near))
-        own = errors_in_motion(tried, found)
-        deviance = _penalised(tried, own, found.residuals, samples.weight)
-        return deviance, replace(found, samples=samples)
+        fitted = _fitted(tried, near, estimate_motion_errors(tried, near))
+        errors = estimate_motion_errors(tried, fitted)
+        fitted_deviance = _penalised(tried, errors, fitted.residuals, samples.weight)
+        return fitted_deviance, replace(fitted, samples=samples)
 
     first, factor = problem, 1.0
     least, _ = fitted_with(problem)
     for change in (1.0 / INTENSITY_STEP, INTENSITY_STEP):
         while LEAST_INTENSITY < factor * change < 1.0 / LEAST_INTENSITY:
             tried = _rougher(first, factor * change)
-            own, found = fitted_with(tried)
-            if own >= least - settings.motion.min_smoothness_gain:
+            deviance, refitted = fitted_with(tried)
+            if deviance >= least - settings.motion.min_smoothness_gain:
                 break
-            least, problem, solution, factor = own, tried, found, factor * change
+            least, problem, solution, factor = deviance, tried, refitted, factor * change
         if factor != 1.0:
             break
     return problem, solution
@@ -237,7 +241,7 @@ def _with(problem: Problem, campaign: Campaign) -> Problem:
     return again
 
 
-def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
+def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMotion:
     """Estimate sensitivities at a solution, the noise, and the scale of the motion's errors.
 
     Noise and scale maximise the likelihood. The scale corrects the smoother's standard errors,
@@ -250,14 +254,18 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
     for axis in range(3):
         moved, steps = zip(*(_moved(p, axis) for p in prepared), strict=True)
         other = problem.chain.predict(solution.values, [p.core for p in moved])
-        for own, before, after, step in zip(sensitivity, predicted, other, steps, strict=True):
-            own[:, axis] = np.divide(after - before, step, where=step > 0.0, out=own[:, axis])
+        for derivatives, before, after, step in zip(
+            sensitivity, predicted, other, steps, strict=True
+        ):
+            derivatives[:, axis] = np.divide(
+                after - before, step, where=step > 0.0, out=derivatives[:, axis]
+            )
     mass = coasting(problem.campaign.rig)
     if mass is not None:
         # The force is derived from the deceleration, so an error of the acceleration is in the
         # record too.
-        for own in sensitivity:
-            own[:, 2] += mass
+        for derivatives in sensitivity:
+            derivatives[:, 2] += mass
     weights = solution.samples.weight
     errors = tuple(p.motion.errors for p in prepared)
     motion = ErrorsInMotion(errors, tuple(sensitivity), 1.0)
@@ -279,7 +287,7 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
         for scale in (-0.5, 0.0, 0.7)
     ]
     start = min(starts, key=deviance)
-    found = minimize(
+    optimum = minimize(
         deviance,
         start,
         method="Nelder-Mead",
@@ -290,7 +298,7 @@ def errors_in_motion(problem: Problem, solution: Solution) -> ErrorsInMotion:
             "initial_simplex": start + SIMPLEX * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
         },
     )
-    return at(found.x)
+    return at(optimum.x)
 
 
 def _penalised(
@@ -316,12 +324,12 @@ def _fitted(
     huber = problem.campaign.settings.motion.huber_sigma
     for i, (residual, weight) in enumerate(zip(near.residuals, plain.weight, strict=True)):
         sd = motion.noise * np.sqrt(1.0 + motion.variance_ratio(i))
-        off = np.maximum(np.abs(residual) / sd, 1e-300)
-        weights.append(weight * np.sqrt(np.minimum(1.0, huber / off)))
+        ratio = np.maximum(np.abs(residual) / sd, 1e-300)
+        weights.append(weight * np.sqrt(np.minimum(1.0, huber / ratio)))
     samples = replace(plain, weight=tuple(weights), motion=motion)
-    found = search(problem, samples, values, WHITE, EVALUATIONS)
-    end = problem.wrapped(found.values)
-    return problem.solution(end, samples, WHITE, found.converged, found.message)
+    end = search(problem, samples, values, WHITE, EVALUATIONS)
+    values = problem.wrapped(end.values)
+    return problem.solution(values, samples, WHITE, end.converged, end.message)
 
 
 def _delay(
@@ -350,8 +358,8 @@ def _delayed(first: Problem, late_s: float) -> Problem:
     """Return the problem with its forces compared with the motion at an earlier time."""
     prepared = tuple(p.shifted(late_s, 0.0) for p in first.campaign.prepared)
     names = ", ".join(p.run.name for p in prepared)
-    way = "late" if late_s > 0.0 else "early"
-    words = f"the force is {1e3 * abs(late_s):.2g} ms {way} relative to the motion in all runs"
+    side = "late" if late_s > 0.0 else "early"
+    words = f"the force is {1e3 * abs(late_s):.2g} ms {side} relative to the motion in all runs"
     finding = Finding("late_channel", "friction_n", names, late_s, "s", "shifted", words)
     campaign = replace(
         first.campaign, prepared=prepared, samples=Samples.of(prepared, first.campaign.settings)

@@ -53,17 +53,17 @@ class HeldOutPart:
     ----------
     runs
         Indices of the runs.
-    left
+    masks
         Mask of the held-out samples, one a run.
-    determined
-        Which parameters the fitted samples determine, shape (k,); the others were held.
+    identified
+        Which parameters the fitted samples identify, shape (k,); the others were held.
     residuals
         Record minus prediction of all samples of each run, N.
     """
 
     runs: tuple[int, ...]
-    left: tuple[Mask, ...]
-    determined: Mask
+    masks: tuple[Mask, ...]
+    identified: Mask
     residuals: tuple[Array, ...]
 
     def without(self, runs: Collection[int]) -> HeldOutPart:
@@ -71,54 +71,43 @@ class HeldOutPart:
         kept = [k for k, i in enumerate(self.runs) if i not in runs]
         return HeldOutPart(
             tuple(self.runs[k] for k in kept),
-            tuple(self.left[k] for k in kept),
-            self.determined,
+            tuple(self.masks[k] for k in kept),
+            self.identified,
             tuple(self.residuals[k] for k in kept),
         )
 
 
-def held_out_rms(problem: Problem, solution: Solution, *, apart: bool = False) -> float:
-    """Held-out RMS: RMS of `held_out_by_run`, N."""
-    left = np.concatenate(held_out_by_run(problem, solution, apart=apart))
-    return float(np.sqrt(np.sum(left**2) / max(len(left), 1)))
-
-
-def held_out_residuals(problem: Problem, solution: Solution) -> Array:
-    """Concatenated `held_out_by_run` of all runs."""
-    return np.concatenate(held_out_by_run(problem, solution))
-
-
-def held_out_by_run(problem: Problem, solution: Solution, *, apart: bool = False) -> list[Array]:
-    """Return `errors_by_run` for the held-out runs (`held_out_parts`)."""
-    return list(errors_by_run(solution, held_out_parts(problem, solution), apart=apart).values())
+def held_out_by_run(problem: Problem, solution: Solution) -> list[Array]:
+    """Held-out errors at the samples that count, N, one array a run (`held_out_parts`)."""
+    return list(errors_by_run(solution, held_out_parts(problem, solution)).values())
 
 
 def errors_by_run(
     solution: Solution,
     parts: Sequence[HeldOutPart],
     *,
-    apart: bool = False,
+    deviations: bool = True,
     counted: Sequence[Mask] | None = None,
 ) -> dict[int, Array]:
-    """Errors at the samples that count, N, by run.
+    """Held-out errors at the samples that count, N, by run.
 
     Parameters
     ----------
+    deviations
+        Whether the errors contain the random effects of their run. Without them, models are
+        compared by what they predict, since no model predicts these deviations.
     counted
         Samples that count, for the comparison of models that exclude different samples.
-    apart
-        Subtract the contribution of a run's random effects, where runs have them. This is for the
-        comparison of models, since no model predicts these deviations.
     """
     samples = solution.samples
     errors: dict[int, Array] = {}
     for part in parts:
         residuals: Sequence[Array] = part.residuals
-        if apart:
+        if not deviations:
             residuals = samples.only(part.runs).without_deviations(residuals, solution.noise)
-        for i, left, residual in zip(part.runs, part.left, residuals, strict=True):
-            own = errors.setdefault(i, np.zeros(len(residual)))
-            own[left] = residual[left]
+        for i, mask, residual in zip(part.runs, part.masks, residuals, strict=True):
+            run_errors = errors.setdefault(i, np.zeros(len(residual)))
+            run_errors[mask] = residual[mask]
     counted = samples.counted if counted is None else counted
     return {i: errors[i][counted[i]] for i in sorted(errors)}
 
@@ -126,8 +115,8 @@ def errors_by_run(
 def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     """Hold out each run in turn, or groups of runs if there are many (`max_folds`).
 
-    A parameter that the remaining runs do not determine is held at its null (or its starting
-    value). Information that only the held-out run contains must not leak into its prediction. With
+    A parameter that the remaining runs do not identify is held at its null (or its starting value).
+    Information that only the held-out run contains must not leak into its prediction. With
     a single run, two halves of alternate parts are held out in turn.
     """
     count = len(problem.campaign.prepared)
@@ -137,26 +126,25 @@ def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     parts = []
     for group in _groups(problem.campaign):
         rest = [k for k in range(count) if k not in group]
-        residuals = _predicted(problem, solution, information, group, rest)
-        whole = tuple(np.ones(len(r), dtype=bool) for r in residuals)
-        unknown = _unknown(solution, information.known, information.known[rest].sum(axis=0))
-        parts.append(HeldOutPart(tuple(group), whole, ~unknown, tuple(residuals)))
+        identified = _identified(solution, information.squares, information.squares[rest])
+        residuals = _predicted(problem, solution, information, group, rest, identified)
+        masks = tuple(np.ones(len(r), dtype=bool) for r in residuals)
+        parts.append(HeldOutPart(tuple(group), masks, identified, tuple(residuals)))
     return parts
 
 
 def indispensable_runs(problem: Problem, solution: Solution) -> frozenset[int]:
-    """Runs that alone determine some parameter.
+    """Runs that alone identify some parameter.
 
     A fit to the other runs cannot predict what this parameter does; a fit with half of the run can.
     """
     count = len(problem.campaign.prepared)
     if count == 1:
         return frozenset()
-    known = _known(solution)
+    squares = _squares(solution)
+    others = [[k for k in range(count) if k != i] for i in range(count)]
     return frozenset(
-        i
-        for i in range(count)
-        if _unknown(solution, known, known[[k for k in range(count) if k != i]].sum(axis=0)).any()
+        i for i in range(count) if not _identified(solution, squares, squares[others[i]]).all()
     )
 
 
@@ -172,36 +160,43 @@ def held_out_halves(
         motion. Otherwise they are the first and second half, which show whether the run is
         homogeneous.
     """
-    samples, known = solution.samples, _known(solution)
-    every = [np.ones(len(c), dtype=bool) for c in samples.counted]
-    others = known.sum(axis=0) - known[run]
-    count = len(every[run])
+    samples, squares = solution.samples, _squares(solution)
+    complete = [np.ones(len(c), dtype=bool) for c in samples.counted]
+    others = squares.sum(axis=0) - squares[run]
+    count = len(complete[run])
     parts_of_run = samples.settings.held_out.parts
     first = alternate_parts(count, parts_of_run) if alternate else np.arange(count) < count // 2
     parts = []
     for half in (first, ~first):
-        kept = samples.within([*every[:run], ~half, *every[run + 1 :]])
-        own = np.sum(solution.jacobian[run][kept.counted[run]] ** 2, axis=0)
-        unknown = _unknown(solution, known, others + own)
-        held = _held(problem, unknown)
-        part = _of(problem, problem.campaign, held)
+        kept = samples.within([*complete[:run], ~half, *complete[run + 1 :]])
+        of_half = np.sum(solution.jacobian[run][kept.counted[run]] ** 2, axis=0)
+        identified = _identified(solution, squares, (others + of_half)[None])
+        held = _held(problem, ~identified)
+        part = _with_held(problem, problem.campaign, held)
         values = _fitted(part, kept, _at(problem, solution, held), solution)
         residuals = tuple(problem.residuals(values, [run]))
-        parts.append(HeldOutPart((run,), (half,), ~unknown, residuals))
+        parts.append(HeldOutPart((run,), (half,), identified, residuals))
     return parts
 
 
-def _known(solution: Solution) -> Array:
+def _squares(solution: Solution) -> Array:
     """Sums of squares of the derivatives at the samples that count, shape (runs, k)."""
     pairs = zip(solution.jacobian, solution.samples.counted, strict=True)
     return np.array([np.sum(jacobian[counted] ** 2, axis=0) for jacobian, counted in pairs])
 
 
-def _unknown(solution: Solution, known: Array, rest: Array) -> Mask:
-    """Mask of the parameters that the remaining information does not determine, shape (k,)."""
+def _identified(solution: Solution, squares: Array, rest: Array) -> Mask:
+    """Mask of the parameters that the remaining runs identify, shape (k,).
+
+    Parameters
+    ----------
+    squares, rest
+        Sums of squares of the derivatives for all runs, and for the remaining ones,
+        shape (runs, k).
+    """
     least = solution.samples.settings.held_out.min_information
-    unknown: Mask = rest < least * known.sum(axis=0)
-    return unknown
+    unidentified: Mask = rest.sum(axis=0) < least * squares.sum(axis=0)
+    return ~unidentified
 
 
 @dataclass(frozen=True)
@@ -210,15 +205,15 @@ class _RunInformation:
 
     Attributes
     ----------
-    known
-        Sums of squares of the derivatives, one (k,) a run.
+    squares
+        Sums of squares of the derivatives, shape (runs, k).
     factors
         Innovations and derivatives in reduced rows, one pair a run.
     innovations
         Number of innovations of each run.
     """
 
-    known: Array
+    squares: Array
     factors: list[tuple[Array, Array]]
     innovations: list[int]
 
@@ -231,16 +226,16 @@ class _RunInformation:
             r, j = one.stacked([residual], [jacobian], solution.noise)
             factors.append(triangular(r, j))
             innovations.append(len(r))
-        return cls(_known(solution), factors, innovations)
+        return cls(_squares(solution), factors, innovations)
 
     def step(self, rest: list[int]) -> tuple[Array, float]:
         """Gauss-Newton step to the remaining runs, and its square relative to their noise."""
         r = np.concatenate([self.factors[i][0] for i in rest])
         j = np.concatenate([self.factors[i][1] for i in rest])
         step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
-        ahead = j @ step
+        change = j @ step
         count = max(sum(self.innovations[i] for i in rest), 1)
-        square = float(ahead @ ahead) * count / max(float(r @ r), 1e-300)
+        square = float(change @ change) * count / max(float(r @ r), 1e-300)
         return np.asarray(step), square
 
 
@@ -250,25 +245,24 @@ def _predicted(
     information: _RunInformation,
     group: list[int],
     rest: list[int],
+    identified: Mask,
 ) -> list[Array]:
-    """Residuals, N, of runs that were held out of the fit."""
-    held = _held(
-        problem, _unknown(solution, information.known, information.known[rest].sum(axis=0))
-    )
+    """Residuals, N, of a group of held-out runs after a fit to the rest."""
+    held = _held(problem, ~identified)
     start = _at(problem, solution, held)
     step: Array | None = None
     if not held:
-        way, square = information.step(rest)
-        there = problem.encode(solution.values) + way
-        step = problem.decode(there, solution.values)
-        inside = np.allclose(problem.encode(step), there, rtol=0.0, atol=1e-9)
+        step_x, square = information.step(rest)
+        target = problem.encode(solution.values) + step_x
+        step = problem.decode(target, solution.values)
+        inside = np.allclose(problem.encode(step), target, rtol=0.0, atol=1e-9)
         # With many maxima, a step does not show which one the remaining runs would reach.
         smooth = solution.converged and not any(find_effect(e).peaks for e in solution.effects)
-        if inside and smooth and square <= SHORT**2 * len(way):
+        if inside and smooth and square <= SHORT**2 * len(step_x):
             residuals = problem.residuals(step, group)
-            if _straight(solution, way, group, residuals):
+            if _straight(solution, step_x, group, residuals):
                 return residuals
-    part = _of(problem, problem.campaign.only(rest), held)
+    part = _with_held(problem, problem.campaign.only(rest), held)
     kept = solution.samples.only(rest)
     if step is not None:
         # The solution of a law that fits badly is not a reliable starting point.
@@ -277,21 +271,22 @@ def _predicted(
 
 
 def _fitted(part: Problem, kept: Samples, start: Array, solution: Solution) -> Array:
+    """Parameter values after a short search from `start`, with the noise of a solution."""
     if not part.open:
         return start
     return search(part, kept, start, solution.noise, EVALUATIONS).values
 
 
-def _straight(solution: Solution, way: Array, group: list[int], residuals: list[Array]) -> bool:
+def _straight(solution: Solution, step_x: Array, group: list[int], residuals: list[Array]) -> bool:
     """Whether the predictions of runs change along a step as their derivatives predict."""
-    off, moved, size = 0.0, 0.0, 0.0
-    for i, there in zip(group, residuals, strict=True):
-        at = solution.samples.counted[i]
-        here, change = solution.residuals[i][at], (solution.jacobian[i] @ way)[at]
-        off += float(np.sum((here - change - there[at]) ** 2))
+    error, moved, size = 0.0, 0.0, 0.0
+    for i, refitted in zip(group, residuals, strict=True):
+        counted = solution.samples.counted[i]
+        residual, change = solution.residuals[i][counted], (solution.jacobian[i] @ step_x)[counted]
+        error += float(np.sum((residual - change - refitted[counted]) ** 2))
         moved += float(np.sum(change**2))
-        size += float(np.sum(here**2))
-    return off <= STRAIGHT**2 * moved + (STRAIGHT * NOTHING) ** 2 * size
+        size += float(np.sum(residual**2))
+    return error <= STRAIGHT**2 * moved + (STRAIGHT * NOTHING) ** 2 * size
 
 
 def _groups(campaign: Campaign) -> list[list[int]]:
@@ -313,16 +308,16 @@ def _groups(campaign: Campaign) -> list[list[int]]:
     return [sorted(order[k::folds]) for k in range(folds)]
 
 
-def _of(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
+def _with_held(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
     """Return the problem for other runs, with more parameters held."""
     fixed = {**problem.fixed, **held}
     return Problem(campaign, problem.law, problem.clock, problem.effects, fixed, problem.bounds)
 
 
-def _held(problem: Problem, unknown: Mask) -> dict[str, float]:
-    """Parameters that are not determined, with their null or starting value."""
+def _held(problem: Problem, unidentified: Mask) -> dict[str, float]:
+    """Parameters that are not identifiable, with their null or starting value."""
     held = {}
-    for i in np.asarray(problem.open)[unknown]:
+    for i in np.asarray(problem.open)[unidentified]:
         page = problem.parameters[problem.names[i]]
         null = page.null if page.null is not None and np.isfinite(page.null) else None
         held[problem.names[i]] = page.starts[0] if null is None else null
@@ -331,8 +326,8 @@ def _held(problem: Problem, unknown: Mask) -> dict[str, float]:
 
 def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
     """The solution with the held parameters set to their fixed values."""
-    known = zip(problem.names, solution.values.tolist(), strict=True)
-    return np.array([held.get(name, value) for name, value in known])
+    values = zip(problem.names, solution.values.tolist(), strict=True)
+    return np.array([held.get(name, value) for name, value in values])
 
 
 def _halves(problem: Problem, solution: Solution) -> list[HeldOutPart]:
@@ -344,12 +339,11 @@ def _halves(problem: Problem, solution: Solution) -> list[HeldOutPart]:
     for half in (~first, first):
         kept = solution.samples.within([~half])
         values = search(problem, kept, solution.values, solution.noise, EVALUATIONS).values
-        determined = np.ones(solution.free, dtype=bool)
-        parts.append(HeldOutPart((0,), (half,), determined, tuple(problem.residuals(values))))
+        identified = np.ones(solution.free, dtype=bool)
+        parts.append(HeldOutPart((0,), (half,), identified, tuple(problem.residuals(values))))
     return parts
 
 
 def alternate_parts(count: int, parts: int) -> Mask:
     """Mask of the first, third, ... of a number of equal parts of a run, shape (count,)."""
-    found: Mask = (np.arange(count) * parts // max(count, 1)) % 2 == 0
-    return found
+    return np.asarray((np.arange(count) * parts // max(count, 1)) % 2 == 0)

@@ -32,6 +32,8 @@ from jbf.records.recorded_load import recorded_load
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Strokes = npt.NDArray[np.intp]
+Units = list[tuple[int, Mask]]
+"""Index of a run, and a mask of those of its counting samples that belong to the unit."""
 
 
 def mean_square(solution: Solution, samples: Samples, noise: Noise) -> tuple[float, int]:
@@ -42,31 +44,35 @@ def mean_square(solution: Solution, samples: Samples, noise: Noise) -> tuple[flo
 
 
 @dataclass(frozen=True)
-class _Rows:
+class _Moments:
     """Sums over held-out samples that determine their predictive density.
 
-    They are the squared errors, the products of errors and derivatives, and the products of the
-    derivatives.
+    Attributes
+    ----------
+    square, gradient, information
+        Sums of the squared errors, of errors times derivatives, and of products of derivatives.
+    identified
+        Which parameters the fitted samples identify.
     """
 
     square: float
-    pull: Array
-    products: Array
-    determined: Mask
+    gradient: Array
+    information: Array
+    identified: Mask
 
     @classmethod
-    def of(cls, part: HeldOutPart, solution: Solution, samples: Samples, noise: Noise) -> _Rows:
-        own = [solution.jacobian[i] for i in part.runs]
-        e, j = samples.only(part.runs).stacked(part.residuals, own, noise)
+    def of(cls, part: HeldOutPart, solution: Solution, samples: Samples, noise: Noise) -> _Moments:
+        jacobian = [solution.jacobian[i] for i in part.runs]
+        e, j = samples.only(part.runs).stacked(part.residuals, jacobian, noise)
         # Select after the whitening: the first innovation of a half depends on the sample before
         # it.
         weight = [samples.weight[i] > 0.0 for i in part.runs]
-        left = np.concatenate([m[w] for m, w in zip(part.left, weight, strict=True)])
-        e, j = e[left], j[left]
-        return cls(float(e @ e), j.T @ e, j.T @ j, part.determined)
+        held_out = np.concatenate([m[w] for m, w in zip(part.masks, weight, strict=True)])
+        e, j = e[held_out], j[held_out]
+        return cls(float(e @ e), j.T @ e, j.T @ j, part.identified)
 
 
-def surprise(
+def predictive_deviance(
     solution: Solution,
     parts: Sequence[HeldOutPart],
     samples: Samples,
@@ -86,29 +92,34 @@ def surprise(
     variance
         Variance of the innovations, N^2.
     """
-    rows = [_Rows.of(part, solution, samples, noise) for part in parts]
-    whole = np.sum([own.products for own in rows], axis=0)
-    size = np.sqrt(np.diag(whole))
+    moments = [_Moments.of(part, solution, samples, noise) for part in parts]
+    total = np.sum([part.information for part in moments], axis=0)
+    prior = samples.settings.held_out.min_information
+    return sum(_part_deviance(part, total, variance, prior) for part in moments)
+
+
+def _part_deviance(part: _Moments, total: Array, variance: float, prior: float) -> float:
+    """Minus twice the log predictive density of one part.
+
+    Parameters
+    ----------
+    total
+        Information of all parts on the parameters, shape (k, k).
+    prior
+        Prior information on each parameter, relative to the total.
+    """
+    size = np.sqrt(np.diag(total))
     size[size <= 0.0] = 1.0
-    least = samples.settings.held_out.min_information
-    return sum(_of(own, whole, size, variance, least) for own in rows)
-
-
-def _of(rows: _Rows, whole: Array, size: Array, variance: float, least: float) -> float:
-    determined = rows.determined
-    scale = np.outer(size[determined], size[determined])
-    # A parameter that no other run determines has a prior of a hundred times its final error.
-    known = whole[np.ix_(determined, determined)] / scale + least * np.eye(len(scale))
-    before = known - rows.products[np.ix_(determined, determined)] / scale
-    pull = rows.pull[determined] / size[determined]
-    square = rows.square - float(pull @ np.linalg.solve(known, pull))
-    _, after_det = np.linalg.slogdet(known)
+    size, among = size[part.identified], np.ix_(part.identified, part.identified)
+    scale = np.outer(size, size)
+    # A parameter that no other run identifies has a prior of a hundred times its final error.
+    after = total[among] / scale + prior * np.eye(len(scale))
+    before = after - part.information[among] / scale
+    gradient = part.gradient[part.identified] / size
+    square = part.square - float(gradient @ np.linalg.solve(after, gradient))
+    _, after_det = np.linalg.slogdet(after)
     _, before_det = np.linalg.slogdet(before)
     return square / variance + float(after_det - before_det)
-
-
-Units = list[tuple[int, Mask]]
-"""Index of a run, and a mask of those of its counting samples that belong to the unit."""
 
 
 def stroke_of(p: Prepared) -> Strokes:
@@ -118,11 +129,11 @@ def stroke_of(p: Prepared) -> Strokes:
     """
     motion = p.motion
     moving = np.flatnonzero(p.slides)
-    found = np.full(len(motion.velocity), -1, dtype=np.intp)
+    strokes = np.full(len(motion.velocity), -1, dtype=np.intp)
     if len(moving):
         sign = np.sign(motion.velocity[moving])
-        found[moving] = np.cumsum(np.diff(sign, prepend=sign[0]) != 0.0)
-    return found
+        strokes[moving] = np.cumsum(np.diff(sign, prepend=sign[0]) != 0.0)
+    return strokes
 
 
 def independent_units(
@@ -146,13 +157,18 @@ def independent_units(
     for i, mask in runs.items():
         stroke = stroke_of(prepared[i])[mask]
         members = [stroke == k for k in range(int(np.max(stroke, initial=-1)) + 1)]
-        units += [(i, own) for own in members if np.count_nonzero(own) >= settings.min_unit_samples]
+        units += [
+            (i, unit) for unit in members if np.count_nonzero(unit) >= settings.min_unit_samples
+        ]
     return units
 
 
 @dataclass(frozen=True)
-class Beyond:
+class ExtrapolatedRun:
     """A run that is beyond the range of all others.
+
+    The prediction of a fast run from slower ones is an extrapolation. Its error depends on the form
+    of the law more than on the fit, and is not a held-out error.
 
     Attributes
     ----------
@@ -170,13 +186,13 @@ class Beyond:
     others: float
 
 
-def runs_beyond(campaign: Campaign) -> list[Beyond]:
+def extrapolated_runs(campaign: Campaign) -> list[ExtrapolatedRun]:
     """Runs that are beyond the range of all others, each with the first such quantity."""
-    found: dict[int, Beyond] = {}
+    by_run: dict[int, ExtrapolatedRun] = {}
     for quantity, values in _quantities(campaign).items():
-        for beyond in _beyond(quantity, values, campaign.settings.held_out):
-            found.setdefault(beyond.run, beyond)
-    return [found[run] for run in sorted(found)]
+        for extrapolated in _extrapolated(quantity, values, campaign.settings.held_out):
+            by_run.setdefault(extrapolated.run, extrapolated)
+    return [by_run[run] for run in sorted(by_run)]
 
 
 def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
@@ -184,22 +200,25 @@ def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
     runs, counted = campaign.prepared, campaign.samples.counted
     speeds = [p.motion.velocity[c] for p, c in zip(runs, counted, strict=True)]
     loads = [recorded_load(p.rig, p.run) for p in runs]
-    known = [load[c] for load, c in zip(loads, counted, strict=True) if load is not None]
-    return {"speed": speeds} | ({"load": known} if len(known) == len(runs) else {})
+    recorded = [load[c] for load, c in zip(loads, counted, strict=True) if load is not None]
+    return {"speed": speeds} | ({"load": recorded} if len(recorded) == len(runs) else {})
 
 
-def _beyond(quantity: str, values: list[Array], settings: HeldOutSettings) -> list[Beyond]:
+def _extrapolated(
+    quantity: str, values: list[Array], settings: HeldOutSettings
+) -> list[ExtrapolatedRun]:
+    """Runs with a share of samples beyond the range of a quantity in all other runs."""
     top = max((float(np.max(np.abs(v), initial=0.0)) for v in values), default=0.0)
-    margin, found = settings.extrapolation_margin * top, []
-    for run, own in enumerate(values):
+    margin, extrapolated = settings.extrapolation_margin * top, []
+    for run, run_values in enumerate(values):
         rest = [v for other, v in enumerate(values) if other != run and len(v)]
-        if not len(own) or not rest:
+        if not len(run_values) or not rest:
             continue
         low, high = min(float(v.min()) for v in rest), max(float(v.max()) for v in rest)
         for outside, value, others in (
-            (own > high + margin, float(own.max()), high),
-            (own < low - margin, float(own.min()), low),
+            (run_values > high + margin, float(run_values.max()), high),
+            (run_values < low - margin, float(run_values.min()), low),
         ):
             if np.mean(outside) > settings.extrapolation_share:
-                found.append(Beyond(run, quantity, value, others))
-    return found
+                extrapolated.append(ExtrapolatedRun(run, quantity, value, others))
+    return extrapolated

@@ -18,7 +18,7 @@ from jbf.estimation.bounds import at_bound, bound_note
 from jbf.estimation.jumps import active_effects
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from jbf.estimation.standard_errors import Spread
+from jbf.estimation.standard_errors import StandardErrors
 from jbf.models.catalogue import Parameter
 from jbf.models.parameter_value import ParameterValue
 
@@ -52,42 +52,42 @@ value. It is a numerical resolution.
 """
 
 
-def undetermined(
-    page: Parameter, value: float, error: float, *, moved: bool = True, separate: bool = True
+def reason_not_identifiable(
+    page: Parameter, value: float, error: float, *, sensitive: bool = True, separate: bool = True
 ) -> str | None:
-    """Why the runs did not determine a fitted parameter; None if they did.
+    """Why the runs do not identify a fitted parameter; None if they do.
 
     Parameters
     ----------
     value, error
         Value and standard error in the parameter's unit; the error is nan if it is unknown.
-    moved
+    sensitive
         Whether anything in these runs depends on the parameter.
     separate
         Whether the parameter can be distinguished from all other parameters.
     """
-    if not moved:
+    if not sensitive:
         return NEVER_MOVED
     note = bound_note(page, value, error)
     if note is None and not separate:
         note = NOT_SEPARATE
-    return note or _larger_than_itself(page, value, error)
+    return note or _exceeds_itself(page, value, error)
 
 
-def _larger_than_itself(page: Parameter, value: float, error: float) -> str | None:
+def _exceeds_itself(page: Parameter, value: float, error: float) -> str | None:
     """Return a note if the error of a scale exceeds its value, else None.
 
-    A scale has no sign, so such an error leaves its size undetermined. A signed parameter may
-    be zero within its error.
+    A scale has no sign, so such an error leaves its size undetermined. A signed parameter may be
+    zero within its error.
     """
     if not (page.log or page.lower == 0.0) or not error > abs(value):
         return None
-    said = f"not determined: its standard error, {error:.2g}, exceeds its value"
+    reason = f"not determined: its standard error, {error:.2g}, exceeds its value"
     most = value + ONE_SIDED * error
     # For a logarithmic parameter with such an error, no interval holds on either side.
     if page.log or most >= page.upper:
-        return said
-    return f"{said}; it is below {most:.2g}"
+        return reason
+    return f"{reason}; it is below {most:.2g}"
 
 
 def idle_effects(
@@ -111,8 +111,8 @@ def idle_effects(
     errors = errors or {}
     snapped = []
     for (name, page), value in zip(pages.items(), values, strict=True):
-        there = at_null(page, value, errors.get(name, math.nan), fixed=name in fixed)
-        snapped.append(page.null if there and page.null is not None else math.nan)
+        is_null = at_null(page, value, errors.get(name, math.nan), fixed=name in fixed)
+        snapped.append(page.null if is_null and page.null is not None else math.nan)
     active = active_effects(effects, pages, snapped)
     return tuple(name for name in effects if name not in active)
 
@@ -132,7 +132,7 @@ def at_null(page: Parameter, value: float, error: float = math.nan, *, fixed: bo
 
 
 @dataclass(frozen=True, eq=False)
-class PutBack:
+class Reset:
     """A solution without arbitrary parameter values.
 
     Attributes
@@ -150,9 +150,9 @@ class PutBack:
     notes: dict[str, str]
 
 
-def put_back(
-    problem: Problem, solution: Solution, spread: Spread, start: Mapping[str, float]
-) -> PutBack:
+def reset_unidentified(
+    problem: Problem, solution: Solution, errors: StandardErrors, start: Mapping[str, float]
+) -> Reset:
     """Set idle effects to their null, and unidentified parameters towards a neutral value.
 
     Parameters
@@ -160,52 +160,53 @@ def put_back(
     start
         The user's starting values by full name; by default those of the catalogue.
     """
-    found = PutBack(solution.values, solution.residuals, {})
-    found = _idle_to_null(found, problem, solution, spread, start)
+    reset = Reset(solution.values, solution.residuals, {})
+    reset = _idle_to_null(reset, problem, solution, errors, start)
     for k, i in enumerate(problem.open):
         name = problem.names[i]
-        if spread.moved[k] or name in found.notes:
+        if errors.sensitive[k] or name in reset.notes:
             continue
-        page, value = problem.parameters[name], float(found.values[i])
-        home = start.get(name, _home(problem, name, found.values))
-        note = f"not determined: the data exclude only {home:.3g}"
+        page, value = problem.parameters[name], float(reset.values[i])
+        neutral = start.get(name, _neutral(problem, name, reset.values))
+        note = f"not determined: the data exclude only {neutral:.3g}"
         for share in SHARES:
-            there = found.values.copy()
-            there[i] = _moved_towards(page, value, home, share)
-            residuals = _same(problem, solution, there)
+            values = reset.values.copy()
+            values[i] = _moved_towards(page, value, neutral, share)
+            residuals = _same(problem, solution, values)
             if residuals is not None:
                 note = NEVER_MOVED if share == 1.0 else note
-                found = PutBack(there, residuals, found.notes)
+                reset = Reset(values, residuals, reset.notes)
                 break
-        found = PutBack(found.values, found.residuals, {**found.notes, name: note})
-    return found
+        reset = Reset(reset.values, reset.residuals, {**reset.notes, name: note})
+    return reset
 
 
 def _idle_to_null(
-    found: PutBack,
+    reset: Reset,
     problem: Problem,
     solution: Solution,
-    spread: Spread,
+    errors: StandardErrors,
     start: Mapping[str, float],
-) -> PutBack:
-    errors = {problem.names[i]: spread.error(k) for k, i in enumerate(problem.open)}
+) -> Reset:
+    """Set the effects that a fit left at their null to it exactly."""
+    by_name = {problem.names[i]: errors.error(k) for k, i in enumerate(problem.open)}
     idle = idle_effects(
-        problem.effects, problem.parameters, solution.values.tolist(), errors, problem.fixed
+        problem.effects, problem.parameters, solution.values.tolist(), by_name, problem.fixed
     )
     for effect in idle:
-        own = [i for i in problem.open if problem.names[i].startswith(f"{effect}.")]
-        there = found.values.copy()
-        for i in own:
+        indices = [i for i in problem.open if problem.names[i].startswith(f"{effect}.")]
+        values = reset.values.copy()
+        for i in indices:
             name, page = problem.names[i], problem.parameters[problem.names[i]]
-            there[i] = start.get(name, page.starts[0]) if page.null is None else page.null
-        residuals = _same(problem, solution, there)
+            values[i] = start.get(name, page.starts[0]) if page.null is None else page.null
+        residuals = _same(problem, solution, values)
         if residuals is not None:
-            notes = dict.fromkeys((problem.names[i] for i in own), NO_EFFECT)
-            found = PutBack(there, residuals, {**found.notes, **notes})
-    return found
+            notes = dict.fromkeys((problem.names[i] for i in indices), NO_EFFECT)
+            reset = Reset(values, residuals, {**reset.notes, **notes})
+    return reset
 
 
-def _home(problem: Problem, name: str, values: Array) -> float:
+def _neutral(problem: Problem, name: str, values: Array) -> float:
     """Value at which a parameter changes nothing, or its starting value.
 
     A breakaway force without evidence of a peak equals the sliding force.
@@ -216,16 +217,16 @@ def _home(problem: Problem, name: str, values: Array) -> float:
     return page.starts[0] if page.null is None else page.null
 
 
-def _moved_towards(page: Parameter, value: float, home: float, share: float) -> float:
-    """Move a value by a fraction of the distance to `home`, in the search variable.
+def _moved_towards(page: Parameter, value: float, target: float, share: float) -> float:
+    """Move a value by a fraction of the distance to `target`, in the search variable.
 
-    An infinite `home` is reached only with a fraction of one.
+    An infinite `target` is reached only with a fraction of one.
     """
-    if share == 1.0 or not np.isfinite(home):
-        return home if share == 1.0 else value
+    if share == 1.0 or not np.isfinite(target):
+        return target if share == 1.0 else value
     if page.log:
-        return float(value * (home / value) ** share)
-    return value + share * (home - value)
+        return float(value * (target / value) ** share)
+    return value + share * (target - value)
 
 
 def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | None:
@@ -240,25 +241,28 @@ def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | 
     return residuals if np.isfinite(gap) and gap <= allowed else None
 
 
-def parameter_values(problem: Problem, found: PutBack, spread: Spread) -> dict[str, ParameterValue]:
+def parameter_values(
+    problem: Problem, reset: Reset, errors: StandardErrors
+) -> dict[str, ParameterValue]:
     """Return values with standard errors by name; parameters that are not identifiable are held."""
     results = {}
-    values = found.values.tolist()
+    values = reset.values.tolist()
     for i, (name, page) in enumerate(problem.parameters.items()):
-        error, note = None, found.notes.get(name)
+        error, note = None, reset.notes.get(name)
         if i not in problem.open:
             note = STATED if page.stated else HELD
         elif note is None:
             k = problem.open.index(i)
-            error = spread.error(k)
-            separate = bool(spread.separate[k])
-            note = undetermined(page, values[i], error, separate=separate)
+            error = errors.error(k)
+            separate = bool(errors.separate[k])
+            note = reason_not_identifiable(page, values[i], error, separate=separate)
         results[name] = ParameterValue(values[i], None if note else error, note, note is not None)
     return results
 
 
-def correlations(problem: Problem, parameters: dict[str, ParameterValue], spread: Spread) -> Array:
+def correlations(
+    problem: Problem, parameters: dict[str, ParameterValue], errors: StandardErrors
+) -> Array:
     """Correlations of the parameters that are not held, in their order, shape (k, k)."""
     kept = [k for k, i in enumerate(problem.open) if not parameters[problem.names[i]].held]
-    among: Array = spread.correlation[kept][:, kept]
-    return among
+    return np.asarray(errors.correlation[kept][:, kept])

@@ -26,37 +26,37 @@ Mask = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Memory:
-    """A part of the model with an unknown state at the start of a run.
+    """Memory of a model for the unknown state at the start of a run.
 
     Attributes
     ----------
     speeds
         Speeds of motions before a run that lead to different states, as fractions of its top speed.
-    longer
+    margin
         Factor on the duration of the difference that is excluded.
-    most, most_of_all
+    max_run_share, max_campaign_share
         Largest excluded fraction of a run, and of a campaign.
     """
 
     speeds: tuple[float, ...]
-    longer: float
-    most: float
-    most_of_all: float = 1.0
+    margin: float
+    max_run_share: float
+    max_campaign_share: float = 1.0
 
 
-def memories(
+def initial_memory(
     law: str, effects: Iterable[str], settings: TransientSettings = DEFAULT.transient
-) -> list[Memory]:
-    """Return the parts of a law and its effects that remember the initial state of a run."""
+) -> Memory | None:
+    """Return the memory of the initial state of a run by a law and its effects; None without."""
     page, s = find_law(law), settings
     by_speed = page.has_memory and not page.has_bristle
     if has_unknown_start(effects):
         # A film that builds up or breaks down pushes the load cell in one direction or the other.
         speeds = (*(s.film_speeds if by_speed else ()), *s.contact_speeds)
-        return [Memory(speeds, s.contact_margin, np.inf, s.max_share_backlash)]
+        return Memory(speeds, s.contact_margin, np.inf, s.max_share_backlash)
     if page.has_bristle:
-        return [Memory(s.contact_speeds, s.contact_margin, s.max_share_contact)]
-    return [Memory(s.film_speeds, s.film_margin, s.max_share_film)] if by_speed else []
+        return Memory(s.contact_speeds, s.contact_margin, s.max_share_contact)
+    return Memory(s.film_speeds, s.film_margin, s.max_share_film) if by_speed else None
 
 
 def has_unknown_start(effects: Iterable[str]) -> bool:
@@ -64,11 +64,11 @@ def has_unknown_start(effects: Iterable[str]) -> bool:
     return any(find_effect(name).unknown_start for name in effects)
 
 
-def remembering(
+def transient_masks(
     chain: DrivenChain,
     values: Array,
     prepared: Sequence[Prepared],
-    which: Memory,
+    memory: Memory,
     noise_rms: float,
     settings: TransientSettings = DEFAULT.transient,
 ) -> list[Mask]:
@@ -82,30 +82,30 @@ def remembering(
         Noise on the friction, N.
     """
     # The motion used by the fit has starts between samples and would differ at each stop.
-    begun = []
-    for share in which.speeds:
+    predictions = []
+    for share in memory.speeds:
         motions = [
             core_motion(p.rig, p.run, p.motion, (share, settings.before_s)) for p in prepared
         ]
-        begun.append(chain.predict(values, motions))
-    spreads = [np.ptp(np.array(ways), axis=0) for ways in zip(*begun, strict=True)]
-    found = [
-        _remembered(p, spread > settings.max_difference * noise_rms, which)
+        predictions.append(chain.predict(values, motions))
+    spreads = [np.ptp(np.array(by_speed), axis=0) for by_speed in zip(*predictions, strict=True)]
+    masks = [
+        _transient_mask(p, spread > settings.max_difference * noise_rms, memory)
         for p, spread in zip(prepared, spreads, strict=True)
     ]
-    gone, whole = sum(int(f.sum()) for f in found), sum(f.size for f in found)
-    if gone > which.most_of_all * whole:
-        return [np.zeros(f.size, dtype=bool) for f in found]
-    return found
+    excluded, total = sum(int(m.sum()) for m in masks), sum(m.size for m in masks)
+    if excluded > memory.max_campaign_share * total:
+        return [np.zeros(m.size, dtype=bool) for m in masks]
+    return masks
 
 
-def _remembered(p: Prepared, apart: Mask, which: Memory) -> Mask:
+def _transient_mask(p: Prepared, differs: Mask, memory: Memory) -> Mask:
     """Mask of the first interval in which two initial states differ, extended for safety."""
-    index = np.flatnonzero(apart)
+    index = np.flatnonzero(differs)
     if not len(index):
-        return np.zeros(len(apart), dtype=bool)
+        return np.zeros(len(differs), dtype=bool)
     time = p.run.time_s
-    until = time[index[0]] + which.longer * (time[index[-1]] - time[index[0]])
+    until = time[index[0]] + memory.margin * (time[index[-1]] - time[index[0]])
     # Samples before the motion (a rest) do not depend on the initial state.
     mask: Mask = (time >= time[index[0]]) & (time <= until)
-    return mask if mask.mean() < which.most else np.zeros(len(apart), dtype=bool)
+    return mask if mask.mean() < memory.max_run_share else np.zeros(len(differs), dtype=bool)

@@ -51,12 +51,12 @@ def active_effects(
 
     `pages` and `values` are in the same order, that of the parameters' full names.
     """
-    off: dict[str, bool] = {}
+    active: dict[str, bool] = {}
     for (name, page), value in zip(pages.items(), values, strict=True):
         effect, dot, _ = name.partition(".")
         if dot and page.null is not None:
-            off[effect] = off.get(effect, False) or page.null != value
-    return [effect for effect in effects if off.get(effect, True)]
+            active[effect] = active.get(effect, False) or page.null != value
+    return [effect for effect in effects if active.get(effect, True)]
 
 
 def jumps(prediction: Array, settings: JumpSettings = DEFAULT.jumps) -> Array:
@@ -65,16 +65,12 @@ def jumps(prediction: Array, settings: JumpSettings = DEFAULT.jumps) -> Array:
     # A ramp across a sample contributes to two changes, so one neighbour may belong to it. The two
     # jumps at a backlash gap may be equally close.
     around = np.pad(change, 2)
-    before, after = (
-        np.minimum(around[:-4], around[1:-3]),
-        np.minimum(around[3:-1], around[4:]),
-    )
-    alone = change > settings.min_ratio * np.maximum(before, after)
+    before = np.minimum(around[:-4], around[1:-3])
+    after = np.minimum(around[3:-1], around[4:])
+    isolated = change > settings.min_ratio * np.maximum(before, after)
     largest = np.max(np.abs(prediction), initial=0.0)
-    steep = alone & (change > settings.min_share * largest)
-    steep = np.where(steep, change, 0.0)
-    found: Array = np.maximum(np.append(steep, 0.0), np.append(0.0, steep))
-    return found
+    steep = np.where(isolated & (change > settings.min_share * largest), change, 0.0)
+    return np.asarray(np.maximum(np.append(steep, 0.0), np.append(0.0, steep)))
 
 
 def samples_near_jumps(
@@ -107,39 +103,40 @@ def samples_near_jumps(
 def _without_jumps(
     p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
+    """Samples without those in or next to a jump, and weights for half of its change."""
     change = jumps(prediction, settings)
     kept = counted & (change == 0.0)
-    return kept, weight * _share(0.5 * change, _noise_n(p, kept, prediction))
+    return kept, weight * _share(0.5 * change, _residual_rms(p, kept, prediction))
 
 
 def _without_reversals(
     p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
-    noise_rms = _noise_n(p, counted, prediction)
-    error_n = instant_errors_n(p, prediction, settings.max_timing_error * noise_rms)
+    """Samples without those behind a reversal of uncertain time, and weights for its error."""
+    noise_rms = _residual_rms(p, counted, prediction)
+    error_n = timing_errors(p, prediction, settings.max_timing_error * noise_rms)
     return counted & (error_n == 0.0), weight * _share(error_n, noise_rms)
 
 
-def _noise_n(p: Prepared, kept: Mask, prediction: Array) -> float:
+def _residual_rms(p: Prepared, kept: Mask, prediction: Array) -> float:
     return float(np.sqrt(np.mean((prediction - p.friction)[kept] ** 2))) if kept.any() else 0.0
 
 
 def _share(error_n: Array, noise_rms: float) -> Array:
     """Weight of a sample whose prediction has this error in addition to the noise."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        share: Array = np.where(error_n > 0.0, noise_rms / np.hypot(noise_rms, error_n), 1.0)
-    return share
+        return np.asarray(np.where(error_n > 0.0, noise_rms / np.hypot(noise_rms, error_n), 1.0))
 
 
-def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:
+def timing_errors(p: Prepared, prediction: Array, least_n: float) -> Array:
     """Standard error of a prediction (N) after each reversal, due to the error of its time.
 
     Shape (n,); zero elsewhere, and from where the error falls below `least_n`.
     """
     motion, time_s = p.motion, p.run.time_s
-    found = np.zeros(len(prediction))
+    errors = np.zeros(len(prediction))
     if len(prediction) < 3:
-        return found
+        return errors
     rate_n_s = np.abs(np.gradient(prediction, time_s))
     befores, afters = _reversals(p)
     for k, (before, after) in enumerate(zip(befores, afters, strict=True)):
@@ -153,8 +150,8 @@ def instant_errors_n(p: Prepared, prediction: Array, least_n: float) -> Array:
         small = np.flatnonzero(behind_n[after - before - 1 :] < least_n)
         if len(small):
             behind_n = behind_n[: after - before - 1 + int(small[0])]
-        found[before + 1 : before + 1 + len(behind_n)] = behind_n
-    return found
+        errors[before + 1 : before + 1 + len(behind_n)] = behind_n
+    return errors
 
 
 def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
@@ -163,9 +160,9 @@ def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
     Only reversals without a rest in between are included.
     """
     motion = p.motion
-    known = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity != 0.0))
-    turned = np.flatnonzero(np.diff(np.sign(motion.velocity[known])) != 0.0)
-    befores, afters = known[turned], known[turned + 1]
+    directed = np.flatnonzero(motion.sign_known & ~motion.resting & (motion.velocity != 0.0))
+    turned = np.flatnonzero(np.diff(np.sign(motion.velocity[directed])) != 0.0)
+    befores, afters = directed[turned], directed[turned + 1]
     rests = np.concatenate(([0], np.cumsum(motion.resting)))
     moving = rests[afters] == rests[befores]
     return befores[moving].tolist(), afters[moving].tolist()

@@ -62,7 +62,7 @@ class OnDemand(Sequence[Array]):
         return self._make(range(self._count)[which])
 
 
-def groups_of(lengths: Sequence[int], width: int) -> list[list[int]]:
+def memory_groups(lengths: Sequence[int], width: int) -> list[list[int]]:
     """Group consecutive runs such that the rows of a group, of the given width, fit into memory."""
     groups: list[list[int]] = []
     held = GROUP
@@ -75,17 +75,17 @@ def groups_of(lengths: Sequence[int], width: int) -> list[list[int]]:
     return groups
 
 
-def every_so_many(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
+def select_runs(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
     """Select runs with half of the largest number of samples of a search.
 
     All runs are selected if there are too few samples. The selection is at regular intervals by
     name, and does not depend on the order of the runs.
     """
-    apart = 2.0 * sum(lengths) / MOST_SEARCHED
-    if apart <= 2.0 or len(lengths) < 2.0 * apart:
+    interval = 2.0 * sum(lengths) / MOST_SEARCHED
+    if interval <= 2.0 or len(lengths) < 2.0 * interval:
         return list(range(len(lengths)))
     by_name = sorted(range(len(names)), key=lambda i: names[i])
-    return sorted(by_name[k] for k in range(0, len(names), int(np.ceil(apart))))
+    return sorted(by_name[k] for k in range(0, len(names), int(np.ceil(interval))))
 
 
 def triangular(r: Array, j: Array) -> tuple[Array, Array]:
@@ -103,8 +103,8 @@ def least_squares(design: Array, target: Array) -> Array:
     """Shortest least-squares step in the columns of a design, each scaled to unit length."""
     size = np.linalg.norm(design, axis=0)
     size[size <= 0.0] = 1.0
-    left, axes = triangular(target, design / size)
-    step, *_ = np.linalg.lstsq(axes, left, rcond=INDEPENDENT)
+    reduced, axes = triangular(target, design / size)
+    step, *_ = np.linalg.lstsq(axes, reduced, rcond=INDEPENDENT)
     return np.asarray(step / size)
 
 
@@ -125,11 +125,10 @@ def spanned(design: Array) -> Array:
     design = np.ldexp(design, -power)
     size = np.linalg.norm(design, axis=0)
     axes, sizes, _ = np.linalg.svd(design[:, size > 0.0] / size[size > 0.0], full_matrices=False)
-    span: Array = axes[:, sizes > INDEPENDENT * np.max(sizes, initial=0.0)]
-    return span
+    return np.asarray(axes[:, sizes > INDEPENDENT * np.max(sizes, initial=0.0)])
 
 
 def unexplained_square(design: Array, target: Array) -> float:
     """Sum of squares of the part of a target that a design does not explain."""
-    left = unexplained(design, target)
-    return float(left @ left)
+    residual = unexplained(design, target)
+    return float(residual @ residual)

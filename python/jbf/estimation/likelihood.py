@@ -18,7 +18,7 @@ from jbf.estimation.problem import Lines, Problem
 from jbf.estimation.samples import Samples, common_samples
 from jbf.estimation.settings import DEFAULT, NoiseSettings
 from jbf.estimation.solution import Solution
-from jbf.estimation.variance import clipped_square, robust_size, sure_inflation
+from jbf.estimation.variance import clipped_square, robust_size, significant_inflation
 
 Array = npt.NDArray[np.float64]
 
@@ -55,8 +55,8 @@ def _log_determinant(solution: Solution, count: int) -> float:
     samples = solution.samples
     if samples.motion is not None:
         zeros = [np.zeros(len(w)) for w in samples.weight]
-        whole = samples.motion.deviance(zeros, samples.weight)
-        return whole - 2.0 * count * float(np.log(samples.motion.noise))
+        deviance = samples.motion.deviance(zeros, samples.weight)
+        return deviance - 2.0 * count * float(np.log(samples.motion.noise))
     weights = -2.0 * sum(float(np.sum(np.log(w[w > 0.0]))) for w in samples.weight)
     if samples.between is None:
         return weights
@@ -71,8 +71,8 @@ def effective_share(solution: Solution) -> float:
     """Number of independent samples per sample, 0 to 1, from the innovations of a solution."""
     if solution not in _shares:
         samples = solution.samples
-        left = samples.weighted_innovations(solution.residuals, solution.noise)
-        _shares[solution] = independent_share(left, samples.steps_s, samples.settings.noise)
+        innovations = samples.weighted_innovations(solution.residuals, solution.noise)
+        _shares[solution] = independent_share(innovations, samples.steps_s, samples.settings.noise)
     return _shares[solution]
 
 
@@ -82,17 +82,15 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
     It is the smaller of two estimates. One uses all autocorrelations; the other uses the long-run
     variance of the score in the direction in which the two solutions differ.
     """
-    share = effective_share(richer)
     samples = common_samples(richer.samples, simpler.samples)
-    left, ways = [], []
-    for i in range(len(samples.runs)):
-        own, before = (
-            _whitened(samples, s.residuals[i], richer.noise, i) for s in (richer, simpler)
-        )
-        left.append(own)
-        ways.append(before - own)
-    inflation = sure_inflation(ways, left, samples.steps_s, samples.settings.variance)
-    return min(share, 1.0 / inflation)
+    pairs = _innovation_pairs(richer, simpler, samples)
+    inflation = significant_inflation(
+        [e_simpler - e_richer for e_richer, e_simpler in pairs],
+        [e_richer for e_richer, _ in pairs],
+        samples.steps_s,
+        samples.settings.variance,
+    )
+    return min(effective_share(richer), 1.0 / inflation)
 
 
 def robust_gain(richer: Solution, simpler: Solution) -> float:
@@ -101,21 +99,32 @@ def robust_gain(richer: Solution, simpler: Solution) -> float:
     Residuals are clipped at a few robust standard deviations of those of the richer solution.
     """
     samples = common_samples(richer.samples, simpler.samples)
-    own, before = (
-        np.concatenate(
-            [_whitened(samples, r, richer.noise, i) for i, r in enumerate(solution.residuals)]
-        )
-        for solution in (richer, simpler)
-    )
-    size, clip = robust_size(own), samples.settings.noise.clip_sigma
-    left = clipped_square(own, size, clip)
+    pairs = _innovation_pairs(richer, simpler, samples)
+    e_richer, e_simpler = (np.concatenate(e) for e in zip(*pairs, strict=True))
+    size, clip = robust_size(e_richer), samples.settings.noise.clip_sigma
+    square = clipped_square(e_richer, size, clip)
     # After an exact fit to most samples, no sample counts as an outlier.
-    return len(own) * (clipped_square(before, size, clip) / left - 1.0) if left > 0.0 else np.inf
+    if square <= 0.0:
+        return np.inf
+    return len(e_richer) * (clipped_square(e_simpler, size, clip) / square - 1.0)
 
 
-def _whitened(samples: Samples, residual: Array, noise: Noise, run: int) -> Array:
-    """Innovations of a run with the correlation due to its random effects removed."""
-    return samples.only([run]).stacked([residual], [np.zeros((len(residual), 0))], noise)[0]
+def _innovation_pairs(
+    richer: Solution, simpler: Solution, samples: Samples
+) -> list[tuple[Array, Array]]:
+    """Innovations of two solutions with the noise of the richer one, one pair a run.
+
+    The correlation due to the random effects of a run is removed.
+    """
+
+    def whitened(residual: Array, run: int) -> Array:
+        empty = np.zeros((len(residual), 0))
+        return samples.only([run]).stacked([residual], [empty], richer.noise)[0]
+
+    return [
+        (whitened(richer.residuals[i], i), whitened(simpler.residuals[i], i))
+        for i in range(len(samples.runs))
+    ]
 
 
 def independent_share(
@@ -162,8 +171,8 @@ def next_step_gain(solution: Solution) -> float:
 
 def promised_gain(r: Array, j: Array, count: int) -> float:
     """Predicted log-likelihood gain of a step, from `count` innovations and their derivatives."""
-    left = max(unexplained_square(j, r), 1e-300)
-    return count * float(np.log(max(float(r @ r), 1e-300) / left))
+    remaining = max(unexplained_square(j, r), 1e-300)
+    return count * float(np.log(max(float(r @ r), 1e-300) / remaining))
 
 
 def noise_at(
@@ -174,9 +183,9 @@ def noise_at(
     With many long runs, a selection of runs is used. `lines` holds the residuals and derivatives at
     these values, if they are known.
     """
-    which = problem.searched
-    samples = samples if len(which) == len(samples.runs) else samples.only(which)
-    residuals = problem.residuals(values, which) if lines is None else lines[0]
+    selection = problem.searched
+    samples = samples if len(selection) == len(samples.runs) else samples.only(selection)
+    residuals = problem.residuals(values, selection) if lines is None else lines[0]
     residuals = samples.without_deviations(residuals, WHITE)
     masked = [r * c for r, c in zip(residuals, samples.counted, strict=True)]
     most_n, settings = problem.campaign.most_noise_n, samples.settings.noise

@@ -105,7 +105,7 @@ class Approach:
         each: bool = False,
         stepped: Array | None = None,
     ) -> None:
-        self.problem, self.few = problem, problem.thinned
+        self.problem, self.thinned = problem, problem.thinned
         self._groups = [problem.starts({**seed, **problem.fixed}) for seed in seeds]
         self._each = each
         self._stepped = [] if stepped is None else [stepped]
@@ -124,24 +124,23 @@ class Approach:
         groups = [self._likely(k) for k in range(len(self._groups))]
         if self._each:
             groups = [[min(group, key=self._square)] for group in groups]
-        every = itertools.chain(*groups, self._stepped)
-        return sorted(every, key=self._square)
+        return sorted(itertools.chain(*groups, self._stepped), key=self._square)
 
     def _likely(self, k: int) -> list[Array]:
         """Starting points of seed k, reduced to the best ones on one run if there are many."""
         if k not in self._kept:
-            self._kept[k] = self._likeliest(self._groups[k])
+            self._kept[k] = self._best_on_fastest_run(self._groups[k])
         return self._kept[k]
 
-    def _likeliest(self, group: list[Array]) -> list[Array]:
-        few = self.few
-        runs = few.campaign.prepared
+    def _best_on_fastest_run(self, group: list[Array]) -> list[Array]:
+        thinned = self.thinned
+        runs = thinned.campaign.prepared
         if len(group) <= MANY or len(runs) < 2:
             return group
-        fastest = [float(np.max(np.abs(p.motion.velocity))) for p in runs]
-        which = [int(np.argmax(fastest))]
-        samples = few.campaign.samples.only(which)
-        squares = [samples.square(few.residuals(start, which)) for start in group]
+        top_speeds = [float(np.max(np.abs(p.motion.velocity))) for p in runs]
+        fastest = [int(np.argmax(top_speeds))]
+        samples = thinned.campaign.samples.only(fastest)
+        squares = [samples.square(thinned.residuals(start, fastest)) for start in group]
         order = np.argsort(squares, kind="stable")
         return [group[i] for i in order[: max(MANY, len(group) // LIKELY)]]
 
@@ -149,23 +148,23 @@ class Approach:
         """Sum of squares of weighted residuals, N^2, computed once for each starting point."""
         key = values.tobytes()
         if key not in self._squares:
-            self._squares[key] = self.few.square(values)
+            self._squares[key] = self.thinned.square(values)
         return self._squares[key]
 
     def look(self, near: Solution) -> Look:
         """Take a few steps from the best start of the first seed; compare with a smaller model."""
-        problem, few, visited = self.problem, self.few, self.visited
-        some = few.campaign.samples
-        search(few, some, self._nearest, WHITE, LOOKED, visited=visited)
+        problem, thinned, visited = self.problem, self.thinned, self.visited
+        samples = thinned.campaign.samples
+        search(thinned, samples, self._nearest, WHITE, LOOKED, visited=visited)
         # The subsequent search takes the same path and must not count as having joined this one.
         visited.ended.clear()
-        places = list(visited.places.values())
-        lowest = min(places, key=lambda place: place.square)
-        promised = min(unexplained_square(place.jacobian, place.residual) for place in places)
-        before = few.campaign.samples.square([near.residuals[i] for i in problem.searched])
+        points = list(visited.points.values())
+        lowest = min(points, key=lambda point: point.square)
+        linear = min(unexplained_square(point.jacobian, point.residual) for point in points)
+        before = samples.square([near.residuals[i] for i in problem.searched])
         count = problem.campaign.samples.count
-        gain, most = (count * _log_ratio(before, left) for left in (lowest.square, promised))
-        lines = visited.lines_at(lowest.values) if few is problem else None
+        gain, promised = (count * _log_ratio(before, after) for after in (lowest.square, linear))
+        lines = visited.lines_at(lowest.values) if thinned is problem else None
         visited.lowest = None
         if near.noise.colour > 0.0:
             # Next to smooth noise, a small reduction by a sharp feature is a large gain.
@@ -174,8 +173,8 @@ class Approach:
             before = float(np.sum(near.stacked()[0] ** 2))
             r, j = near.samples.stacked(*lines, near.noise)
             gain = max(gain, count * _log_ratio(before, float(r @ r)))
-            most = max(most, count * _log_ratio(before, unexplained_square(j, r)))
-        return Look(lowest.values, gain, most, lines)
+            promised = max(promised, count * _log_ratio(before, unexplained_square(j, r)))
+        return Look(lowest.values, gain, promised, lines)
 
     def solution_of(self, look: Look, near: Solution) -> Solution:
         """Return a first look as a solution, with the noise of the smaller model."""
@@ -205,28 +204,32 @@ class Approach:
             Number of starting points tried, evaluations for each of them before only the best one
             is followed, and method of these first searches.
         """
-        problem, few, visited = self.problem, self.few, self.visited
-        some, starts = few.campaign.samples, self.starts
+        problem, thinned, visited = self.problem, self.thinned, self.visited
+        thinned_samples, starts = thinned.campaign.samples, self.starts
         best = SearchResult(starts[0], False, "")
         if len(starts) > 1:
             trials = starts[:followed]
             peaks = any(find_effect(name).peaks for name in problem.effects)
-            short = []
+            ends = []
             for start in trials:
-                short.append(search(few, some, start, WHITE, steps, method, visited))
+                ends.append(search(thinned, thinned_samples, start, WHITE, steps, method, visited))
                 if peaks:
                     # Two searches that meet may separate again towards different maxima.
                     visited.ended.clear()
-            best = min(short, key=lambda found: visited.square(few, some, found.values))
+            best = min(
+                ends, key=lambda result: visited.square(thinned, thinned_samples, result.values)
+            )
         end = replace(best, converged=False, message="not followed")
-        if len(starts) == 1 or _square(problem, few, visited, best.values) < least:
+        if len(starts) == 1 or _square(problem, thinned, visited, best.values) < least:
             if not best.converged or method != "dogbox":
                 # The search continues where an earlier one ended.
                 visited.ended.clear()
-                best = search(few, some, best.values, WHITE, evaluations, visited=visited)
+                best = search(
+                    thinned, thinned_samples, best.values, WHITE, evaluations, visited=visited
+                )
             # The minimum for all samples is near that for the thinned samples.
-            end = replace(best, converged=best.converged and few is problem)
-        values, lines = end.values, visited.lines_at(end.values) if few is problem else None
+            end = replace(best, converged=best.converged and thinned is problem)
+        values, lines = end.values, visited.lines_at(end.values) if thinned is problem else None
         samples = problem.samples_at(values, lines)
         noise = noise_at(problem, samples, values, lines)
         values = problem.wrapped(values)
@@ -243,17 +246,18 @@ def approach(
     method: Method = "dogbox",
 ) -> Solution:
     """Run a complete approach: rank the starting points, then follow the best one."""
-    way = Approach(problem, seeds)
-    return way.follow(evaluations, followed=followed, steps=steps, method=method)
+    return Approach(problem, seeds).follow(
+        evaluations, followed=followed, steps=steps, method=method
+    )
 
 
 def _log_ratio(before: float, after: float) -> float:
     return float(np.log(max(before, 1e-300) / max(after, 1e-300)))
 
 
-def _square(problem: Problem, few: Problem, visited: Visited, values: Array) -> float:
+def _square(problem: Problem, thinned: Problem, visited: Visited, values: Array) -> float:
     """Sum of squares of weighted residuals over all samples, N^2."""
-    if few is problem:
+    if thinned is problem:
         return visited.square(problem, problem.campaign.samples, values)
     return problem.square(values)
 
@@ -267,23 +271,23 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         Samples to fit. By default those of the campaign, with those next to jumps weighted again
         after the first search.
     """
-    every = problem.campaign.samples if samples is None else samples
+    samples = problem.campaign.samples if samples is None else samples
     end, noise = SearchResult(near.values, near.converged, near.message), near.noise
     if not near.converged:
-        end = search(problem, every, end.values, WHITE, MAX_EVALUATIONS)
-        noise = noise_at(problem, every, end.values)
-    if near.samples is not every:
+        end = search(problem, samples, end.values, WHITE, MAX_EVALUATIONS)
+        noise = noise_at(problem, samples, end.values)
+    if near.samples is not samples:
         # The search first uses jumps at full weight, and then converges with their reduced weight.
-        left = problem.samples_at(end.values)
-        there = problem.solution(end.values, left, noise, False, end.message)
-        return settle(problem, there, left)
+        weighted = problem.samples_at(end.values)
+        unconverged = problem.solution(end.values, weighted, noise, False, end.message)
+        return settle(problem, unconverged, weighted)
     if noise.colour > 0.0:
-        again = search(problem, every, end.values, noise, MAX_EVALUATIONS)
-        most = every.settings.noise.max_rms_ratio**2 * problem.square(end.values, every)
-        if problem.square(again.values, every) <= most:
-            end = again
-            noise = noise_at(problem, every, end.values)
-    return problem.solution(problem.wrapped(end.values), every, noise, end.converged, end.message)
+        coloured = search(problem, samples, end.values, noise, MAX_EVALUATIONS)
+        most = samples.settings.noise.max_rms_ratio**2 * problem.square(end.values, samples)
+        if problem.square(coloured.values, samples) <= most:
+            end = coloured
+            noise = noise_at(problem, samples, end.values)
+    return problem.solution(problem.wrapped(end.values), samples, noise, end.converged, end.message)
 
 
 def search_peaks(problem: Problem, near: Solution) -> Solution:
@@ -293,14 +297,14 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
         name = f"{effect}.{peak}"
         if peak is None or name in problem.fixed:
             continue
-        which = problem.names.index(name)
+        index = problem.names.index(name)
         samples, noise = near.samples, near.noise
 
         def square(values: Array, samples: Samples = samples) -> float:
             return problem.square(values, samples)
 
-        lower, upper = problem.lower[which], problem.upper[which]
-        starts = other_peaks(square, near.values, which, lower, upper)
+        lower, upper = problem.lower[index], problem.upper[index]
+        starts = other_peaks(square, near.values, index, lower, upper)
         ends = [search(problem, samples, s, noise, TRIAL_EVALUATIONS).values for s in starts]
         best = min(ends, key=square, default=near.values)
         if square(best) < square(near.values):
@@ -351,6 +355,6 @@ def not_above_nested(problem: Problem, solution: Solution) -> Solution:
     if problem.square(start, samples) >= problem.square(solution.values, samples):
         return solution
     end = search(problem, samples, start, solution.noise, MAX_EVALUATIONS)
-    found = problem.solution(problem.wrapped(end.values), samples, solution.noise, False)
-    better = problem.square(found.values, samples) < problem.square(solution.values, samples)
-    return settle(problem, found) if better else solution
+    candidate = problem.solution(problem.wrapped(end.values), samples, solution.noise, False)
+    better = problem.square(candidate.values, samples) < problem.square(solution.values, samples)
+    return settle(problem, candidate) if better else solution

@@ -34,6 +34,11 @@ class Noise:
     colour
         From 0 (white) to 1 (all coloured): one minus the ratio of the moving-average to the
         autoregressive coefficient.
+
+    Notes
+    -----
+    At uniform steps dt the noise r is an ARMA(1,1) process with white innovations e:
+    ``r(t) - phi r(t - dt) = e(t) - phi (1 - colour) e(t - dt)`` with ``phi = exp(-dt / memory_s)``.
     """
 
     memory_s: float = 0.0
@@ -43,44 +48,46 @@ class Noise:
         """Whiten values of shape (n,) or (n, k) along the first axis."""
         if self.white:
             return values
-        phi, left = self._keeps(step_s)
-        return _core.first_order_filter((1.0, -phi), -phi * left, values)
+        phi, white_share = self._coefficients(step_s)
+        return _core.first_order_filter((1.0, -phi), -phi * white_share, values)
 
     def coloured(self, innovations: Array, step_s: float) -> Array:
         """Return the noise with the given innovations; the inverse of :meth:`innovations`."""
         if self.white:
             return innovations
-        phi, left = self._keeps(step_s)
-        return _core.first_order_filter((1.0, -phi * left), -phi, innovations)
+        phi, white_share = self._coefficients(step_s)
+        return _core.first_order_filter((1.0, -phi * white_share), -phi, innovations)
 
     @property
     def white(self) -> bool:
         """Whether the noise is white."""
         return self.colour <= 0.0 or self.memory_s <= 0.0
 
-    def _keeps(self, step_s: float) -> tuple[float, float]:
+    def _coefficients(self, step_s: float) -> tuple[float, float]:
         """Autoregressive coefficient of the coloured part for one step, and 1 - colour."""
         return float(np.exp(-step_s / self.memory_s)), 1.0 - self.colour
 
     def coloured_share(self, step_s: float) -> float:
         """Fraction of the variance in the coloured part, 0 to 1."""
-        if self.colour <= 0.0 or self.memory_s <= 0.0:
+        if self.white:
             return 0.0
-        keep = float(np.exp(-2.0 * step_s / self.memory_s))
-        left = 1.0 - self.colour
-        if left <= 0.0:
+        phi_squared = float(np.exp(-2.0 * step_s / self.memory_s))
+        white_share = 1.0 - self.colour
+        if white_share <= 0.0:
             return 1.0
-        ratio = ((1.0 + keep * left**2) / left - (1.0 + keep)) / (1.0 - keep)
+        ratio = ((1.0 + phi_squared * white_share**2) / white_share - (1.0 + phi_squared)) / (
+            1.0 - phi_squared
+        )
         return ratio / (1.0 + ratio)
 
     def with_share(self, share: float, step_s: float) -> Noise:
         """Return noise of the same correlation time with this coloured share (below 1)."""
         if share <= 0.0:
             return WHITE
-        keep = float(np.exp(-2.0 * step_s / self.memory_s))
-        total = share / (1.0 - share) * (1.0 - keep) + 1.0 + keep
-        left = (total - np.sqrt(total**2 - 4.0 * keep)) / (2.0 * keep)
-        return Noise(self.memory_s, float(1.0 - left))
+        phi_squared = float(np.exp(-2.0 * step_s / self.memory_s))
+        total = share / (1.0 - share) * (1.0 - phi_squared) + 1.0 + phi_squared
+        white_share = (total - np.sqrt(total**2 - 4.0 * phi_squared)) / (2.0 * phi_squared)
+        return Noise(self.memory_s, float(1.0 - white_share))
 
 
 WHITE = Noise()
@@ -98,7 +105,7 @@ def innovation_cost(
     return count * float(np.log(max(total, 1e-300) / max(count, 1)))
 
 
-def _changes(
+def _cost_derivatives(
     noise: Noise, residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
 ) -> tuple[Array, Array]:
     """Gradient and Gauss-Newton Hessian of :func:`innovation_cost`.
@@ -107,19 +114,19 @@ def _changes(
     """
     total, count, slope, curvature = 0.0, 0, np.zeros(2), np.zeros((2, 2))
     for residual, step, mask in zip(residuals, steps, masks, strict=True):
-        phi, left = float(np.exp(-step / noise.memory_s)), 1.0 - noise.colour
-        before = -phi * left
-        e = _core.first_order_filter((1.0, -phi), before, residual)
+        phi, white_share = float(np.exp(-step / noise.memory_s)), 1.0 - noise.colour
+        feedback = -phi * white_share
+        e = _core.first_order_filter((1.0, -phi), feedback, residual)
         # Derivatives of e(t) = r(t) - phi r(t-1) + phi (1 - colour) e(t-1).
-        faster = (0.0, phi * step / noise.memory_s)
-        by_memory = _core.first_order_filter(faster, before, left * e - residual)
-        by_colour = _core.first_order_filter((0.0, -phi), before, e)
-        ways = np.column_stack([by_memory, by_colour])[mask]
-        own = e[mask]
-        total += float(own @ own)
-        slope += own @ ways
-        curvature += ways.T @ ways
-        count += len(own)
+        phi_by_memory = (0.0, phi * step / noise.memory_s)
+        by_memory = _core.first_order_filter(phi_by_memory, feedback, white_share * e - residual)
+        by_colour = _core.first_order_filter((0.0, -phi), feedback, e)
+        derivatives = np.column_stack([by_memory, by_colour])[mask]
+        innovations = e[mask]
+        total += float(innovations @ innovations)
+        slope += innovations @ derivatives
+        curvature += derivatives.T @ derivatives
+        count += len(innovations)
     scale = 2.0 * count / max(total, 1e-300)
     return scale * slope, scale * curvature
 
@@ -149,19 +156,19 @@ def estimate_noise(
         return innovation_cost(unpack(x), residuals, steps, masks)
 
     @lru_cache(maxsize=1)
-    def changes(values: bytes) -> tuple[Array, Array]:
+    def derivatives(values: bytes) -> tuple[Array, Array]:
         x = np.frombuffer(values)
-        slope, curvature = _changes(unpack(x), residuals, steps, masks)
-        inner = special.expit(x)
-        inner = inner * (1.0 - inner) * [high - low, 1.0]
+        slope, curvature = _cost_derivatives(unpack(x), residuals, steps, masks)
+        unit = special.expit(x)
+        inner = unit * (1.0 - unit) * [high - low, 1.0]
         # The small diagonal keeps the step at zero where nothing changes.
         return slope * inner, curvature * np.outer(inner, inner) + 1e-6 * np.eye(2)
 
     def slope(x: Array) -> Array:
-        return changes(x.tobytes())[0]
+        return derivatives(x.tobytes())[0]
 
     def curvature(x: Array) -> Array:
-        return changes(x.tobytes())[1]
+        return derivatives(x.tobytes())[1]
 
     starts = [np.array([m, c]) for m in (-1.0, 1.5) for c in (-4.0, -1.5, 0.5)]
     best = min(starts, key=cost)
@@ -171,7 +178,7 @@ def estimate_noise(
     if cost(best) - settings.max_gain_factor * promised >= coloured:
         return WHITE
     # For a unit curvature, a slope of 0.3 corresponds to less than 0.1 in twice the log likelihood.
-    found = optimize.minimize(
+    optimum = optimize.minimize(
         cost,
         best,
         method="trust-exact",
@@ -179,13 +186,13 @@ def estimate_noise(
         hess=curvature,
         options={"maxiter": 40, "gtol": 0.3},
     )
-    if found.fun >= coloured:
+    if optimum.fun >= coloured:
         return WHITE
-    noise = unpack(found.x)
+    noise = unpack(optimum.x)
     if most_n is None:
         return noise
     square = sum(float(np.sum(r[m] ** 2)) for r, m in zip(residuals, masks, strict=True))
     square /= max(sum(int(m.sum()) for m in masks), 1)
     step = float(np.median(steps))
-    most = most_n**2 / max(square, 1e-300)
-    return noise if noise.coloured_share(step) <= most else noise.with_share(most, step)
+    max_share = most_n**2 / max(square, 1e-300)
+    return noise if noise.coloured_share(step) <= max_share else noise.with_share(max_share, step)

@@ -35,27 +35,27 @@ def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     if not noisy:
         return 0.0
     prepared, samples = [prepared[i] for i in noisy], samples.only(noisy)
-    floor, seen = _white(prepared, samples), _total_noise(prepared, samples)
-    if seen is None:
+    floor, total = _white(prepared, samples), _total_noise(prepared, samples)
+    if total is None:
         return floor
     settings = samples.settings.noise
     low, high = settings.min_floor_ratio * floor, settings.max_floor_ratio * floor
-    return seen if low < seen < high else floor
+    return total if low < total < high else floor
 
 
 def noise_upper_bound(prepared: Sequence[Prepared], samples: Samples) -> float | None:
     """Upper limit of the noise including its coloured part, N; None if it cannot be estimated."""
-    seen = _total_noise(prepared, samples)
-    return None if seen is None else max(seen, _white(prepared, samples))
+    total = _total_noise(prepared, samples)
+    return None if total is None else max(total, _white(prepared, samples))
 
 
 def _white(prepared: Sequence[Prepared], samples: Samples) -> float:
     """White part of the noise, N, from third differences and quantisation steps."""
     squares = []
     for p, counted in zip(prepared, samples.counted, strict=True):
-        values, added = _dithered(p)
+        values, dither_square = _dithered(p)
         # With steps that are coarse relative to the noise, readings repeat; their error remains.
-        squares.append(max(noise_of(values[counted]) ** 2 - added, added))
+        squares.append(max(noise_of(values[counted]) ** 2 - dither_square, dither_square))
     counts = [int(c.sum()) for c in samples.counted]
     return float(np.sqrt(np.average(squares, weights=counts))) if any(counts) else 0.0
 
@@ -69,40 +69,39 @@ def _dithered(p: Prepared) -> tuple[Array, float]:
     step = p.converter_step_n
     if step == 0.0:
         return p.friction, 0.0
-    even = np.random.default_rng(0).uniform(-0.5 * step, 0.5 * step, len(p.friction))
-    return p.friction + even, step**2 / 12.0
+    dither = np.random.default_rng(0).uniform(-0.5 * step, 0.5 * step, len(p.friction))
+    return p.friction + dither, step**2 / 12.0
 
 
 def _total_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
     """Total noise, N, from repeated periods and rests; None if there are too few samples."""
-    whole, weight, settings = 0.0, 0, samples.settings.noise
+    total, weight, settings = 0.0, 0, samples.settings.noise
     for p, counted in zip(prepared, samples.counted, strict=True):
         rests = _rest_squares(p.motion.resting, p.friction, settings)
         for square, count in (*rests, _repeat_square(p, counted, samples.settings)):
-            whole += square * count
+            total += square * count
             weight += count
-    return None if weight < settings.min_floor_samples else float(np.sqrt(whole / weight))
+    return None if weight < settings.min_floor_samples else float(np.sqrt(total / weight))
 
 
 def _rest_squares(resting: Mask, values: Array, settings: NoiseSettings) -> list[tuple[float, int]]:
     """Variance about a straight line in every long rest, with the number of samples."""
     edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
-    found = []
+    squares = []
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         # The beginning of a rest may still be a transient.
         begin = first + (end - first) // 4
         if end - begin >= settings.min_rest_samples:
             part = _detrended(values[begin:end])
-            found.append((float(part @ part) / (len(part) - 2), len(part)))
-    return found
+            squares.append((float(part @ part) / (len(part) - 2), len(part)))
+    return squares
 
 
 def _detrended(values: Array) -> Array:
     """Values minus the straight line fitted to them."""
     place = np.arange(len(values)) - 0.5 * (len(values) - 1)
-    above = values - np.mean(values)
-    left: Array = above - place * float(place @ above) / float(place @ place)
-    return left
+    centred = values - np.mean(values)
+    return np.asarray(centred - place * float(place @ centred) / float(place @ place))
 
 
 def _repeat_square(prepared: Prepared, counted: Mask, settings: Settings) -> tuple[float, int]:
@@ -111,10 +110,9 @@ def _repeat_square(prepared: Prepared, counted: Mask, settings: Settings) -> tup
     if shift is None:
         return 0.0, 0
     # The first period still contains the initial-state transient of the film.
-    (values, added), begin = _dithered(prepared), shift // 2
+    (values, dither_square), begin = _dithered(prepared), shift // 2
     gap = (values[begin + shift :] - values[begin:-shift]) / np.sqrt(2.0)
-    ok = counted[begin + shift :] & counted[begin:-shift]
-    gap = gap[ok]
+    gap = gap[counted[begin + shift :] & counted[begin:-shift]]
     if len(gap) < settings.noise.min_repeated_samples:
         return 0.0, 0
     # Slow drifts between periods are not noise and are removed. The median tolerates outliers in
@@ -122,7 +120,7 @@ def _repeat_square(prepared: Prepared, counted: Mask, settings: Settings) -> tup
     size = max(len(gap) // 12, 25)
     blocks = [gap[i : i + size] for i in range(0, len(gap) - size + 1, size)]
     spread = [np.median(np.abs(b - np.median(b))) / 0.6745 for b in blocks]
-    return max(float(np.median(spread) ** 2) - added, added), len(gap)
+    return max(float(np.median(spread) ** 2) - dither_square, dither_square), len(gap)
 
 
 def period_samples(velocity: Array, settings: PeriodSettings = DEFAULT.periods) -> int | None:

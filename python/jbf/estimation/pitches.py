@@ -44,8 +44,8 @@ It only starts a search.
 
 Knots = list[tuple[float, Array]]
 
-_known: WeakKeyDictionary[Campaign, dict[bool, tuple[float, ...]]] = WeakKeyDictionary()
-_left: WeakKeyDictionary[Campaign, tuple[Array, Array, Array]] = WeakKeyDictionary()
+_pitches_of: WeakKeyDictionary[Campaign, dict[bool, tuple[float, ...]]] = WeakKeyDictionary()
+_forces_of: WeakKeyDictionary[Campaign, tuple[Array, Array, Array]] = WeakKeyDictionary()
 
 
 def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
@@ -57,10 +57,10 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
         Use the force in the direction of motion, which reverses with it; otherwise the force
         itself.
     """
-    found = _known.setdefault(campaign, {})
-    if along not in found:
-        found[along] = _pitches(campaign, along)
-    return found[along]
+    by_direction = _pitches_of.setdefault(campaign, {})
+    if along not in by_direction:
+        by_direction[along] = _pitches(campaign, along)
+    return by_direction[along]
 
 
 def longest_pitch(campaign: Campaign) -> float:
@@ -68,10 +68,8 @@ def longest_pitch(campaign: Campaign) -> float:
 
     It is infinite for runs without travel.
     """
-    pairs = zip(campaign.prepared, campaign.moving, strict=True)
-    places = np.concatenate([p.motion.angle_rad[moving] for p, moving in pairs])
-    arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
-    span = float(np.ptp(places)) * arm if len(places) else 0.0
+    angles = np.concatenate([p.motion.angle_rad[moving] for p, moving in campaign.moving])
+    span = float(np.ptp(angles)) * campaign.arm_m if len(angles) else 0.0
     return span / campaign.settings.conditions.min_pitch_periods if span > 0.0 else np.inf
 
 
@@ -91,6 +89,7 @@ def known_pitches(rig: Rig) -> tuple[float, ...]:
 
 
 def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
+    """Pitches of the highest lines in the spatial spectrum of the remaining force."""
     place, rest, speed = _remaining_force(campaign)
     if len(place) < PADDING * KNOTS:
         return ()
@@ -99,25 +98,25 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
     count, least = int(span / fine), campaign.settings.conditions.min_pitch_periods
     if count < least * BINS_A_PITCH:
         return ()
-    which = np.minimum((place - place.min()) / fine, count - 1).astype(np.intp)
+    bins = np.minimum((place - place.min()) / fine, count - 1).astype(np.intp)
     signal = rest * np.sign(speed) if along else rest
     signal = signal - np.mean(signal)
     length = PADDING * count
     # Number of periods within the travel for each line of the padded spectrum.
     periods = np.arange(length // 2 + 1) / PADDING * (span / (count * fine))
-    told = (periods >= least) & (periods * BINS_A_PITCH <= count)
-    found: list[float] = []
+    resolved = (periods >= least) & (periods * BINS_A_PITCH <= count)
+    highest: list[float] = []
     for _ in range(LINES):
-        power = np.abs(np.fft.rfft(np.bincount(which, signal, count), length)) ** 2
-        power[~told] = 0.0
+        power = np.abs(np.fft.rfft(np.bincount(bins, signal, count), length)) ** 2
+        power[~resolved] = 0.0
         k = int(np.argmax(power))
         if power[k] <= 0.0:
             break
-        found.append(float(span / periods[k]))
+        highest.append(float(span / periods[k]))
         # A position that is passed often gives a high line side lobes as high as a lower line.
-        signal = signal - _wave(signal, place, found[-1])
-        told[max(k - 2 * PADDING, 0) : k + 2 * PADDING + 1] = False
-    return tuple(found)
+        signal = signal - _wave(signal, place, highest[-1])
+        resolved[max(k - 2 * PADDING, 0) : k + 2 * PADDING + 1] = False
+    return tuple(highest)
 
 
 def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
@@ -125,8 +124,7 @@ def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
     phase = 2.0 * np.pi * place / pitch_m
     pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
     solution, *_ = np.linalg.lstsq(pair, signal, rcond=None)
-    found: Array = pair @ solution
-    return found
+    return np.asarray(pair @ solution)
 
 
 def _remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
@@ -134,15 +132,15 @@ def _remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
 
     The remaining force is the part that speed, acceleration and angle do not explain.
     """
-    if campaign not in _left:
-        _left[campaign] = _compute_remaining_force(campaign)
-    return _left[campaign]
+    if campaign not in _forces_of:
+        _forces_of[campaign] = _compute_remaining_force(campaign)
+    return _forces_of[campaign]
 
 
 def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
-    pairs = list(zip(campaign.prepared, campaign.moving, strict=True))
-    arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
-    place = np.concatenate([p.motion.angle_rad[m] for p, m in pairs]) * arm
+    """Compute the result of `_remaining_force` by least squares with reduced rows of each run."""
+    pairs = campaign.moving
+    place = np.concatenate([p.motion.angle_rad[m] for p, m in pairs]) * campaign.arm_m
     speed = np.concatenate([p.motion.velocity[m] for p, m in pairs])
     if len(speed) < PADDING * KNOTS:
         return place, np.concatenate([p.friction[m] for p, m in pairs]), speed
@@ -151,18 +149,20 @@ def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
     # run (Frisch & Waugh 1933). A triangular factor replaces the rows of each run.
     factors, scales = [], []
     for p, m in pairs:
-        known = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
-        scales.append(np.sum(known**2, axis=0))
-        rows = _centred_by_direction(np.column_stack([known, p.friction[m]]), p.motion.velocity[m])
+        regressors = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
+        scales.append(np.sum(regressors**2, axis=0))
+        rows = _centred_by_direction(
+            np.column_stack([regressors, p.friction[m]]), p.motion.velocity[m]
+        )
         factors.append(np.linalg.qr(rows, mode="r"))
     scale = np.maximum(np.sqrt(np.sum(scales, axis=0) / len(speed)), 1e-300)
     factor = np.concatenate(factors)
     solution, *_ = np.linalg.lstsq(factor[:, :-1] / scale, factor[:, -1], rcond=1e-9)
     rest = []
     for p, m in pairs:
-        known = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
-        left = p.friction[m] - (known / scale) @ solution
-        rest.append(_centred_by_direction(left[:, None], p.motion.velocity[m])[:, 0])
+        regressors = _regressors(p.motion.angle_rad[m], p.motion.velocity[m], p, m, knots)
+        remaining = p.friction[m] - (regressors / scale) @ solution
+        rest.append(_centred_by_direction(remaining[:, None], p.motion.velocity[m])[:, 0])
     return place, np.concatenate(rest), speed
 
 
@@ -174,39 +174,35 @@ def _regressors(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Kn
 
 def _centred_by_direction(rows: Array, speed: Array) -> Array:
     """Rows minus their means in each direction of motion."""
-    found: Array = rows.copy()
-    for way in (speed > 0.0, speed < 0.0):
-        if way.any():
-            found[way] -= np.mean(rows[way], axis=0)
-    return found
+    centred: Array = rows.copy()
+    for one_way in (speed > 0.0, speed < 0.0):
+        if one_way.any():
+            centred[one_way] -= np.mean(rows[one_way], axis=0)
+    return centred
 
 
 def _knots(speed: Array) -> Knots:
     """Knots of a piecewise linear function of speed, for each direction."""
-    found = []
-    for way in (-1.0, 1.0):
-        there = speed * way > 0.0
-        if there.any():
-            knots = np.unique(np.quantile(speed[there], np.linspace(0.0, 1.0, KNOTS)))
-            found.append((way, knots))
-    return found
+    by_direction = []
+    for sign in (-1.0, 1.0):
+        one_way = speed * sign > 0.0
+        if one_way.any():
+            knots = np.unique(np.quantile(speed[one_way], np.linspace(0.0, 1.0, KNOTS)))
+            by_direction.append((sign, knots))
+    return by_direction
 
 
 def _hat_functions(speed: Array, knots: Knots) -> list[Array]:
     """Piecewise linear basis functions of speed, for each direction."""
-    found = []
-    for way, places in knots:
-        there = speed * way > 0.0
-        for hat in np.eye(len(places)):
-            found.append(np.where(there, np.interp(speed, places, hat), 0.0))
-    return found
+    functions = []
+    for sign, positions in knots:
+        one_way = speed * sign > 0.0
+        for hat in np.eye(len(positions)):
+            functions.append(np.where(one_way, np.interp(speed, positions, hat), 0.0))
+    return functions
 
 
 def _sample_spacing(campaign: Campaign) -> float:
     """Usual distance between samples, m."""
-    arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
-    steps = [
-        np.abs(np.diff(p.motion.angle_rad))[m[1:] & m[:-1]]
-        for p, m in zip(campaign.prepared, campaign.moving, strict=True)
-    ]
-    return float(np.median(np.concatenate(steps))) * arm
+    steps = [np.abs(np.diff(p.motion.angle_rad))[m[1:] & m[:-1]] for p, m in campaign.moving]
+    return float(np.median(np.concatenate(steps))) * campaign.arm_m

@@ -48,8 +48,7 @@ def slides(motion: EstimatedMotion) -> Mask:
     At rest, friction is any force up to the breakaway level in either direction: it balances the
     force of the drive. Such a sample has no residual, nor has a sample near a reversal.
     """
-    sliding: Mask = motion.sign_known & ~motion.resting
-    return sliding
+    return np.asarray(motion.sign_known & ~motion.resting)
 
 
 class NoMotion(InputError):
@@ -139,13 +138,13 @@ class Prepared:
         if motion.clock_s is not None:
             run = replace(run, time_s=frozen(motion.clock_s))
         recorded = None
-        own = separate_clock(run)
+        clock_findings = separate_clock(run)
         if run.read:
             # The model is compared only at the readings of the force.
             recorded = (instants, motion)
-            there = run.read.get("friction_n", np.ones(len(run), dtype=bool))
+            has_force = run.read.get("friction_n", np.ones(len(run), dtype=bool))
             moving = (run.time_s >= instants[0]) & (run.time_s <= instants[-1])
-            run = replace(run.select(there & moving), read={})
+            run = replace(run.select(has_force & moving), read={})
             motion = motion.at(instants, run.time_s)
         read = moved is None and not run.steady
         if read:
@@ -166,8 +165,8 @@ class Prepared:
             run = run.at(native.time_s, native.values)
             of_readings = examine_readings(run, motion.velocity)
             steps = find_steps(run, of_readings.usable, drawn=True)
-            found = (*examined.findings, *of_readings.findings, *steps)
-            examined = Examined(found, of_readings.usable)
+            findings = (*examined.findings, *of_readings.findings, *steps)
+            examined = Examined(findings, of_readings.usable)
         if not np.all(motion.resting) and not np.any(motion.sign_known):
             raise NoMotion(
                 file=run.path or run.name,
@@ -183,7 +182,7 @@ class Prepared:
             )
         more = (
             *run.reading,
-            *own,
+            *clock_findings,
             *motion.findings,
             *(_of_readings(run, motion, examined) if read else ()),
             *find_noisy_load(run.name, run.load_n),
@@ -210,8 +209,8 @@ class Prepared:
 
     def finding(self, more: Sequence[Finding]) -> Prepared:
         """Return the run with additional findings."""
-        whole = (*self.examined.findings, *more)
-        return replace(self, examined=replace(self.examined, findings=whole))
+        findings = (*self.examined.findings, *more)
+        return replace(self, examined=replace(self.examined, findings=findings))
 
     def shifted(self, late_s: float, drift: float) -> Prepared:
         """Return the run with its force compared with the motion at an earlier time.
@@ -255,10 +254,10 @@ class Prepared:
         if self.step_s < FINER * float(np.median(np.diff(instants))):
             return driven_motion(self.rig, self.run, self.motion)
         inside = (instants > time[0]) & (instants < time[-1])
-        whole = np.union1d(instants[inside], time)
-        run = self.run.at(whole, np.interp(whole, time, self.friction))
-        driven = driven_motion(self.rig, run, motion.at(instants, whole))
-        kept = np.searchsorted(whole, time)
+        joint = np.union1d(instants[inside], time)
+        run = self.run.at(joint, np.interp(joint, time, self.friction))
+        driven = driven_motion(self.rig, run, motion.at(instants, joint))
+        kept = np.searchsorted(joint, time)
         return Driven(driven.motion, kept if driven.kept is None else driven.kept[kept])
 
     def __getstate__(self) -> dict[str, Any]:
@@ -283,26 +282,21 @@ def _independent(motion: EstimatedMotion, spacing: float) -> Mask:
     while lag < middle and shared[2, 2] > 0.0:
         lag += 1
         shared = errors.gain[middle - lag] @ shared
-    every = int(np.clip(spacing * lag, 1, max(count // MIN_SAMPLES, 1)))
-    kept: Mask = np.arange(count) % every == 0
-    return kept
+    spacing_count = int(np.clip(spacing * lag, 1, max(count // MIN_SAMPLES, 1)))
+    return np.asarray(np.arange(count) % spacing_count == 0)
 
 
 def _of_readings(run: Run, motion: EstimatedMotion, examined: Examined) -> list[Finding]:
     """Findings on the force readings in relation to the motion."""
-    without_noise = _without_noise(run, slides(motion) & examined.usable, examined)
-    return [*find_wrong_sign(run, motion, examined.usable), *without_noise]
+    wrong_sign = find_wrong_sign(run, motion, examined.usable)
+    if any(f.kind == "steps" for f in examined.findings):
+        return [*wrong_sign]  # quantisation steps count as noise
+    return [*wrong_sign, *find_smooth_force(run, slides(motion) & examined.usable)]
 
 
 def _derived(run: Run, moved: float) -> Finding:
     """Finding that the friction was derived from the deceleration."""
-    said = run.quantities
-    words = f"the {said.noun} is computed as {moved:.5g} {said.unit('kg')} times the deceleration"
-    return Finding("converted", "friction_n", run.name, moved, said.unit("kg"), "once", words)
-
-
-def _without_noise(run: Run, sliding: Mask, examined: Examined) -> list[Finding]:
-    """Finding that the force shows no noise; quantisation steps count as noise."""
-    if any(f.kind == "steps" for f in examined.findings):
-        return []
-    return find_smooth_force(run, sliding)
+    quantities = run.quantities
+    mass = f"{moved:.5g} {quantities.unit('kg')}"
+    words = f"the {quantities.noun} is computed as {mass} times the deceleration"
+    return Finding("converted", "friction_n", run.name, moved, quantities.unit("kg"), "once", words)

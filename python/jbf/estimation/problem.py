@@ -17,9 +17,9 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.estimation.bounds import Bounds, bounded_pages
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.initial_state import has_unknown_start, memories, remembering
+from jbf.estimation.initial_state import has_unknown_start, initial_memory, transient_masks
 from jbf.estimation.jumps import active_effects, moves_jumps, samples_near_jumps, spreads_jumps
-from jbf.estimation.least_squares import MOST_HELD, OnDemand, every_so_many, groups_of, triangular
+from jbf.estimation.least_squares import MOST_HELD, OnDemand, memory_groups, select_runs, triangular
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
@@ -38,14 +38,12 @@ from jbf.records.arguments import by_name
 from jbf.records.toml_file import number
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 Lines = tuple[list[Array], list[Array]]
 """Residuals and derivatives of the prediction by the search variables, one array a run each."""
 
 SLOPES_COST = 2.0
-"""Cost of a prediction with derivatives relative to one without.
-
-It limits the effort only.
-"""
+"""Cost of a prediction with derivatives relative to one without. It limits the effort only."""
 BOUNDLESS = 1e50
 """Derivatives above this are treated as diverged, since a search squares them.
 
@@ -102,18 +100,17 @@ class Problem:
         """Convert parameter values to search variables."""
         inside = np.clip(values, self.lower, self.upper)
         with np.errstate(divide="ignore", invalid="ignore"):
-            search: Array = np.where(self.log, np.log(inside), inside)[self.open]
-        return search
+            return np.asarray(np.where(self.log, np.log(inside), inside)[self.open])
 
     def decode(self, x: Array, base: Array) -> Array:
         """Convert search variables to parameter values; fixed parameters are taken from `base`."""
         values: Array = base.copy()
         log = self.log[self.open]
-        there = x.copy()
+        decoded = x.copy()
         # The search may evaluate far outside the bounds before it is limited.
-        there[log] = np.exp(np.minimum(x[log], 700.0))
+        decoded[log] = np.exp(np.minimum(x[log], 700.0))
         # A logarithm and its inverse may lead outside by a rounding error.
-        values[self.open] = np.clip(there, self.lower[self.open], self.upper[self.open])
+        values[self.open] = np.clip(decoded, self.lower[self.open], self.upper[self.open])
         return values
 
     def wrapped(self, values: Array) -> Array:
@@ -133,28 +130,28 @@ class Problem:
 
     # ---- predictions ------------------------------------------------------------------------
 
-    def predict(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
-        """Predictions, N, one array a run; `which` selects runs."""
-        motions = [p.core for p in self._runs(which)]
+    def predict(self, values: Array, selection: Sequence[int] | None = None) -> list[Array]:
+        """Predictions, N, one array a run; `selection` selects runs."""
+        motions = [p.core for p in self._runs(selection)]
         self.campaign.work.take(self.chain.inner_steps(values, motions))
         return self.chain.predict(values, motions)
 
-    def residuals(self, values: Array, which: Sequence[int] | None = None) -> list[Array]:
-        """Record minus prediction, N, one array a run; `which` selects runs."""
-        runs = self._runs(which)
-        return [p.friction - f for f, p in zip(self.predict(values, which), runs, strict=True)]
+    def residuals(self, values: Array, selection: Sequence[int] | None = None) -> list[Array]:
+        """Record minus prediction, N, one array a run; `selection` selects runs."""
+        runs = self._runs(selection)
+        return [p.friction - f for f, p in zip(self.predict(values, selection), runs, strict=True)]
 
     def linearise(
         self,
         values: Array,
-        which: Sequence[int] | None = None,
+        selection: Sequence[int] | None = None,
         by: Sequence[int] | None = None,
     ) -> Lines:
         """Residuals and derivatives of the prediction with respect to the search variables.
 
-        `which` selects runs, and `by` selects parameters.
+        `selection` selects runs, and `by` selects parameters.
         """
-        runs, by = self._runs(which), self.open if by is None else by
+        runs, by = self._runs(selection), self.open if by is None else by
         scale = np.where(self.log, values, 1.0)[by]
         motions = [p.core for p in runs]
         self.campaign.work.take(SLOPES_COST * self.chain.inner_steps(values, motions))
@@ -171,13 +168,13 @@ class Problem:
         """
         r, j, count = [], [], 0
         lengths = [len(p.friction) for p in self.campaign.prepared]
-        for group in groups_of(lengths, len(self.open)):
+        for group in memory_groups(lengths, len(self.open)):
             part = samples if len(group) == len(lengths) else samples.only(group)
-            own = self.linearise(values, group) if lines is None else lines
-            innovations, slopes = part.stacked(*own, noise)
-            few = triangular(innovations, slopes)
-            r.append(few[0])
-            j.append(few[1])
+            rows = self.linearise(values, group) if lines is None else lines
+            innovations, slopes = part.stacked(*rows, noise)
+            reduced_r, reduced_j = triangular(innovations, slopes)
+            r.append(reduced_r)
+            j.append(reduced_j)
             count += len(innovations)
         return np.concatenate(r), np.concatenate(j), count
 
@@ -191,22 +188,22 @@ class Problem:
     def searched(self) -> list[int]:
         """Indices of the runs that a search uses: a selection, if the campaign is large."""
         runs = self.campaign.prepared
-        return every_so_many([len(p.friction) for p in runs], [p.run.name for p in runs])
+        return select_runs([len(p.friction) for p in runs], [p.run.name for p in runs])
 
     @cached_property
     def thinned(self) -> Problem:
         """The problem for the runs in `searched`."""
-        which = self.searched
-        if len(which) == len(self.campaign.prepared):
+        selection = self.searched
+        if len(selection) == len(self.campaign.prepared):
             return self
-        few = copy(self)
-        few.campaign = self.campaign.only(which)
-        del few.searched
-        return few
+        thinned = copy(self)
+        thinned.campaign = self.campaign.only(selection)
+        del thinned.searched
+        return thinned
 
-    def _runs(self, which: Sequence[int] | None) -> Sequence[Prepared]:
+    def _runs(self, selection: Sequence[int] | None) -> Sequence[Prepared]:
         runs = self.campaign.prepared
-        return runs if which is None else [runs[i] for i in which]
+        return runs if selection is None else [runs[i] for i in selection]
 
     def square(self, values: Array, samples: Samples | None = None) -> float:
         """Sum of squares of weighted residuals, N^2; over the campaign's samples by default."""
@@ -220,26 +217,35 @@ class Problem:
         """
         samples = self.campaign.samples
         effects = active_effects(self.effects, self.parameters, values)
-        begins = has_unknown_start(effects)
-        if not (moves_jumps(effects) or spreads_jumps(effects) or begins):
+        unknown_start = has_unknown_start(effects)
+        if not (moves_jumps(effects) or spreads_jumps(effects) or unknown_start):
             return samples
         prepared = self.campaign.prepared
         if lines is None:
             predicted = self.predict(values)
         else:
             predicted = [p.friction - r for p, r in zip(prepared, lines[0], strict=True)]
-        if begins:
-            left = [p.friction - f for p, f in zip(prepared, predicted, strict=True)]
-            samples = self._settled(samples, values, samples.rms(left))
+        if unknown_start:
+            residuals = [p.friction - f for p, f in zip(prepared, predicted, strict=True)]
+            transients = self.transient_samples(values, samples.rms(residuals))
+            samples = samples.within([~mask for mask in transients])
         return samples_near_jumps(samples, prepared, predicted, effects)
 
-    def _settled(self, samples: Samples, values: Array, noise_rms: float) -> Samples:
-        """Samples without the initial-state transient of their run."""
+    def transient_samples(self, values: Array, noise_rms: float) -> list[Mask]:
+        """Mask of the samples at which a run still remembers its initial state, one a run.
+
+        Parameters
+        ----------
+        values
+            Parameters of a model that fits roughly.
+        noise_rms
+            Noise on the friction, N.
+        """
         prepared, settings = self.campaign.prepared, self.campaign.settings.transient
-        for memory in memories(self.law, self.effects, settings):
-            masks = remembering(self.chain, values, prepared, memory, noise_rms, settings)
-            samples = samples.within([~mask for mask in masks])
-        return samples
+        memory = initial_memory(self.law, self.effects, settings)
+        if memory is None:
+            return [np.zeros(len(p.run), dtype=bool) for p in prepared]
+        return transient_masks(self.chain, values, prepared, memory, noise_rms, settings)
 
     def solution(
         self,
@@ -277,25 +283,25 @@ def bounded(jacobian: Array, scale: Array) -> Array:
     because of its residuals.
     """
     with np.errstate(over="ignore", invalid="ignore"):
-        found: Array = jacobian * scale
-        if np.max(np.abs(found), initial=0.0) < BOUNDLESS:
-            return found
-    return np.where(np.abs(found) < BOUNDLESS, found, 0.0)
+        derivatives: Array = jacobian * scale
+        if np.max(np.abs(derivatives), initial=0.0) < BOUNDLESS:
+            return derivatives
+    return np.where(np.abs(derivatives) < BOUNDLESS, derivatives, 0.0)
 
 
 def named_values(
-    values: Mapping[str, float] | None, known: Mapping[str, Parameter]
+    values: Mapping[str, float] | None, pages: Mapping[str, Parameter]
 ) -> dict[str, float]:
     """Resolve parameter names to full names and check the values against their bounds."""
-    found = {}
+    named = {}
     given = {} if values is None else by_name(values, "parameters")
     for name, anything in given.items():
-        full = find_parameter(name, known)
-        page, value = known[full], number(anything, full)
+        full = find_parameter(name, pages)
+        page, value = pages[full], number(anything, full)
         if not (page.lower <= value <= page.upper or value == page.null):
             raise InputError(
                 problem=f"{full} = {value} is out of range",
                 mend=f"choose from {page.lower:g} to {page.upper:g}",
             )
-        found[full] = value
-    return found
+        named[full] = value
+    return named

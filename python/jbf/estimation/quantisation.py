@@ -27,13 +27,13 @@ It is a numerical resolution.
 """
 
 
-def origin_n(step_n: float, readings_n: Array) -> float:
+def zero_offset(step_n: float, readings_n: Array) -> float:
     """Offset of the readings from whole multiples of their step, N."""
     turn = 2.0 * np.pi / step_n
     return float(np.angle(np.nanmean(np.exp(1j * turn * readings_n))) / turn)
 
 
-def bias_n(step_n: float, noise_rms: float, force_n: Array) -> Array:
+def quantisation_bias(step_n: float, noise_rms: float, force_n: Array) -> Array:
     """Quantisation bias of the mean reading, shape (n,), N.
 
     A converter that rounds down equals one that rounds to the nearest with a zero offset of half a
@@ -56,7 +56,7 @@ def bias_n(step_n: float, noise_rms: float, force_n: Array) -> Array:
     return np.asarray(step_n / np.pi * sum(waves), dtype=np.float64)
 
 
-def curve_rms(step_n: float, noise_rms: float) -> float:
+def bias_rms(step_n: float, noise_rms: float) -> float:
     """RMS of the quantisation bias over the force, N.
 
     Parameters
@@ -70,7 +70,7 @@ def curve_rms(step_n: float, noise_rms: float) -> float:
     return step_n / math.pi * math.exp(-2.0 * ratio**2) / math.sqrt(2.0)
 
 
-def noise_before(step_n: float, moves_n: Array) -> float:
+def noise_before_converter(step_n: float, moves_n: Array) -> float:
     """Standard deviation of the noise before the converter, N.
 
     It follows from the fraction of readings that equal the preceding one. Two values a Gaussian
@@ -100,6 +100,6 @@ def noise_before(step_n: float, moves_n: Array) -> float:
 
 def _same(noise: float) -> float:
     """Probability that two successive readings are equal; the noise is given in steps."""
-    apart = math.sqrt(2.0) * noise
-    spread = apart * math.sqrt(2.0 / math.pi) * -math.expm1(-0.5 / apart**2)
-    return math.erf(1.0 / (apart * math.sqrt(2.0))) - spread
+    sd = math.sqrt(2.0) * noise  # of the difference of two readings
+    mean = sd * math.sqrt(2.0 / math.pi) * -math.expm1(-0.5 / sd**2)
+    return math.erf(1.0 / (sd * math.sqrt(2.0))) - mean

@@ -27,23 +27,29 @@ It is a numerical tolerance.
 
 
 def spread_between(estimates: Array, precisions: Array) -> tuple[float, float, float]:
-    """Standard deviation between runs, its p-value, and the ratio of the variance to chance.
+    """Standard deviation between runs, its p-value, and Cochran's Q over its degrees of freedom.
 
     The standard deviation is zero where the runs agree.
+
+    Notes
+    -----
+    With precisions w, estimates d and their weighted mean m, ``Q = sum(w (d - m)^2)`` over n runs.
+    The variance between runs is ``(Q - (n - 1)) / (sum(w) - sum(w^2) / sum(w))`` by the method of
+    moments (DerSimonian & Laird 1986).
     """
     mean = float(np.sum(precisions * estimates) / np.sum(precisions))
     q, free = float(np.sum(precisions * (estimates - mean) ** 2)), len(estimates) - 1
     # Residuals are never as white as assumed, so twice the chi-square is required.
-    chance = float(special.chdtrc(free, 0.5 * q))
-    whole = float(np.sum(precisions))
-    apart = whole - float(np.sum(precisions**2)) / whole
+    p_value = float(special.chdtrc(free, 0.5 * q))
+    total = float(np.sum(precisions))
+    scale = total - float(np.sum(precisions**2)) / total
     # If one run has all of the precision, the others do not determine a spread.
-    variance = (q - free) / apart if apart > ROUNDING * whole else 0.0
-    return float(np.sqrt(max(variance, 0.0))), chance, q / free
+    variance = (q - free) / scale if scale > ROUNDING * total else 0.0
+    return float(np.sqrt(max(variance, 0.0))), p_value, q / free
 
 
 @dataclass(frozen=True, eq=False)
-class BetweenRuns:
+class RandomEffects:
     """Random effects: deviations of the runs from the campaign.
 
     Attributes
@@ -61,13 +67,13 @@ class BetweenRuns:
     directions: tuple[Array, ...]
     sigma_n: float
 
-    def only(self, which: Sequence[int]) -> BetweenRuns:
+    def only(self, selection: Sequence[int]) -> RandomEffects:
         """Return the random effects of a selection of runs."""
-        return replace(self, directions=tuple(self.directions[i] for i in which))
+        return replace(self, directions=tuple(self.directions[i] for i in selection))
 
-    def without(self, name: str) -> BetweenRuns | None:
+    def without(self, name: str) -> RandomEffects | None:
         """Return the random effects except `name`; None if no other exists."""
-        kept = [k for k, own in enumerate(self.names) if own != name]
+        kept = [k for k, other in enumerate(self.names) if other != name]
         if not kept:
             return None
         directions = tuple(d[:, kept] for d in self.directions)
@@ -85,8 +91,7 @@ class BetweenRuns:
 
         def white(values: Array) -> Array:
             columns = values if values.ndim == 2 else values[:, None]
-            left: Array = columns - u @ (share * (u.T @ columns))
-            return left.reshape(values.shape)
+            return np.asarray((columns - u @ (share * (u.T @ columns))).reshape(values.shape))
 
         return [white(values) for values in stacked]
 
@@ -107,17 +112,18 @@ class BetweenRuns:
         self, run: int, residual: Array, weight: Array, step_s: float, noise: Noise
     ) -> Array:
         """Best linear prediction of the random effects in a run's friction, N."""
-        directions = self.directions[run]
-        keep = weight > 0.0
-        n = noise.innovations(directions * weight[:, None], step_s)[keep] / self.sigma_n
-        r = noise.innovations(residual * weight, step_s)[keep] / self.sigma_n
+        n = self._innovations(run, weight, step_s, noise)
+        r = noise.innovations(residual * weight, step_s)[weight > 0.0] / self.sigma_n
         size = np.linalg.solve(n.T @ n + np.eye(n.shape[1]), n.T @ r)
-        found: Array = directions @ size
-        return found
+        return np.asarray(self.directions[run] @ size)
 
     def _basis(self, run: int, weight: Array, step_s: float, noise: Noise) -> tuple[Array, Array]:
-        keep = weight > 0.0
-        directions = self.directions[run] * weight[:, None]
-        n = noise.innovations(directions, step_s)[keep] / self.sigma_n
+        """Orthonormal directions of the random effects, (n, q), and their sizes, (q,)."""
+        n = self._innovations(run, weight, step_s, noise)
         u, size, _ = np.linalg.svd(n, full_matrices=False)
         return u, size
+
+    def _innovations(self, run: int, weight: Array, step_s: float, noise: Noise) -> Array:
+        """Innovations of the directions of a run, in standard deviations, shape (n, q)."""
+        directions = self.directions[run] * weight[:, None]
+        return noise.innovations(directions, step_s)[weight > 0.0] / self.sigma_n

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.held_out import held_out_residuals
+from jbf.estimation.held_out import held_out_by_run
 from jbf.estimation.minimum import MAX_EVALUATIONS
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
@@ -47,54 +47,51 @@ It enters no verdict.
 def best_weighting(problem: Problem, plain: Solution) -> Solution:
     """Return the solution with the smallest held-out error: `plain` or one with robust weights."""
     best: Solution = plain
-    left: Array | None = None
+    errors: Array | None = None
     for weights in (huber, student):
         robust = _robust(problem, plain, weights)
-        apart = [a - b for a, b in zip(plain.residuals, robust.residuals, strict=True)]
-        if plain.samples.rms(apart) < ELSEWHERE * plain.rms:
+        changes = [a - b for a, b in zip(plain.residuals, robust.residuals, strict=True)]
+        if plain.samples.rms(changes) < ELSEWHERE * plain.rms:
             continue
-        left = held_out_residuals(problem, best) if left is None else left
-        other = held_out_residuals(problem, robust)
-        if _better(other, left):
-            best, left = robust, other
+        errors = np.concatenate(held_out_by_run(problem, best)) if errors is None else errors
+        robust_errors = np.concatenate(held_out_by_run(problem, robust))
+        if _better(robust_errors, errors):
+            best, errors = robust, robust_errors
     return best
 
 
-def _better(other: Array, left: Array) -> bool:
-    """Whether held-out residuals are smaller: in their RMS or in their median.
+def _better(robust_errors: Array, errors: Array) -> bool:
+    """Whether held-out errors are smaller: in their RMS or in their median.
 
-    The median decides where outliers dominate the RMS, provided that the RMS is not
-    clearly larger.
+    The median decides where outliers dominate the RMS, provided that the RMS is not clearly larger.
     """
-    square = float(np.sqrt(np.mean(other**2) / max(float(np.mean(left**2)), 1e-300)))
-    middle = float(np.median(np.abs(other)) / max(float(np.median(np.abs(left))), 1e-300))
-    return square < BETTER or (square < NO_WORSE and middle < SHARPER)
+    rms = float(np.sqrt(np.mean(robust_errors**2) / max(float(np.mean(errors**2)), 1e-300)))
+    median = float(np.median(np.abs(robust_errors)) / max(float(np.median(np.abs(errors))), 1e-300))
+    return rms < BETTER or (rms < NO_WORSE and median < SHARPER)
 
 
-def huber(off: Array) -> Array:
-    """Square roots of Huber's weights for residuals in standard deviations."""
-    weight: Array = np.sqrt(np.minimum(1.0, TUNING / np.maximum(off, 1e-300)))
-    return weight
+def huber(residual: Array) -> Array:
+    """Square roots of Huber's weights for absolute residuals in standard deviations."""
+    return np.asarray(np.sqrt(np.minimum(1.0, TUNING / np.maximum(residual, 1e-300))))
 
 
-def student(off: Array) -> Array:
+def student(residual: Array) -> Array:
     """Square roots of Student's t weights; outliers have almost no weight (Lange et al. 1989)."""
-    weight: Array = np.sqrt((FREEDOM + 1.0) / (FREEDOM + off**2))
-    return weight
+    return np.asarray(np.sqrt((FREEDOM + 1.0) / (FREEDOM + residual**2)))
 
 
 def _robust(problem: Problem, start: Solution, weights: Callable[[Array], Array]) -> Solution:
     """M-estimate with these weights by iteratively reweighted least squares."""
-    found, samples = start, start.samples
+    solution, samples = start, start.samples
     for _ in range(ROUNDS):
-        flat = np.abs(samples.flat(found.residuals))
+        flat = np.abs(samples.flat(solution.residuals))
         scale = float(np.median(flat)) / 0.6745 if len(flat) else 0.0
         if scale <= 0.0:
             return start
-        pull = [weights(np.abs(r) / scale) for r in found.residuals]
-        weight = tuple(w * p for w, p in zip(start.samples.weight, pull, strict=True))
+        factors = [weights(np.abs(r) / scale) for r in solution.residuals]
+        weight = tuple(w * f for w, f in zip(start.samples.weight, factors, strict=True))
         samples = replace(start.samples, weight=weight)
-        end = search(problem, samples, found.values, WHITE, MAX_EVALUATIONS)
-        there = problem.wrapped(end.values)
-        found = problem.solution(there, samples, WHITE, end.converged, end.message)
-    return found
+        end = search(problem, samples, solution.values, WHITE, MAX_EVALUATIONS)
+        values = problem.wrapped(end.values)
+        solution = problem.solution(values, samples, WHITE, end.converged, end.message)
+    return solution

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import Noise, innovation_cost
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.settings import DEFAULT, Settings
 
 Array = npt.NDArray[np.float64]
@@ -59,7 +59,7 @@ class Samples:
     steps_s: tuple[float, ...]
     counted: tuple[Mask, ...]
     weight: tuple[Array, ...]
-    between: BetweenRuns | None = None
+    between: RandomEffects | None = None
     level: tuple[Array, ...] | None = None
     motion: ErrorsInMotion | None = None
     settings: Settings = DEFAULT
@@ -84,16 +84,16 @@ class Samples:
 
     # ---- parts ------------------------------------------------------------------------------
 
-    def only(self, which: Sequence[int]) -> Samples:
+    def only(self, selection: Sequence[int]) -> Samples:
         """Return the samples of a selection of runs."""
         return Samples(
-            tuple(self.runs[i] for i in which),
-            tuple(self.steps_s[i] for i in which),
-            tuple(self.counted[i] for i in which),
-            tuple(self.weight[i] for i in which),
-            None if self.between is None else self.between.only(which),
-            None if self.level is None else tuple(self.level[i] for i in which),
-            None if self.motion is None else self.motion.only(which),
+            tuple(self.runs[i] for i in selection),
+            tuple(self.steps_s[i] for i in selection),
+            tuple(self.counted[i] for i in selection),
+            tuple(self.weight[i] for i in selection),
+            None if self.between is None else self.between.only(selection),
+            None if self.level is None else tuple(self.level[i] for i in selection),
+            None if self.motion is None else self.motion.only(selection),
             self.settings,
         )
 
@@ -109,7 +109,7 @@ class Samples:
         self,
         level: Sequence[Array],
         robust: Sequence[Array],
-        between: BetweenRuns | None,
+        between: RandomEffects | None,
     ) -> Samples:
         """Return the samples with further weights and random effects.
 
@@ -124,8 +124,8 @@ class Samples:
         """
         weight = tuple(w * s * h for w, s, h in zip(self.weight, level, robust, strict=True))
         before = [np.ones(len(w)) for w in weight] if self.level is None else self.level
-        whole = tuple(a * b for a, b in zip(before, level, strict=True))
-        return replace(self, weight=weight, between=between, level=whole)
+        levels = tuple(a * b for a, b in zip(before, level, strict=True))
+        return replace(self, weight=weight, between=between, level=levels)
 
     def with_known_motion(self) -> Samples:
         """Return the samples where the motion's errors have at most the variance of the noise."""
@@ -160,27 +160,27 @@ class Samples:
         residuals: Sequence[Array],
         jacobian: Sequence[Array],
         noise: Noise,
-        which: Sequence[int] | None = None,
+        selection: Sequence[int] | None = None,
     ) -> tuple[Array, Array]:
         """Weighted innovations as one vector, and their derivatives as one matrix.
 
-        `which` selects runs. A sample without weight is a gap: a zero is passed to the noise filter
-        there.
+        `selection` selects runs. A sample without weight is a gap: a zero is passed to the noise
+        filter there.
         """
         if self.motion is not None:
-            return self.motion.stacked(residuals, jacobian, self.weight, which)
+            return self.motion.stacked(residuals, jacobian, self.weight, selection)
         r, j = [], []
-        for i in range(len(residuals)) if which is None else which:
+        for i in range(len(residuals)) if selection is None else selection:
             w, step = self.weight[i], self.steps_s[i]
             keep = w > 0.0
-            own = [
+            rows = [
                 noise.innovations(residuals[i] * w, step)[keep],
                 noise.innovations(jacobian[i] * w[:, None], step)[keep],
             ]
             if self.between is not None:
-                own = self.between.whitened(i, own, w, step, noise)
-            r.append(own[0])
-            j.append(own[1])
+                rows = self.between.whitened(i, rows, w, step, noise)
+            r.append(rows[0])
+            j.append(rows[1])
         return np.concatenate(r), np.concatenate(j)
 
     def cost(self, residuals: Sequence[Array], noise: Noise) -> float:
@@ -192,16 +192,6 @@ class Samples:
         weighted = [r * w for r, w in zip(residuals, self.weight, strict=True)]
         return innovation_cost(noise, weighted, self.steps_s, [w > 0.0 for w in self.weight])
 
-    def weighted_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Innovations of weighted residuals, one array a run; zero without weight."""
-        left = self.without_deviations(residuals, noise)
-        if self.motion is not None:
-            return self.motion.innovations(left, self.weight)
-        return [
-            noise.innovations(r * w, step) * (w > 0.0)
-            for r, w, step in zip(left, self.weight, self.steps_s, strict=True)
-        ]
-
     def without_deviations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
         """Residuals minus the predicted random effects of their runs, N."""
         if self.between is None:
@@ -211,30 +201,38 @@ class Samples:
             for i, r in enumerate(residuals)
         ]
 
+    def weighted_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
+        """Innovations of weighted residuals, one array a run; zero without weight."""
+        return self._innovations(residuals, noise, self.weight, [w > 0.0 for w in self.weight])
+
     def innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
         """Innovations for tests, one array a run, scaled to the smallest noise level.
 
         They are zero where a sample does not count.
         """
-        left = self.without_deviations(residuals, noise)
-        if self.motion is not None:
-            pairs = zip(self.counted, self.weight, strict=True)
-            return self.motion.innovations(left, [c * w for c, w in pairs])
-        return [
-            noise.innovations(r * (c * w), step) * c
-            for r, c, w, step in zip(left, self.counted, self.weight, self.steps_s, strict=True)
-        ]
+        weights = [c * w for c, w in zip(self.counted, self.weight, strict=True)]
+        return self._innovations(residuals, noise, weights, self.counted)
 
     def plain_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
         """Innovations for tests of outliers: like `innovations`, but without robust weights."""
-        left = self.without_deviations(residuals, noise)
-        level = [np.ones(len(r)) for r in left] if self.level is None else self.level
+        level = [np.ones(len(c)) for c in self.counted] if self.level is None else self.level
+        weights = [c * s for c, s in zip(self.counted, level, strict=True)]
+        return self._innovations(residuals, noise, weights, self.counted)
+
+    def _innovations(
+        self,
+        residuals: Sequence[Array],
+        noise: Noise,
+        weights: Sequence[Array],
+        masks: Sequence[Mask],
+    ) -> list[Array]:
+        """Innovations of residuals with these weights, one array a run; zero outside the masks."""
+        residuals = self.without_deviations(residuals, noise)
         if self.motion is not None:
-            pairs = zip(self.counted, level, strict=True)
-            return self.motion.innovations(left, [c * s for c, s in pairs])
+            return self.motion.innovations(residuals, weights)
         return [
-            noise.innovations(r * (c * s), step) * c
-            for r, c, s, step in zip(left, self.counted, level, self.steps_s, strict=True)
+            noise.innovations(r * w, step) * m
+            for r, w, m, step in zip(residuals, weights, masks, self.steps_s, strict=True)
         ]
 
 

@@ -44,11 +44,15 @@ Method = Literal["dogbox", "trf"]
 
 
 @dataclass(frozen=True)
-class Place:
+class SearchPoint:
     """A point of a search with its innovations and derivatives.
 
-    It holds the search variables, all parameter values, the values of the searched parameters, and
-    the rows of the likelihood.
+    Attributes
+    ----------
+    x, values, searched
+        Search variables, all parameter values, and the values of the searched parameters.
+    residual, jacobian, count
+        Innovations and their derivatives in reduced rows, and the number of innovations.
     """
 
     x: Array
@@ -66,17 +70,27 @@ class Place:
 
 @dataclass
 class Visited:
-    """Points of one likelihood that searches have visited."""
+    """Points of one likelihood that searches have visited.
 
-    places: dict[bytes, Place] = field(default_factory=dict)
-    ended: list[list[Place]] = field(default_factory=list)
-    lowest: tuple[Place, Lines] | None = None
+    Attributes
+    ----------
+    points
+        Point by the key of its parameter values.
+    ended
+        Path of each search that ended.
+    lowest
+        Lowest point, with the residuals and derivatives of all samples.
+    """
 
-    def store(self, place: Place, lines: Lines | None) -> None:
+    points: dict[bytes, SearchPoint] = field(default_factory=dict)
+    ended: list[list[SearchPoint]] = field(default_factory=list)
+    lowest: tuple[SearchPoint, Lines] | None = None
+
+    def store(self, point: SearchPoint, lines: Lines | None) -> None:
         """Store a point, and the residuals and derivatives of all samples at the lowest point."""
-        self.places[_key(place.values)] = place
-        if lines is not None and (self.lowest is None or place.square < self.lowest[0].square):
-            self.lowest = (place, lines)
+        self.points[_key(point.values)] = point
+        if lines is not None and (self.lowest is None or point.square < self.lowest[0].square):
+            self.lowest = (point, lines)
 
     def lines_at(self, values: Array) -> Lines | None:
         """Residuals and derivatives at these values; None unless they are the lowest point."""
@@ -84,16 +98,16 @@ class Visited:
             return None
         return self.lowest[1]
 
-    def at(self, values: Array) -> Place | None:
+    def at(self, values: Array) -> SearchPoint | None:
         """Point with these values if a search has visited it, otherwise None."""
-        return self.places.get(_key(values))
+        return self.points.get(_key(values))
 
     def square(self, problem: Problem, samples: Samples, values: Array) -> float:
         """Sum of squares of weighted residuals, N^2, for white noise."""
-        place = self.at(values)
+        point = self.at(values)
         # Random effects are removed from innovations, but not from residuals.
-        if place is not None and samples.between is None:
-            return place.square
+        if point is not None and samples.between is None:
+            return point.square
         return problem.square(values, samples)
 
 
@@ -133,25 +147,25 @@ def search(
         search ends at a point visited by one of them that ended lower.
     """
     memory = Visited() if visited is None else visited
-    way: list[Place] = []
+    path: list[SearchPoint] = []
 
-    def evaluate(x: Array) -> Place:
+    def evaluate(x: Array) -> SearchPoint:
         values = problem.decode(x, start)
-        place = memory.at(values)
-        if place is None:
-            keeps = visited is not None and problem.fits_in_memory
-            lines = problem.linearise(values) if keeps else None
+        point = memory.at(values)
+        if point is None:
+            stored = visited is not None and problem.fits_in_memory
+            lines = problem.linearise(values) if stored else None
             r, j, count = problem.gauss_newton_rows(values, samples, noise, lines)
             problem.best.update(values, float(r @ r) / max(count, 1))
-            place = Place(problem.encode(values), values, values[problem.open], r, j, count)
+            point = SearchPoint(problem.encode(values), values, values[problem.open], r, j, count)
             if visited is None:
-                memory.places.clear()
-            memory.store(place, lines)
-        if not way or way[-1] is not place:
-            way.append(place)
-            if visited is not None and any(_joins(place, other) for other in memory.ended):
+                memory.points.clear()
+            memory.store(point, lines)
+        if not path or path[-1] is not point:
+            path.append(point)
+            if visited is not None and any(_joins(point, other) for other in memory.ended):
                 raise _Joined
-        return place
+        return point
 
     def residual(x: Array) -> Array:
         return -evaluate(x).residual
@@ -164,7 +178,7 @@ def search(
     margin = 1e-9 * np.maximum(np.abs(high - low), 1.0)
     margin = np.minimum(margin, 0.25 * (high - low))
     try:
-        found = optimize.least_squares(
+        result = optimize.least_squares(
             residual,
             np.clip(x0, low + margin, high - margin),
             jac=jacobian,
@@ -179,11 +193,13 @@ def search(
             max_nfev=evaluations,
         )
     except _Joined:
-        least = min(way, key=lambda place: place.square)
+        least = min(path, key=lambda point: point.square)
         return SearchResult(least.values, False, "joined another search")
     if visited is not None:
-        memory.ended.append(way)
-    return SearchResult(problem.decode(found.x, start), bool(found.status > 0), str(found.message))
+        memory.ended.append(path)
+    return SearchResult(
+        problem.decode(result.x, start), bool(result.status > 0), str(result.message)
+    )
 
 
 def _key(values: Array) -> bytes:
@@ -193,14 +209,14 @@ def _key(values: Array) -> bytes:
     return key.tobytes()
 
 
-def _joins(place: Place, other: list[Place]) -> bool:
+def _joins(point: SearchPoint, other: list[SearchPoint]) -> bool:
     """Whether a point is equivalent to one of another search that ended as low or lower."""
-    if min(seen.square for seen in other) > (1.0 + ENDED) * place.square:
+    if min(visited.square for visited in other) > (1.0 + ENDED) * point.square:
         return False
-    return any(_one(place, seen) for seen in other)
+    return any(_equivalent(point, visited) for visited in other)
 
 
-def _one(a: Place, b: Place) -> bool:
+def _equivalent(a: SearchPoint, b: SearchPoint) -> bool:
     """Whether two points are equivalent for the data, by the linear models at both."""
     size = np.maximum(np.abs(a.searched), np.abs(b.searched))
     far = np.abs(a.searched - b.searched) > NEAR * size
@@ -209,36 +225,36 @@ def _one(a: Place, b: Place) -> bool:
         return False
     step = a.x - b.x
     most = SAME**2 * min(a.square, b.square)
-    return all(float(np.sum((place.jacobian @ step) ** 2)) <= most for place in (a, b))
+    return all(float(np.sum((point.jacobian @ step) ** 2)) <= most for point in (a, b))
 
 
 def other_peaks(
-    square: Callable[[Array], float], values: Array, which: int, lower: float, upper: float
+    square: Callable[[Array], float], values: Array, index: int, lower: float, upper: float
 ) -> list[Array]:
-    """Best local minima of `square` along parameter number `which`, except the current one.
+    """Best local minima of `square` along one parameter, except the current one.
 
     Parameters
     ----------
     square
         Sum of squares as a function of the parameter values.
-    which
+    index
         Index of the parameter.
     lower, upper
         Bounds of the parameter, a positive scale.
     """
-    spread = np.log(REACH)
-    places = values[which] * np.exp(np.linspace(-spread, spread, POINTS))
-    places = places[(places > lower) & (places < upper)]
+    reach = np.log(REACH)
+    scanned = values[index] * np.exp(np.linspace(-reach, reach, POINTS))
+    scanned = scanned[(scanned > lower) & (scanned < upper)]
 
-    def moved(place: float) -> Array:
-        there: Array = values.copy()
-        there[which] = place
-        return there
+    def with_value(value: float) -> Array:
+        moved: Array = values.copy()
+        moved[index] = value
+        return moved
 
-    found = np.array([square(moved(place)) for place in places])
-    around = np.pad(found, 1, constant_values=np.inf)
-    lowest = (found <= around[:-2]) & (found <= around[2:])
+    squares = np.array([square(with_value(value)) for value in scanned])
+    around = np.pad(squares, 1, constant_values=np.inf)
+    lowest = (squares <= around[:-2]) & (squares <= around[2:])
     # Minima within the grid spacing are the current one.
-    lowest &= np.abs(np.log(places / values[which])) > spread / POINTS
-    best = sorted(np.flatnonzero(lowest), key=lambda k: found[k])[:CLIMBED]
-    return [moved(float(places[k])) for k in best]
+    lowest &= np.abs(np.log(scanned / values[index])) > reach / POINTS
+    best = sorted(np.flatnonzero(lowest), key=lambda k: squares[k])[:CLIMBED]
+    return [with_value(float(scanned[k])) for k in best]

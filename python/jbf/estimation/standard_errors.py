@@ -16,7 +16,7 @@ import numpy.typing as npt
 from jbf.estimation.bounds import bound_note
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from jbf.estimation.variance import between_runs, score_inflation
+from jbf.estimation.variance import cluster_inflation, score_inflation
 from jbf.models.catalogue import find_effect
 from jbf.models.parameter_value import ParameterValue
 
@@ -45,7 +45,7 @@ It enters no verdict.
 
 
 @dataclass(frozen=True, eq=False)
-class Spread:
+class StandardErrors:
     """Uncertainty of each free parameter, in their order.
 
     Attributes
@@ -60,7 +60,7 @@ class Spread:
         Derivative of the parameter with respect to the search variable, shape (k,).
     correlation
         Correlation matrix, shape (k, k); nan for parameters on which the runs do not depend.
-    moved
+    sensitive
         Whether the runs depend on the parameter.
     separate
         Whether no combination of other parameters has the same effect.
@@ -70,7 +70,7 @@ class Spread:
     inflation: Array
     scale: Array
     correlation: Array
-    moved: Mask
+    sensitive: Mask
     separate: Mask
 
     def error(self, k: int) -> float:
@@ -78,37 +78,39 @@ class Spread:
         return float(self.sd[k] * self.inflation[k] * self.scale[k])
 
 
-def spread(problem: Problem, solution: Solution) -> Spread:
+def standard_errors(problem: Problem, solution: Solution) -> StandardErrors:
     """Compute the uncertainty of the free parameters at a solution."""
     r, j = solution.stacked()
     free = j.shape[1]
     variance = float(r @ r) / max(len(r) - free, 1)
     size = np.linalg.norm(j, axis=0)
-    moved = size > INSENSITIVE * max(float(size.max(initial=0.0)), 1e-300)
+    sensitive = size > INSENSITIVE * max(float(size.max(initial=0.0)), 1e-300)
     separate = np.ones(free, dtype=bool)
     covariance = np.full((free, free), np.nan)
-    if moved.any():
-        unit = j[:, moved] / size[moved]
+    if sensitive.any():
+        unit = j[:, sensitive] / size[sensitive]
         normal = unit.T @ unit
         inverse = np.linalg.pinv(normal, rcond=1e-13, hermitian=True)
-        scale = np.outer(size[moved], size[moved])
-        covariance[np.ix_(moved, moved)] = variance * inverse / scale
-        separate[moved] = _separate(normal)
+        sizes = np.outer(size[sensitive], size[sensitive])
+        covariance[np.ix_(sensitive, sensitive)] = variance * inverse / sizes
+        separate[sensitive] = _separate(normal)
     sd = np.sqrt(np.diag(covariance))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = covariance / np.outer(sd, sd)
     values = np.abs(solution.values)
-    change = np.where(problem.log, values, 1.0)[problem.open]
+    scale = np.where(problem.log, values, 1.0)[problem.open]
     inflation = np.ones(free)
-    if moved.any():
-        inflation[moved] = _inflation(solution, covariance[np.ix_(moved, moved)], moved)
+    if sensitive.any():
+        inflation[sensitive] = _inflation(
+            solution, covariance[np.ix_(sensitive, sensitive)], sensitive
+        )
     if solution.systematic is not None:
         with np.errstate(invalid="ignore", divide="ignore"):
             inflation = np.hypot(inflation, np.nan_to_num(solution.systematic / sd))
-    return Spread(sd, inflation, change, correlation, moved, separate)
+    return StandardErrors(sd, inflation, scale, correlation, sensitive, separate)
 
 
-def _inflation(solution: Solution, covariance: Array, moved: Mask) -> Array:
+def _inflation(solution: Solution, covariance: Array, sensitive: Mask) -> Array:
     """Ratio of each standard deviation to that from the curvature.
 
     A parameter follows a weighted sum of the innovations, whose variance is estimated from them
@@ -121,59 +123,65 @@ def _inflation(solution: Solution, covariance: Array, moved: Mask) -> Array:
     ]
     # Each parameter has its own scale, since the units differ.
     influence = [
-        j[:, moved] @ (covariance / np.sqrt(np.maximum(np.diag(covariance), 1e-300)))
+        j[:, sensitive] @ (covariance / np.sqrt(np.maximum(np.diag(covariance), 1e-300)))
         for _, j in parts
     ]
     innovations = [r for r, _ in parts]
-    found = []
+    ratios = []
     for k in range(len(covariance)):
-        own = [a[:, k] for a in influence]
-        ratio = score_inflation(own, innovations, samples.steps_s, settings)
-        found.append(np.sqrt(max(ratio, between_runs(own, innovations, ratio, settings))))
-    ratios: Array = np.array(found)
-    return ratios
+        directions = [a[:, k] for a in influence]
+        within = score_inflation(directions, innovations, samples.steps_s, settings)
+        between = cluster_inflation(directions, innovations, within, settings)
+        ratios.append(np.sqrt(max(within, between)))
+    return np.array(ratios)
 
 
 def _separate(normal: Array) -> Mask:
     """Mask of the parameters that take no part in an unidentifiable combination."""
-    sizes, ways = np.linalg.eigh(normal)
-    unseen = ways[:, sizes * SINGULAR < sizes[-1]]
-    part: Mask = np.linalg.norm(unseen, axis=1) < TAKES_PART
-    return part
+    sizes, axes = np.linalg.eigh(normal)
+    unseen = axes[:, sizes * SINGULAR < sizes[-1]]
+    return np.asarray(np.linalg.norm(unseen, axis=1) < TAKES_PART)
 
 
 def doubtful_errors(
     problem: Problem, solution: Solution, parameters: Mapping[str, ParameterValue]
 ) -> tuple[str, ...]:
-    """Names of the parameters, other than held ones, whose standard error is not valid."""
-    known = spread(problem, solution)
+    """Names of the parameters, other than held ones, whose standard error is not valid.
+
+    Notes
+    -----
+    One standard error away from the estimate, with the other parameters following, the log
+    likelihood falls by one half if it is a parabola. It is evaluated there. Where a drive rings,
+    the likelihood has many adjacent maxima, and the width of one of them is not a standard error.
+    """
+    errors = standard_errors(problem, solution)
     x = problem.encode(solution.values)
-    sd = np.where(known.separate, known.sd, np.nan)
+    sd = np.where(errors.separate, errors.sd, np.nan)
     for k, i in enumerate(problem.open):
         # A parameter at a bound does not follow another parameter.
         page = problem.parameters[problem.names[i]]
-        if bound_note(page, float(solution.values[i]), known.error(k)) is not None:
+        if bound_note(page, float(solution.values[i]), errors.error(k)) is not None:
             sd[k] = np.nan
     low, high = problem.encode(problem.lower), problem.encode(problem.upper)
-    found = []
+    doubtful = []
     # Effects catalogued with many maxima: one standard error away may still be the same maximum.
     many = {effect for effect in problem.effects if find_effect(effect).peaks}
     for k, i in enumerate(problem.open):
         # Position of the maximum of the likelihood with this parameter one standard error away.
-        way = known.correlation[:, k] * sd
+        direction = errors.correlation[:, k] * sd
         if parameters[problem.names[i]].held:
             continue
         if problem.names[i].split(".")[0] in many:
-            found.append(problem.names[i])
+            doubtful.append(problem.names[i])
             continue
-        way = np.where(np.isfinite(way), way, 0.0)
+        direction = np.where(np.isfinite(direction), direction, 0.0)
         for side in (1.0, -1.0):
-            there = x + side * way
-            if np.any((there <= low) | (there >= high)):
+            displaced = x + side * direction
+            if np.any((displaced <= low) | (displaced >= high)):
                 continue
-            residuals = problem.residuals(problem.decode(there, solution.values))
+            residuals = problem.residuals(problem.decode(displaced, solution.values))
             rise = solution.samples.cost(residuals, solution.noise) - solution.cost
             if abs(rise - 1.0) > BENT:
-                found.append(problem.names[i])
+                doubtful.append(problem.names[i])
                 break
-    return tuple(found)
+    return tuple(doubtful)

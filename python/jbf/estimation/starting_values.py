@@ -23,6 +23,20 @@ from jbf.records.findings.slow_temperature import recorded_temperature
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+Starts = tuple[float, ...]
+CELL_ERROR = 0.03
+"""Initial error of a load cell in a search, as a fraction of the largest force.
+
+It only starts a search.
+"""
+SHORTEST_M = 1e-9
+"""Shortest stroke, m; used for a drive that does not move. It is a numerical tolerance."""
+BEYOND = 0.1
+"""Margin of the stroke at either end, as a fraction of the travel of the runs.
+
+Waves whose slope vanishes at the ends of the stroke can then describe a slope at those of the runs.
+It defines an effect, not a criterion.
+"""
 
 
 @dataclass(frozen=True)
@@ -31,7 +45,7 @@ class Scales:
 
     Attributes
     ----------
-    whole_n
+    median_n
         Median friction.
     kinetic_n, viscous_n_s_m
         Intercept and slope of a line, over speed, through the friction in the direction of motion
@@ -45,7 +59,7 @@ class Scales:
         reversal, m.
     """
 
-    whole_n: float
+    median_n: float
     kinetic_n: float
     viscous_n_s_m: float
     breakaway_n: float
@@ -64,33 +78,31 @@ def scales(campaign: Campaign) -> Scales:
         There is no such sample.
     """
     moving = campaign.moving
-    if not any(map(np.any, moving)):
+    if not any(np.any(m) for _, m in moving):
         raise InputError(
             file=campaign.prepared[0].run.path or campaign.prepared[0].run.name,
             column="velocity_m_s",
             problem="the direction of motion is undetermined at every usable sample",
             mend="record strokes of many samples each, or check the unit of time",
         )
-    v = np.concatenate(
-        [p.motion.velocity[m] for p, m in zip(campaign.prepared, moving, strict=True)]
-    )
-    f = np.concatenate([p.friction[m] for p, m in zip(campaign.prepared, moving, strict=True)])
+    v = np.concatenate([p.motion.velocity[m] for p, m in moving])
+    f = np.concatenate([p.friction[m] for p, m in moving])
     speed, along = np.abs(v), f * np.sign(v)
-    whole = max(float(np.median(np.abs(f))), 1e-5)
-    slow, usual = (float(q) for q in np.quantile(speed, [0.1, 0.5]))
-    slow_m_s, usual_m_s = max(slow, 1e-9), max(usual, 1e-9)
-    low, high = speed <= usual, speed >= usual
+    median_n = max(float(np.median(np.abs(f))), 1e-5)
+    slow, median_speed = (float(q) for q in np.quantile(speed, [0.1, 0.5]))
+    slow_m_s, usual_m_s = max(slow, 1e-9), max(median_speed, 1e-9)
+    low, high = speed <= median_speed, speed >= median_speed
     f_low, f_high = float(np.median(along[low])), float(np.median(along[high]))
     v_low, v_high = float(np.median(speed[low])), float(np.median(speed[high]))
     slope = max((f_high - f_low) / (v_high - v_low), 0.0) if v_high > 1.2 * v_low else 0.0
-    kinetic = max(f_low - slope * v_low, 0.5 * whole)
+    kinetic = max(f_low - slope * v_low, 0.5 * median_n)
     breakaway = max(float(np.quantile(along[low], 0.9)), 1.1 * kinetic)
-    ways = np.concatenate([_strokes(p, m) for p, m in zip(campaign.prepared, moving, strict=True)])
+    distances = np.concatenate([_strokes(p, m) for p, m in moving])
     # A drive that settles overshoots slightly; those distances are not strokes.
-    stroke = max(float(np.median(ways[ways >= 0.1 * np.max(ways)])), 1e-9)
+    stroke = max(float(np.median(distances[distances >= 0.1 * np.max(distances)])), 1e-9)
     step = float(np.median([p.step_s for p in campaign.prepared]))
     resolved = min(max(0.1 * slow_m_s * step, 1e-7 * stroke), 1e-2 * stroke)
-    return Scales(whole, kinetic, slope, breakaway, slow_m_s, usual_m_s, stroke, resolved)
+    return Scales(median_n, kinetic, slope, breakaway, slow_m_s, usual_m_s, stroke, resolved)
 
 
 def _strokes(p: Prepared, moving: Mask) -> Array:
@@ -99,20 +111,10 @@ def _strokes(p: Prepared, moving: Mask) -> Array:
     steps = 0.5 * (v[1:] + v[:-1]) * np.diff(p.run.time_s)
     path = np.concatenate(([0.0], np.cumsum(steps)))
     sign = np.sign(v)
-    known = np.flatnonzero(moving)
-    turned = known[1:][sign[known[1:]] != sign[known[:-1]]]
-    ways = np.abs(np.diff(path[turned]))
-    return ways if len(ways) else np.array([float(np.ptp(path))])
-
-
-SHORTEST_M = 1e-9
-"""Shortest stroke, m; used for a drive that does not move. It is a numerical tolerance."""
-BEYOND = 0.1
-"""Margin of the stroke at either end, as a fraction of the travel of the runs.
-
-Waves whose slope vanishes at the ends of the stroke can then describe a slope at those of the runs.
-It defines an effect, not a criterion.
-"""
+    directed = np.flatnonzero(moving)
+    turned = directed[1:][sign[directed[1:]] != sign[directed[:-1]]]
+    distances = np.abs(np.diff(path[turned]))
+    return distances if len(distances) else np.array([float(np.ptp(path))])
 
 
 def stroke(campaign: Campaign) -> tuple[float, float]:
@@ -121,22 +123,13 @@ def stroke(campaign: Campaign) -> tuple[float, float]:
     They are computed from the motion and not from the force, so no information on held-out forces
     is used.
     """
-    arm = 1.0 if campaign.rig.bearing is None else campaign.rig.bearing.radius_m
-    pairs = zip(campaign.prepared, campaign.moving, strict=True)
-    places = np.concatenate([p.motion.angle_rad[moving] for p, moving in pairs]) * arm
+    angles = np.concatenate([p.motion.angle_rad[moving] for p, moving in campaign.moving])
+    places = angles * campaign.arm_m
     if not len(places):
         return -SHORTEST_M, SHORTEST_M
     low, high = float(np.min(places)), float(np.max(places))
-    more = max(BEYOND * (high - low), SHORTEST_M)
-    return low - more, high + more
-
-
-Starts = tuple[float, ...]
-CELL_ERROR = 0.03
-"""Initial error of a load cell in a search, as a fraction of the largest force.
-
-It only starts a search.
-"""
+    margin = max(BEYOND * (high - low), SHORTEST_M)
+    return low - margin, high + margin
 
 
 def _stiffness(s: Scales) -> Starts:
@@ -145,12 +138,12 @@ def _stiffness(s: Scales) -> Starts:
     The mean of the two distances is geometric.
     """
     long, short = 0.1 * s.stroke_m, s.resolved_m
-    ways = (long, float(np.sqrt(long * short)), short)
-    return tuple(s.breakaway_n / way for way in ways)
+    distances = (long, float(np.sqrt(long * short)), short)
+    return tuple(s.breakaway_n / distance for distance in distances)
 
 
 RULES: dict[str, Callable[[Scales], Starts]] = {
-    "kinetic": lambda s: (s.kinetic_n, s.whole_n),
+    "kinetic": lambda s: (s.kinetic_n, s.median_n),
     "breakaway": lambda s: (s.breakaway_n,),
     "breakaway_excess": lambda s: (s.breakaway_n - s.kinetic_n,),
     "viscous": lambda s: (s.viscous_n_s_m, 0.0),
@@ -180,8 +173,8 @@ LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
 
 def _run_time(campaign: Campaign) -> Starts:
     """A third and a tenth of the duration of a usual run, s."""
-    usual = float(np.median([p.run.duration_s for p in campaign.prepared]))
-    return (0.3 * usual, 0.1 * usual)
+    median_s = float(np.median([p.run.duration_s for p in campaign.prepared]))
+    return (0.3 * median_s, 0.1 * median_s)
 
 
 def _reference_temperature(campaign: Campaign) -> Starts:
@@ -192,15 +185,15 @@ def _reference_temperature(campaign: Campaign) -> Starts:
     lubricant = campaign.rig.lubricant
     if lubricant is not None and lubricant.temperature_c is not None:
         return (lubricant.temperature_c,)
-    every = [recorded_temperature(p.run) for p in campaign.prepared]
-    means = [float(np.mean(celsius)) for celsius in every if celsius is not None]
+    recorded = [recorded_temperature(p.run) for p in campaign.prepared]
+    means = [float(np.mean(celsius)) for celsius in recorded if celsius is not None]
     return (float(np.round(np.mean(means))),) if means else ()
 
 
 def _largest_n(campaign: Campaign) -> float:
     """The 99 % quantile of the absolute recorded force, N."""
-    every = np.concatenate([p.friction[np.isfinite(p.friction)] for p in campaign.prepared])
-    return max(float(np.quantile(np.abs(every), 0.99)), 1e-5)
+    forces = np.concatenate([p.friction[np.isfinite(p.friction)] for p in campaign.prepared])
+    return max(float(np.quantile(np.abs(forces), 0.99)), 1e-5)
 
 
 CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
@@ -286,7 +279,7 @@ def with_starts(
     if in_newtons and campaign.rig.bearing is None:
         rules |= LINEAR_RULES
     sizes = scales(campaign) if in_newtons else None
-    found = {}
+    with_values = {}
     for name, page in pages.items():
         if page.bound == "transition_speed":
             page = _bounded(page, campaign)
@@ -302,5 +295,5 @@ def with_starts(
             page = _inside(page, RULES_BESIDE_THE_CATALOGUE[page.start](page, campaign))
         if page.unit == "s":
             page = _inside(_within_the_record(page, campaign), page.starts)
-        found[name] = page
-    return found
+        with_values[name] = page
+    return with_values

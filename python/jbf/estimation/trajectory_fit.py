@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError
 from jbf.estimation.estimates import Estimates
-from jbf.estimation.identifiability import undetermined
+from jbf.estimation.identifiability import reason_not_identifiable
 from jbf.models.catalogue import Parameter, find_parameter, parameters_of
 from jbf.models.parameter_value import ParameterValue
 from jbf.models.trajectory import Motion, is_record, motions_of, trajectories
@@ -108,7 +108,7 @@ def fit_trajectories(
         As in :func:`jbf.trajectories`.
     friction_coefficient
         Measured friction over load, one array of shape (n,) a run; NaN where nothing was measured.
-        Samples at rest are left out: friction is set-valued there.
+        Samples at rest are excluded: friction is set-valued there.
     start
         Starting values; those of the catalogue by default.
 
@@ -153,8 +153,10 @@ def fit_trajectories(
     high = np.log([page.upper for page in pages.values()])
     runs = motions_of(runs)
     if isinstance(friction_coefficient, str) or not isinstance(friction_coefficient, Iterable):
-        said = described(friction_coefficient)
-        raise InputError(problem=f"the friction is {said}", mend="give a list, one array per run")
+        description = described(friction_coefficient)
+        raise InputError(
+            problem=f"the friction is {description}", mend="give a list, one array per run"
+        )
     measured = [numbers(f, f"the friction of run {i}") for i, f in enumerate(friction_coefficient)]
     keep = _usable(runs, measured)
     data = np.concatenate(measured)[keep]
@@ -194,7 +196,7 @@ def fit_trajectories(
     def slopes(x: Array) -> Array:
         return evaluate(x)[1]
 
-    found = optimize.least_squares(
+    optimum = optimize.least_squares(
         residuals,
         np.clip(np.log(first), low, high),
         jac=slopes,
@@ -204,40 +206,41 @@ def fit_trajectories(
         gtol=1e-8,
         max_nfev=200,
     )
-    values = np.exp(np.clip(found.x, low, high))
-    errors = _errors(found, values)
-    shown = np.linalg.norm(np.asarray(found.jac), axis=0) > 0.0
+    values = np.exp(np.clip(optimum.x, low, high))
+    errors = _errors(optimum, values)
+    sensitive = np.linalg.norm(np.asarray(optimum.jac), axis=0) > 0.0
     parameters = {
-        name: _parameter(page, float(v), float(e), moved=bool(s))
-        for (name, page), v, e, s in zip(pages.items(), values, errors, shown, strict=True)
+        name: _parameter(page, float(v), float(e), sensitive=bool(s))
+        for (name, page), v, e, s in zip(pages.items(), values, errors, sensitive, strict=True)
     }
     return TrajectoryFit(
         parameters=parameters,
-        sum_of_squares=2.0 * float(found.cost),
+        sum_of_squares=2.0 * float(optimum.cost),
         nobs=len(data),
         evaluations=evaluations,
-        converged=bool(found.status > 0),
-        message=str(found.message),
+        converged=bool(optimum.status > 0),
+        message=str(optimum.message),
     )
 
 
-def _parameter(page: Parameter, value: float, error: float, *, moved: bool) -> ParameterValue:
-    note = undetermined(page, value, error, moved=moved, separate=bool(np.isfinite(error)))
+def _parameter(page: Parameter, value: float, error: float, *, sensitive: bool) -> ParameterValue:
+    note = reason_not_identifiable(
+        page, value, error, sensitive=sensitive, separate=bool(np.isfinite(error))
+    )
     return ParameterValue(value, None if note else error, note, note is not None)
 
 
-def _errors(found: OptimizeResult, values: Array) -> Array:
+def _errors(optimum: OptimizeResult, values: Array) -> Array:
     """Standard errors of the parameters; NaN if they are not separately identifiable."""
-    jacobian = np.asarray(found.jac)
+    jacobian = np.asarray(optimum.jac)
     size = np.linalg.norm(jacobian, axis=0)
     size[size == 0.0] = np.nan
     unit = jacobian / size
     if not np.isfinite(unit).all() or np.linalg.cond(unit) > 1e6:
         return np.full(len(values), np.nan)
-    variance = 2.0 * found.cost / (len(jacobian) - len(values))
+    variance = 2.0 * optimum.cost / (len(jacobian) - len(values))
     covariance = variance * np.linalg.inv(unit.T @ unit)
-    errors: Array = np.sqrt(np.diag(covariance)) / size * values
-    return errors
+    return np.asarray(np.sqrt(np.diag(covariance)) / size * values)
 
 
 def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np.bool_]:
@@ -247,7 +250,7 @@ def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np
             problem=f"{len(runs)} runs and {len(measured)} frictions",
             mend="give one array of friction coefficients per run",
         )
-    found = []
+    usable = []
     for i, ((time, motion), friction) in enumerate(zip(runs, measured, strict=True)):
         t = np.asarray(time, dtype=float)
         if friction.shape != t.shape:
@@ -261,7 +264,7 @@ def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np
             amplitude, omega, bias = (float(x) for x in np.asarray(motion))
             speed = bias + amplitude * np.sin(omega * t)
         top = float(np.max(np.abs(speed), initial=0.0))
-        found.append(np.isfinite(friction) & (np.abs(speed) > REST_SHARE * top))
-    if not found:
+        usable.append(np.isfinite(friction) & (np.abs(speed) > REST_SHARE * top))
+    if not usable:
         raise InputError(problem="no run was given", mend="give at least one")
-    return np.concatenate(found)
+    return np.concatenate(usable)

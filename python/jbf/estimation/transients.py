@@ -18,7 +18,7 @@ import numpy.typing as npt
 from jbf import _core
 from jbf.errors import InputError
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.initial_state import has_unknown_start, memories, remembering
+from jbf.estimation.initial_state import has_unknown_start, initial_memory
 from jbf.estimation.minimum import approach
 from jbf.estimation.noise_floor import noise_floor
 from jbf.estimation.prepared import Prepared
@@ -42,7 +42,7 @@ It limits the effort only.
 """
 
 
-def check_film(
+def check_film_rate(
     campaign: Campaign, law: str, clock: Clock, seed: Mapping[str, float] | None = None
 ) -> None:
     """Raise an InputError if the film of a law is too fast for these records at every start.
@@ -55,31 +55,30 @@ def check_film(
     if not find_law(law).has_film:
         return
     problem = Problem(campaign, law, clock, ())
-    known = {name: value for name, value in (seed or {}).items() if name in problem.names}
+    seeded = {name: value for name, value in (seed or {}).items() if name in problem.names}
     rate = min(
-        problem.chain.film_rate_1_s(start, campaign.motions) for start in problem.starts(known)
+        problem.chain.film_rate_1_s(start, campaign.motions) for start in problem.starts(seeded)
     )
-    followed = min(rate, _core.FASTEST_FILM_1_S)
     seconds = math.fsum(p.run.duration_s for p in campaign.prepared)
-    steps = followed * seconds
+    steps = min(rate, _core.FASTEST_FILM_1_S) * seconds
     samples = sum(len(p.friction) for p in campaign.prepared)
     settings = campaign.settings.film
     if steps <= max(settings.max_steps * samples, settings.any_steps):
         return
-    every = float(np.median([p.step_s for p in campaign.prepared]))
+    interval_s = float(np.median([p.step_s for p in campaign.prepared]))
     first = campaign.prepared[0].run
     raise InputError(
         file=first.path or first.name,
         column="time_s",
         problem=f"the film of the law {law} responds within {1.0 / rate:.1g} s, but "
-        f"the sampling interval is {every:.2g} s: it is not identifiable",
+        f"the sampling interval is {interval_s:.2g} s: it is not identifiable",
         mend="check the unit of time, the bearing and the load, or use a law without a "
         "film, such as stribeck",
     )
 
 
 def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
-    """Mask of the samples at which a run still remembers unrecorded motion, one a run.
+    """Mask of the samples at which a film still depends on motion in a gap, one a run.
 
     Parameters
     ----------
@@ -87,21 +86,28 @@ def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) ->
         Parameters of a model that fits roughly.
     least_n
         Difference of the friction that is negligible, N.
+
+    Notes
+    -----
+    The model interpolates linearly over missing rows. If the shaft reversed or started in the gap,
+    the film state after it is wrong until the film has forgotten. Two simulations bound this
+    duration: one keeps the speed from before the gap until its end; the other has the speed after
+    the gap from its beginning.
     """
     prepared = problem.campaign.prepared
-    found = [np.zeros(len(p.run), dtype=bool) for p in prepared]
+    affected = [np.zeros(len(p.run), dtype=bool) for p in prepared]
     if not find_law(problem.law).has_film:
-        return found
+        return affected
     gap_steps = problem.campaign.settings.film.gap_steps
     gaps = [_gaps(p, gap_steps) for p in prepared]
-    broken = [i for i, at in enumerate(gaps) if len(at)]
-    usual = problem.chain.predict(values, [prepared[i].core for i in broken])
-    for late in (False, True):
-        motions = [_through(prepared[i], gaps[i], late=late) for i in broken]
+    with_gaps = [i for i, at in enumerate(gaps) if len(at)]
+    interpolated = problem.chain.predict(values, [prepared[i].core for i in with_gaps])
+    for at_end in (False, True):
+        motions = [_through(prepared[i], gaps[i], at_end=at_end) for i in with_gaps]
         others = problem.chain.predict(values, motions)
-        for i, one, other in zip(broken, usual, others, strict=True):
-            found[i] |= np.abs(other - one) > least_n
-    return found
+        for i, one, other in zip(with_gaps, interpolated, others, strict=True):
+            affected[i] |= np.abs(other - one) > least_n
+    return affected
 
 
 def _gaps(p: Prepared, gap_steps: float) -> npt.NDArray[np.intp]:
@@ -109,41 +115,23 @@ def _gaps(p: Prepared, gap_steps: float) -> npt.NDArray[np.intp]:
     return np.flatnonzero(np.diff(p.run.time_s) > gap_steps * p.step_s)
 
 
-def _through(p: Prepared, gaps: npt.NDArray[np.intp], *, late: bool) -> Driven:
-    """Motion of a run whose speed changes at the end of each gap (`late`) or at its beginning."""
+def _through(p: Prepared, gaps: npt.NDArray[np.intp], *, at_end: bool) -> Driven:
+    """Motion of a run whose speed changes at the end of each gap (`at_end`) or at its beginning."""
     time = p.run.time_s
     length = time[gaps + 1] - time[gaps]
-    new = time[gaps + 1] - EDGE * length if late else time[gaps] + EDGE * length
-    speed = p.motion.velocity[gaps if late else gaps + 1]
-    whole = np.sort(np.concatenate([time, new]))
-    motion = p.motion.at(time, whole)
+    new = time[gaps + 1] - EDGE * length if at_end else time[gaps] + EDGE * length
+    speed = p.motion.velocity[gaps if at_end else gaps + 1]
+    instants = np.sort(np.concatenate([time, new]))
+    motion = p.motion.at(time, instants)
     velocity, acceleration = motion.velocity.copy(), motion.acceleration.copy()
-    at = np.searchsorted(whole, new)
+    at = np.searchsorted(instants, new)
     velocity[at], acceleration[at] = speed, 0.0
     motion = replace(motion, velocity=velocity, acceleration=acceleration)
-    run = p.run.at(whole, np.interp(whole, time, p.friction))
-    return Driven(core_motion(p.rig, run, motion).motion, np.searchsorted(whole, time))
+    run = p.run.at(instants, np.interp(instants, time, p.friction))
+    return Driven(core_motion(p.rig, run, motion).motion, np.searchsorted(instants, time))
 
 
-def unsettled(problem: Problem, values: Array, noise_rms: float) -> list[Mask]:
-    """Mask of the samples at which a run still remembers its initial state, one a run.
-
-    Parameters
-    ----------
-    values
-        Parameters of a model that fits roughly.
-    noise_rms
-        Noise on the friction, N.
-    """
-    prepared, settings = problem.campaign.prepared, problem.campaign.settings.transient
-    found = [np.zeros(len(p.run), dtype=bool) for p in prepared]
-    for memory in memories(problem.law, problem.effects, settings):
-        more = remembering(problem.chain, values, prepared, memory, noise_rms, settings)
-        found = [before | mask for before, mask in zip(found, more, strict=True)]
-    return found
-
-
-def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
+def without_transients(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     """Return the campaign without the initial-state transients, estimated with the bare law.
 
     Raises
@@ -151,15 +139,15 @@ def settled_campaign(campaign: Campaign, law: str, clock: Clock) -> Campaign:
     InputError
         A film is too fast for these records.
     """
-    if not memories(law, ()):
+    if initial_memory(law, ()) is None:
         return campaign
-    check_film(campaign, law, clock)
+    check_film_rate(campaign, law, clock)
     problem = Problem(campaign, law, clock, ())
     near = approach(problem, [{}], RANKING_EVALUATIONS)
-    return _settled(problem, near.values, near.residuals)
+    return _without_unrecorded(problem, near.values, near.residuals)
 
 
-def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
+def without_further_transients(problem: Problem, solution: Solution) -> Campaign | None:
     """Return the campaign without the initial-state transients of a model with effects.
 
     This applies if the effects change the film or have an initial state of their own. The result is
@@ -168,33 +156,33 @@ def settled_again(problem: Problem, solution: Solution) -> Campaign | None:
     """
     pages = [find_effect(name) for name in problem.effects]
     lasting = [page.name for page in pages if page.stage == "film" or page.unknown_start]
-    if not lasting or not memories(problem.law, lasting):
+    if not lasting or initial_memory(problem.law, lasting) is None:
         return None
     campaign = problem.campaign
-    less = Problem(campaign, problem.law, problem.clock, lasting)
-    known = dict(zip(problem.names, solution.values.tolist(), strict=True))
-    values = np.array([known[name] for name in less.names])
-    found = _settled(less, values, solution.residuals)
-    gone = campaign.samples.count - found.samples.count
+    nested = Problem(campaign, problem.law, problem.clock, lasting)
+    values_by_name = dict(zip(problem.names, solution.values.tolist(), strict=True))
+    values = np.array([values_by_name[name] for name in nested.names])
+    reduced = _without_unrecorded(nested, values, solution.residuals)
+    excluded = campaign.samples.count - reduced.samples.count
     least = campaign.settings.transient.min_new_share
-    return found if gone > least * campaign.samples.count else None
+    return reduced if excluded > least * campaign.samples.count else None
 
 
-def _settled(problem: Problem, values: Array, residuals: Sequence[Array]) -> Campaign:
+def _without_unrecorded(problem: Problem, values: Array, residuals: Sequence[Array]) -> Campaign:
     """Return the campaign without the samples at which a model remembers unrecorded states."""
     campaign = problem.campaign
     noise_rms = noise_floor(campaign.prepared, campaign.samples)
-    masks = unsettled(problem, values, noise_rms)
+    masks = problem.transient_samples(values, noise_rms)
     least_n = campaign.settings.transient.max_difference * noise_rms
-    behind = samples_affected_by_gaps(problem, values, least_n)
-    if not any(m.any() for m in (*masks, *behind)):
+    after_gaps = samples_affected_by_gaps(problem, values, least_n)
+    if not any(m.any() for m in (*masks, *after_gaps)):
         return campaign
-    kept = campaign.without(masks).without(behind)
-    what = _what(problem.law, problem.effects)
-    return kept.with_findings(_findings(campaign, residuals, masks, kept.samples, what))
+    kept = campaign.without(masks).without(after_gaps)
+    state = _state(problem.law, problem.effects)
+    return kept.with_findings(_findings(campaign, residuals, masks, kept.samples, state))
 
 
-def _what(law: str, effects: Iterable[str]) -> str:
+def _state(law: str, effects: Iterable[str]) -> str:
     """Text for the state that differed from that of the model when a run began."""
     page = find_law(law)
     cell = has_unknown_start(effects)
@@ -214,25 +202,26 @@ def _what(law: str, effects: Iterable[str]) -> str:
 
 
 def _findings(
-    campaign: Campaign, residuals: Sequence[Array], masks: list[Mask], kept: Samples, what: str
+    campaign: Campaign, residuals: Sequence[Array], masks: list[Mask], kept: Samples, state: str
 ) -> list[Finding]:
     """Findings for the runs whose start differs from that of a rested film or the first motion."""
-    found = []
-    whole = zip(campaign.prepared, residuals, masks, campaign.samples.counted, strict=True)
-    usual = kept.rms(residuals)
-    for p, r, mask, counted in whole:
-        begun = mask & counted
-        if not begun.any():
+    findings = []
+    usual_rms = kept.rms(residuals)
+    for p, r, mask, counted in zip(
+        campaign.prepared, residuals, masks, campaign.samples.counted, strict=True
+    ):
+        transient = mask & counted
+        if not transient.any():
             continue
-        size = float(np.sqrt(np.mean(r[begun] ** 2)))
-        if size < campaign.settings.transient.min_reported_ratio * usual:
+        size = float(np.sqrt(np.mean(r[transient] ** 2)))
+        if size < campaign.settings.transient.min_reported_ratio * usual_rms:
             continue
         span = float(p.run.time_s[mask][-1] - p.run.time_s[mask][0])
         words = (
-            f"the {what} at the start of the run: residual {size:.2g} "
+            f"the {state} at the start of the run: residual {size:.2g} "
             f"{p.run.quantities.force} RMS for {span:.2g} s"
         )
-        found.append(
+        findings.append(
             Finding("unsettled_start", "friction_n", p.run.name, span, "s", "excluded", words)
         )
-    return found
+    return findings

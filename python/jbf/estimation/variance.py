@@ -78,25 +78,20 @@ def score_inflation(
     directions, innovations
         One array a run, shape (n,); of any scale.
     """
-    # The squares of a direction far above the noise would overflow.
-    largest = max((float(np.max(np.abs(d), initial=0.0)) for d in directions), default=0.0)
-    if not 0.0 < largest < np.inf:
-        return 1.0
-    directions = [d / largest for d in directions]
-    square = sum(float(np.sum(d**2)) for d in directions)
-    white = _white(innovations)
-    if white <= 0.0:
+    directions, square = _scaled(directions)
+    white = _mean_square(innovations)
+    if square <= 0.0 or white <= 0.0:
         return 1.0
     # The part explained by the score itself is not noise.
     along = sum(float(d @ e) for d, e in zip(directions, innovations, strict=True)) / square
-    found = sum(
+    variance = sum(
         float(long_run_variance((d * (e - along * d))[:, None], step, settings)[0, 0])
         for d, e, step in zip(directions, innovations, steps_s, strict=True)
     )
-    return max(found / (square * white), 1.0)
+    return max(variance / (square * white), 1.0)
 
 
-def sure_inflation(
+def significant_inflation(
     directions: Sequence[Array],
     innovations: Sequence[Array],
     steps_s: Sequence[float],
@@ -105,24 +100,35 @@ def sure_inflation(
     """Ratio of the variance of a score to that in white noise, or one if it is not significant.
 
     A direction of a few breakaways has few windows, and the mean square of a few numbers is not a
-    reliable variance.
+    reliable variance. Parameters as for :func:`score_inflation`.
     """
     ratio = score_inflation(directions, innovations, steps_s, settings)
     if ratio <= 1.0:
         return 1.0
-    largest = max(float(np.max(np.abs(d), initial=0.0)) for d in directions)
-    directions = [d / largest for d in directions]
-    square = sum(float(np.sum(d**2)) for d in directions)
+    directions, square = _scaled(directions)
     # Effective number of equal terms in a sum of squares with unequal weights (Satterthwaite 1946).
-    spread = sum(
+    fourth_moments = sum(
         float(long_run_variance(d[:, None] ** 2, step, settings)[0, 0])
         for d, step in zip(directions, steps_s, strict=True)
     )
-    windows = square**2 / spread
+    windows = square**2 / fourth_moments
     return ratio if special.chdtrc(windows, windows * ratio) <= settings.chance else 1.0
 
 
-def between_runs(
+def _scaled(directions: Sequence[Array]) -> tuple[Sequence[Array], float]:
+    """Directions divided by their largest element, and their sum of squares.
+
+    The squares of a direction far above the noise would overflow. The sum is zero where there is no
+    direction, or an infinite one.
+    """
+    largest = max((float(np.max(np.abs(d), initial=0.0)) for d in directions), default=0.0)
+    if not 0.0 < largest < np.inf:
+        return directions, 0.0
+    directions = [d / largest for d in directions]
+    return directions, sum(float(np.sum(d**2)) for d in directions)
+
+
+def cluster_inflation(
     directions: Sequence[Array],
     innovations: Sequence[Array],
     inflation: float,
@@ -138,20 +144,20 @@ def between_runs(
     inflation
         Ratio from the windows within the runs.
     """
-    pulls = np.array([float(d @ e) for d, e in zip(directions, innovations, strict=True)])
+    scores = np.array([float(d @ e) for d, e in zip(directions, innovations, strict=True)])
     sizes = np.array([float(d @ d) for d in directions])
-    white = _white(innovations)
-    own = sizes > 0.0
-    runs = int(np.count_nonzero(own))
+    white = _mean_square(innovations)
+    informative = sizes > 0.0
+    runs = int(np.count_nonzero(informative))
     if runs < settings.min_runs or white <= 0.0:
         return 0.0
-    square = float(np.sum(pulls[own] ** 2 / sizes[own])) / (white * inflation)
+    square = float(np.sum(scores[informative] ** 2 / sizes[informative])) / (white * inflation)
     if special.chdtrc(runs - 1, square) > settings.chance:
         return 0.0
-    return float(np.sum(pulls**2)) / (white * float(np.sum(sizes))) * runs / (runs - 1)
+    return float(np.sum(scores**2)) / (white * float(np.sum(sizes))) * runs / (runs - 1)
 
 
-def _white(innovations: Sequence[Array]) -> float:
+def _mean_square(innovations: Sequence[Array]) -> float:
     """Mean square of the innovations that count; the others are zero."""
     counted = sum(int(np.count_nonzero(e)) for e in innovations)
     return sum(float(np.sum(e**2)) for e in innovations) / max(counted, 1)
@@ -167,8 +173,7 @@ def long_run_variance(
     length = int(np.clip(settings.window_s / step_s, 1, max(n // settings.min_windows, 1)))
     sums = np.cumsum(np.vstack([np.zeros((1, scores.shape[1])), scores]), axis=0)
     windows = sums[length:] - sums[:-length]
-    variance: Array = windows.T @ windows * (n / (len(windows) * length))
-    return variance
+    return np.asarray(windows.T @ windows * (n / (len(windows) * length)))
 
 
 def blocks_of(samples: Samples, share: float) -> Places:
@@ -181,11 +186,11 @@ def blocks_of(samples: Samples, share: float) -> Places:
     share
         Number of independent samples per sample; smaller for a longer correlation time.
     """
-    settings, found, before = samples.settings.blocks, [], 0
+    settings, starts, offset = samples.settings.blocks, [], 0
     for weight, step in zip(samples.weight, samples.steps_s, strict=True):
         count = int(np.count_nonzero(weight > 0.0))
         shortest = round(settings.min_length_s / step)
         length = max(shortest, round(0.5 * settings.min_memories / share), 1)
-        found.append(before + np.arange(0, count, length))
-        before += count
-    return np.concatenate(found).astype(np.intp)
+        starts.append(offset + np.arange(0, count, length))
+        offset += count
+    return np.concatenate(starts).astype(np.intp)

@@ -22,7 +22,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.solution import Solution
 from scipy import signal, stats
 from slides import VALUES, Array, numbers_in, slides, solution_with, white_noise
@@ -108,7 +108,7 @@ def test_disagreement_on_an_effect_excludes_that_on_the_law(term: str, disagrees
 def test_parameter_with_a_random_effect_may_differ_by_run(deviates: str, disagrees: bool) -> None:
     """The random effects are too small to change the whitening."""
     residuals = [ALTERNATING + a for a in (0.5, -0.5, 0.2)]
-    between = BetweenRuns((deviates,), tuple(np.full((N, 1), 1e-12) for _ in residuals), 1.0)
+    between = RandomEffects((deviates,), tuple(np.full((N, 1), 1e-12) for _ in residuals), 1.0)
     samples = replace(one_way(3).samples, between=between)
     found = disagreement(*solution_with(one_way(3), residuals, samples=samples))
     assert (found.gain > 50.0) == disagrees
@@ -130,7 +130,7 @@ def test_random_effect_of_the_viscosity_covers_both_of_its_parameters(
         for e, column, sign in zip(white_noise(campaign, 1), columns, (1, -1, 1), strict=True)
     ]
     tiny = tuple(np.full((len(e), 1), 1e-12) for e in residuals)
-    samples = replace(campaign.samples, between=BetweenRuns((deviates,), tiny, 1.0))
+    samples = replace(campaign.samples, between=RandomEffects((deviates,), tiny, 1.0))
     changed = replace(solution, residuals=residuals, samples=samples)
     assert disagreement(problem, changed).beyond_chance() == (deviates == "zero")
 

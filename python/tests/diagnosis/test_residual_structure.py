@@ -11,7 +11,7 @@ from jbf.diagnosis.policy import DEFAULT
 from jbf.diagnosis.residual_structure import find_patterns, find_residual_structure
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise
-from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation.random_effects import RandomEffects
 from known_motions import quantised
 from slides import Array, friction_of, numbers_in, slide, slides, solution_with, white_noise
 
@@ -129,7 +129,7 @@ def test_random_effect_in_the_model_is_not_residual_structure() -> None:
     first, second = white_noise(sines(), 5)
     residuals = [first + TONE + 5.0, second + TONE - 5.0]
     assert "run" in axes_of(residuals)
-    between = BetweenRuns(("zero",), (np.full((N, 1), 10.0),) * 2, 1.0)
+    between = RandomEffects(("zero",), (np.full((N, 1), 10.0),) * 2, 1.0)
     samples = replace(sines().samples, between=between)
     (found,) = find_residual_structure(*solution_with(sines(), residuals, samples=samples))
     assert found.axis == "frequency"

@@ -15,13 +15,13 @@ from jbf.estimation.bootstrap import (
     bootstrap,
     check_repeats,
     innovation_sizes,
-    recorded_by,
     simulated_readings,
     simulated_recording,
+    simulated_runs,
     with_error,
 )
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.identifiability import undetermined
+from jbf.estimation.identifiability import reason_not_identifiable
 from jbf.estimation.noise import Noise
 from jbf.estimation.prepared import Prepared
 
@@ -54,7 +54,7 @@ def test_bootstrap_returns_a_held_parameter_unchanged() -> None:
 def test_scale_parameter_is_held_if_its_bootstrap_error_exceeds_its_value() -> None:
     found = with_error(ParameterValue(5.0, 1.0), np.linspace(0.0, 40.0, 1001), SCALE)
     assert (found.stderr, found.held) == (None, True)
-    assert found.note == undetermined(SCALE, 5.0, 20.0 * MIDDLE)
+    assert found.note == reason_not_identifiable(SCALE, 5.0, 20.0 * MIDDLE)
 
 
 def test_bootstrap_estimates_of_an_angle_are_compared_modulo_its_period() -> None:
@@ -187,7 +187,7 @@ def wild_errors(model: Model, runs: list[Run], hidden: tuple[str, ...], draw: in
     """Noise of simulated records: record minus the law with the simulated effects."""
     known = {n: p for n, p in model.parameters.items() if n.partition(".")[0] in (n, *hidden)}
     some = Model(model.rig, model.law, hidden, known)
-    again = recorded_by(model, runs, hidden, draw)
+    again = simulated_runs(model, runs, hidden, draw)
     return [np.asarray(a.friction) - some.predict(r) for a, r in zip(again, runs, strict=True)]
 
 

@@ -12,7 +12,7 @@ from by_hand import Array, coulomb
 from jbf import InputError, Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.prepared import Prepared
-from jbf.estimation.quantisation import curve_rms, noise_before
+from jbf.estimation.quantisation import bias_rms, noise_before_converter
 from jbf.models.catalogue import find_effect
 from jbf.records.findings.finding import Finding
 from known_motions import integrated, reversing_force
@@ -132,10 +132,10 @@ def test_quantisation_rms_follows_from_step_and_noise_of_the_readings() -> None:
     assert campaign.step_n == pytest.approx(step, rel=1e-6)
     (p,), (counted,) = campaign.prepared, campaign.samples.counted
     raw = replace(campaign, prepared=(replace(p, friction=p.readings_n),))
-    noise_rms = noise_before(step, np.diff(p.readings_n)[counted[1:] & counted[:-1]])
-    assert raw.steps_rms(2.0) == pytest.approx(curve_rms(step, noise_rms), rel=1e-6)
+    noise_rms = noise_before_converter(step, np.diff(p.readings_n)[counted[1:] & counted[:-1]])
+    assert raw.steps_rms(2.0) == pytest.approx(bias_rms(step, noise_rms), rel=1e-6)
     # The residual is not smaller than the noise.
-    assert raw.steps_rms(0.5 * noise_rms) == pytest.approx(curve_rms(step, 0.5 * noise_rms))
+    assert raw.steps_rms(0.5 * noise_rms) == pytest.approx(bias_rms(step, 0.5 * noise_rms))
     # After a bias correction three tenths of the correction are assumed to remain.
     corrected = replace(campaign, prepared=(replace(p, friction=p.readings_n - 0.25 * step),))
     assert corrected.steps_rms(2.0) == pytest.approx(0.3 * 0.25 * step)

@@ -25,7 +25,7 @@ from jbf.diagnosis.terms.proposal import is_accepted
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.delays import drift_step
 from jbf.estimation.problem import Problem
-from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from jbf.records.findings.finding import Finding
@@ -269,7 +269,7 @@ def test_runs_are_not_shifted_if_known_random_effects_explain_the_delays(explain
     times = [p.run.time_s for p in problem.campaign.prepared]
     offsets = [np.ones_like(t) for t in times]
     shapes = [one_way_acceleration(i, t) for i, t in enumerate(times)] if explained else offsets
-    between = BetweenRuns(("deviation",), tuple(s[:, None] for s in shapes), ONE_WAY_NOISE_N)
+    between = RandomEffects(("deviation",), tuple(s[:, None] for s in shapes), ONE_WAY_NOISE_N)
     samples = replace(solution.samples, between=between)
     campaign = replace(problem.campaign, samples=samples)
     there = Problem(campaign, "coulomb", "journal", (), problem.fixed)

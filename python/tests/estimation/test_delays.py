@@ -26,7 +26,7 @@ from jbf.estimation.delay_scan import scan_delays
 from jbf.estimation.delays import DelayStep, drift_step, run_delay_step
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from scipy import ndimage, stats
@@ -43,7 +43,7 @@ def test_run_delays_that_differ_are_recovered_within_half_a_grid_step(seed: int)
     found = scan_delays(problem, solution, 0, CHANCE)
     assert found.drift == 0.0
     # The delay of the model is the part that is common to all runs.
-    total = np.array(found.late_s) + value(problem, solution, TAU)
+    total = np.array(found.delays_s) + value(problem, solution, TAU)
     np.testing.assert_allclose(total, DELAYS_S, atol=1e-3)
     assert found.spread_s == pytest.approx(np.std(DELAYS_S, ddof=1), rel=0.15)
 
@@ -60,12 +60,12 @@ def test_outliers_and_known_offsets_of_the_runs_do_not_change_the_delays(changed
         prepared.append(replace(p, friction=p.friction + added))
     if changed == "offsets":
         directions = tuple(np.full((len(p.run), 1), 50.0) for p in prepared)
-        samples = replace(samples, between=BetweenRuns(("offset",), directions, 0.03))
+        samples = replace(samples, between=RandomEffects(("offset",), directions, 0.03))
     campaign = replace(problem.campaign, prepared=tuple(prepared))
     again = Problem(campaign, "coulomb", "journal", DELAY, problem.fixed)
     there = again.solution(solution.values, samples, solution.noise)
     found = scan_delays(again, there, 0, CHANCE)
-    np.testing.assert_allclose(found.late_s, usual.late_s, atol=0.6e-3)
+    np.testing.assert_allclose(found.delays_s, usual.delays_s, atol=0.6e-3)
 
 
 @pytest.mark.parametrize("drift", [1e-3, pytest.param(-6e-4, marks=EXTENDED)])
@@ -75,7 +75,7 @@ def test_clock_drift_is_recovered_within_15_percent_in_reversing_runs(drift: flo
     found = scan_delays(*fitted(reversing_campaign(middle, drift), DELAY), 0, CHANCE)
     assert found.drift == pytest.approx(drift, rel=0.15)
     assert found.spread_s == 0.0
-    np.testing.assert_allclose(found.late_s, middle, rtol=0.15)
+    np.testing.assert_allclose(found.delays_s, middle, rtol=0.15)
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=EXTENDED)])
@@ -131,7 +131,7 @@ def regression(
 def test_significance_of_a_delay_step_is_that_of_its_wald_statistic() -> None:
     """(3, -1) C^-1 (3, -1)' with C^-1 = ((2, -1), (-1, 4)) / 7 is 28 / 7."""
     assert STEP.square == pytest.approx(4.0)
-    assert STEP.chance == pytest.approx(stats.chi2.sf(4.0, 2))
+    assert STEP.p_value == pytest.approx(stats.chi2.sf(4.0, 2))
 
 
 def test_significance_of_unequal_delays_follows_from_their_weighted_scatter() -> None:
@@ -149,11 +149,11 @@ def test_mean_delay_is_weighted_by_inverse_variances() -> None:
 
 def test_runs_without_information_on_the_delay_do_not_change_its_significance() -> None:
     nothing = DelayStep(np.zeros(2), np.zeros((0, 0)), np.zeros(2, dtype=bool))
-    assert nothing.chance == 1.0
+    assert nothing.p_value == 1.0
     assert nothing.mean_s(np.array([1.0, 2.0])) == 0.0
     assert nothing.differences_p_value(np.ones(2)) == 1.0
     one = DelayStep(np.array([0.0, 3.0]), np.eye(1), np.array([False, True]))
-    assert one.chance == pytest.approx(stats.chi2.sf(9.0, 1))
+    assert one.p_value == pytest.approx(stats.chi2.sf(9.0, 1))
     assert one.differences_p_value(np.zeros(2)) == 1.0
 
 
@@ -164,9 +164,9 @@ def test_delay_step_of_unidirectional_runs_solves_the_normal_equations() -> None
     t = [p.run.time_s for p in problem.campaign.prepared]
     columns = [-viscous * one_way_acceleration(i, t[i]) for i in range(3)]
     delays, covariance = regression(problem, solution, columns)
-    assert step.determined.all()
-    np.testing.assert_allclose(step.late_s, delays, atol=2e-5)
-    np.testing.assert_allclose(step.late_s, (2e-3, -1e-3, 3e-3), atol=4e-4)
+    assert step.identifiable.all()
+    np.testing.assert_allclose(step.delays_s, delays, atol=2e-5)
+    np.testing.assert_allclose(step.delays_s, (2e-3, -1e-3, 3e-3), atol=4e-4)
     np.testing.assert_allclose(step.covariance_s2, covariance, rtol=0.02, atol=1e-11)
 
 
@@ -179,7 +179,7 @@ def test_samples_next_to_reversals_are_excluded_from_the_delay_step() -> None:
     columns = [-viscous * p.motion.acceleration for p in problem.campaign.prepared]
     delays, covariance = regression(problem, solution, columns)
     sd = np.sqrt(np.diag(covariance))
-    assert np.all(np.abs(step.late_s - delays) < 0.15 * sd)
+    assert np.all(np.abs(step.delays_s - delays) < 0.15 * sd)
     np.testing.assert_allclose(np.sqrt(np.diag(step.covariance_s2)), sd, rtol=0.05)
 
 
@@ -187,7 +187,7 @@ def test_delay_of_the_model_and_the_step_add_up_to_the_delay_of_each_run() -> No
     delays_s = (12e-3, 9e-3, 13e-3)
     problem, solution = fitted(one_way_campaign(delays_s), DELAY)
     step = white(problem, solution)
-    total = step.late_s + value(problem, solution, TAU)
+    total = step.delays_s + value(problem, solution, TAU)
     np.testing.assert_allclose(total, delays_s, atol=4e-4)
     alone = white(*fitted(one_way_campaign((0.0,) * 3)))
     np.testing.assert_allclose(np.diag(step.covariance_s2), np.diag(alone.covariance_s2), rtol=0.1)
@@ -202,25 +202,25 @@ def test_delay_or_drift_is_undetermined_beyond_the_linear_range(ratio: float, kn
     drift_sd = drift_step(problem, plain).variance ** 0.5 * 20.0
     scales = (ratio * SETTINGS.delays.linear_s / sd for sd in (delay_sd, drift_sd))
     delay, drift = (replace(plain, residuals=[x * r for r in plain.residuals]) for x in scales)
-    assert run_delay_step(problem, delay).determined[0] == known
+    assert run_delay_step(problem, delay).identifiable[0] == known
     assert np.isfinite(drift_step(problem, drift).variance) == known
 
 
 def test_no_delay_is_determined_if_all_residuals_are_zero() -> None:
     problem, solution = fitted(one_way_campaign((0.0,) * 3, noise_rms=0.0))
     step = run_delay_step(problem, solution)
-    assert np.all(np.isfinite(step.late_s))
+    assert np.all(np.isfinite(step.delays_s))
     exact = replace(solution, residuals=[np.zeros(len(r)) for r in solution.residuals], noise=WHITE)
     step = run_delay_step(problem, exact)
-    assert not np.any(step.determined)
-    assert step.chance == 1.0
+    assert not np.any(step.identifiable)
+    assert step.p_value == 1.0
 
 
 @pytest.mark.extended
 def test_p_values_of_campaigns_without_delay_are_uniform() -> None:
     """P-values of Wald's test under its null hypothesis, by the test of Kolmogorov and Smirnov."""
     campaigns = (one_way_campaign((0.0,) * 3, seed=seed) for seed in range(60))
-    chances = [run_delay_step(*fitted(campaign)).chance for campaign in campaigns]
+    chances = [run_delay_step(*fitted(campaign)).p_value for campaign in campaigns]
     assert stats.kstest(chances, "uniform").pvalue > 0.02
 
 

@@ -19,7 +19,7 @@ from jbf.estimation.minimum import settle
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
 from jbf.estimation.solution import Solution
-from jbf.estimation.standard_errors import Spread, spread
+from jbf.estimation.standard_errors import StandardErrors, standard_errors
 from jbf.models.delayed_reading import TAU, DelayedChain
 from jbf.models.driven_motion import reversals
 from jbf.records.motion.estimated_motion import EstimatedMotion
@@ -54,7 +54,9 @@ def rms(values: Array) -> float:
 
 
 @cache
-def solved(held: bool = False, speed_noise_m_s: float = 1e-4) -> tuple[Problem, Solution, Spread]:
+def solved(
+    held: bool = False, speed_noise_m_s: float = 1e-4
+) -> tuple[Problem, Solution, StandardErrors]:
     """Least-squares fit whose delay is determined by the samples between the jumps."""
     known = {**LAW, "F_s": 5.0, TAU: 0.045}
     fixed = {"F_s": 5.0, **({TAU: TAU_S} if held else {})}
@@ -62,7 +64,7 @@ def solved(held: bool = False, speed_noise_m_s: float = 1e-4) -> tuple[Problem, 
     problem = Problem(campaign, "coulomb", "journal", DELAY, fixed)
     start = problem.starts({n: known[n] for n in problem.names})[0]
     near = settle(problem, problem.solution(start, problem.samples_at(start), WHITE, False))
-    return problem, near, spread(problem, near)
+    return problem, near, standard_errors(problem, near)
 
 
 def test_delay_error_from_jumps_is_below_six_percent_of_a_sampling_step() -> None:
@@ -100,7 +102,7 @@ def test_law_parameters_follow_a_change_of_delay_as_in_a_regression() -> None:
         return np.linalg.lstsq(x, y, rcond=None)[0]
 
     slope = (regression(tau_s + 1e-3) - regression(tau_s - 1e-3)) / 2e-3
-    errors, which = spread(problem, solution), problem.names.index(TAU)
+    errors, which = standard_errors(problem, solution), problem.names.index(TAU)
     start = solution.values.copy()
     start[which] += 2e-3
     found = exact_delay(problem, solution, errors, start)
@@ -163,9 +165,9 @@ def test_jumps_give_no_delay_if_it_is_fixed_undetermined_or_too_small() -> None:
     problem, solution, errors = solved()
     which = problem.names.index(TAU)
     k = problem.open.index(which)
-    still, endless = errors.moved.copy(), errors.sd.copy()
+    still, endless = errors.sensitive.copy(), errors.sd.copy()
     still[k], endless[k] = False, np.inf
-    for changed in (replace(errors, moved=still), replace(errors, sd=endless)):
+    for changed in (replace(errors, sensitive=still), replace(errors, sd=endless)):
         assert exact_delay(problem, solution, changed, solution.values) is None
     held = solved(held=True)
     assert exact_delay(*held, held[1].values) is None

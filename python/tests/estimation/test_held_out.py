@@ -4,7 +4,7 @@ Coulomb's law is linear in unidirectional runs, so that every fit without a run 
 regression.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,20 +20,22 @@ from jbf.estimation.held_out import (
     held_out_by_run,
     held_out_halves,
     held_out_parts,
-    held_out_residuals,
-    held_out_rms,
     indispensable_runs,
 )
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 
 NOISE_N = 0.1
 PUSH_N = 3.0
+
+
+def rms_of(errors: Iterable[Array]) -> float:
+    return float(np.sqrt(np.mean(np.concatenate([*errors]) ** 2)))
 
 
 def pushed(push: Array, k_n: float) -> Array:
@@ -86,9 +88,11 @@ def test_held_out_errors_are_those_of_regressions_without_the_run(off_n: float) 
     for found, wanted in zip(held_out_by_run(problem, solution), expected, strict=True):
         np.testing.assert_allclose(found, wanted, atol=atol)
     together = np.concatenate(expected)
-    np.testing.assert_allclose(held_out_residuals(problem, solution), together, atol=atol)
+    np.testing.assert_allclose(
+        np.concatenate(held_out_by_run(problem, solution)), together, atol=atol
+    )
     rms = float(np.sqrt(np.mean(together**2)))
-    assert held_out_rms(problem, solution) == pytest.approx(rms, rel=0.01)
+    assert rms_of(held_out_by_run(problem, solution)) == pytest.approx(rms, rel=0.01)
 
 
 def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> None:
@@ -97,10 +101,12 @@ def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> 
     count = len(run.time_s)
     odd = (np.arange(count) * 10 // count) % 2 == 1
     problem, solution = solved([replace(run, friction=run.friction + odd)])
-    assert held_out_rms(problem, solution) == pytest.approx(np.hypot(1.0, NOISE_N), rel=0.03)
+    assert rms_of(held_out_by_run(problem, solution)) == pytest.approx(
+        np.hypot(1.0, NOISE_N), rel=0.03
+    )
     first, second = held_out_parts(problem, solution)
-    np.testing.assert_array_equal(first.left[0], odd)
-    np.testing.assert_array_equal(second.left[0], ~odd)
+    np.testing.assert_array_equal(first.masks[0], odd)
+    np.testing.assert_array_equal(second.masks[0], ~odd)
     assert (first.runs, second.runs) == ((0,), (0,))
 
 
@@ -159,10 +165,10 @@ def test_parameter_is_at_its_null_if_only_the_held_out_run_determines_it(others:
     value = solution.values[problem.names.index("pushed.k_n")]
     assert value == pytest.approx(PUSH_N, rel=0.01)
     missed = np.sqrt(NOISE_N**2 + PUSH_N**2 / 4.0)
-    assert held_out_rms(problem, solution) == pytest.approx(missed, rel=0.02)
+    assert rms_of(held_out_by_run(problem, solution)) == pytest.approx(missed, rel=0.02)
     first = next(part for part in held_out_parts(problem, solution) if part.runs == (0,))
     names = [problem.names[i] for i in problem.open]
-    assert first.determined.tolist() == [name != "pushed.k_n" for name in names]
+    assert first.identified.tolist() == [name != "pushed.k_n" for name in names]
 
 
 @pytest.mark.usefixtures("push_effect")
@@ -181,7 +187,7 @@ def test_halves_of_the_only_informative_run_predict_each_other(factor: float, of
     """The push is three times as large in one half: the error of each half is the difference."""
     problem, solution = solved(pushed_runs(0.0, factor), "pushed")
     parts = held_out_halves(problem, solution, 0)
-    assert all(part.determined.all() for part in parts)
+    assert all(part.identified.all() for part in parts)
     errors = errors_by_run(solution, parts)[0]
     assert len(errors) == np.count_nonzero(solution.samples.counted[0])
     assert np.std(errors) == pytest.approx(np.hypot(off_n, NOISE_N), rel=0.1)
@@ -196,8 +202,8 @@ def test_parameter_is_at_its_null_if_the_remaining_half_does_not_determine_it() 
     problem, solution = solved([run, *others], "pushed")
     k = problem.open.index(problem.names.index("pushed.k_n"))
     without_first, without_second = held_out_halves(problem, solution, 0)
-    assert (without_first.determined[k], without_second.determined[k]) == (False, True)
-    half = without_first.left[0]
+    assert (without_first.identified[k], without_second.identified[k]) == (False, True)
+    half = without_first.masks[0]
     missed = without_first.residuals[0][half]
     assert np.std(missed) == pytest.approx(np.hypot(PUSH_N, NOISE_N), rel=0.05)
 
@@ -236,12 +242,17 @@ def test_random_effects_of_runs_are_removed_from_held_out_errors_on_request() ->
     off = [replace(r, friction=r.friction + b) for r, b in zip(runs, offsets, strict=True)]
     problem = Problem(Campaign.prepare(Rig(), off), "coulomb", "journal", (), LAW | {"F_s": 5.0})
     directions = tuple(np.full((len(r), 1), 5.0) for r in off)
-    between = BetweenRuns(("offset",), directions, NOISE_N)
+    between = RandomEffects(("offset",), directions, NOISE_N)
     samples = replace(problem.campaign.samples, between=between)
     values = problem.starts(problem.fixed)[0]
     solution = problem.solution(values, samples, WHITE)
-    assert held_out_rms(problem, solution) == pytest.approx(np.hypot(2.0, NOISE_N), rel=0.02)
-    assert held_out_rms(problem, solution, apart=True) == pytest.approx(NOISE_N, rel=0.05)
+    assert rms_of(held_out_by_run(problem, solution)) == pytest.approx(
+        np.hypot(2.0, NOISE_N), rel=0.02
+    )
+    parts = held_out_parts(problem, solution)
+    assert rms_of(errors_by_run(solution, parts, deviations=False).values()) == pytest.approx(
+        NOISE_N, rel=0.05
+    )
 
 
 COUNT, RUNS = 400, 5

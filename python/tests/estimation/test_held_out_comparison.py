@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from by_hand import Array
 from jbf.estimation.held_out import HeldOutPart
-from jbf.estimation.held_out_comparison import mean_square, surprise
+from jbf.estimation.held_out_comparison import mean_square, predictive_deviance
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT as SETTINGS
@@ -40,17 +40,17 @@ def held_out(run: int, errors: Array, determined: Sequence[bool] = ALL) -> HeldO
 
 def gaussian(solution: Solution, part: HeldOutPart) -> float:
     """Minus twice the log density of the errors in a part of a run, without the constant."""
-    (run,), (left,) = part.runs, part.left
+    (run,), (mask,) = part.runs, part.masks
     weight = solution.samples.weight
     slopes = zip(solution.jacobian, weight, strict=True)
-    j = [(slope * w[:, None])[:, part.determined] for slope, w in slopes]
+    j = [(slope * w[:, None])[:, part.identified] for slope, w in slopes]
     every = np.concatenate(j) / np.linalg.norm(np.concatenate(j), axis=0)
-    own = (j[run] / np.linalg.norm(np.concatenate(j), axis=0))[left]
+    own = (j[run] / np.linalg.norm(np.concatenate(j), axis=0))[mask]
     information = (
         every.T @ every - own.T @ own + SETTINGS.held_out.min_information * np.eye(own.shape[1])
     )
     covariance = VARIANCE * (np.eye(len(own)) + own @ np.linalg.solve(information, own.T))
-    errors = (part.residuals[0] * weight[run])[left]
+    errors = (part.residuals[0] * weight[run])[mask]
     density = stats.multivariate_normal(cov=covariance).logpdf(errors)
     return float(-2.0 * density - len(own) * np.log(2.0 * np.pi * VARIANCE))
 
@@ -65,7 +65,7 @@ def test_density_of_held_out_runs_is_gaussian_in_free_parameters(
     solution = linear_model(rng, weighted)
     errors = [3.0 * rng.standard_normal(n) for n in COUNTS]
     parts = [held_out(i, e, determined if i == 1 else ALL) for i, e in enumerate(errors)]
-    found = surprise(solution, parts, solution.samples, WHITE, VARIANCE)
+    found = predictive_deviance(solution, parts, solution.samples, WHITE, VARIANCE)
     assert found == pytest.approx(sum(gaussian(solution, p) for p in parts), rel=1e-9)
 
 
@@ -79,7 +79,9 @@ def test_held_out_error_in_a_direction_undetermined_by_other_runs_hardly_lowers_
     across = np.linalg.qr(np.column_stack([solution.jacobian[0], rng.standard_normal(30)]))[0][:, 3]
     rest, size = [held_out(i, np.zeros(COUNTS[i])) for i in (1, 2)], 10.0 * np.sqrt(VARIANCE)
     exact, undetermined, determined = (
-        surprise(solution, [held_out(0, errors), *rest], solution.samples, WHITE, VARIANCE)
+        predictive_deviance(
+            solution, [held_out(0, errors), *rest], solution.samples, WHITE, VARIANCE
+        )
         for errors in (np.zeros(30), size * along, size * across)
     )
     assert determined - exact == pytest.approx(100.0, rel=0.01)
@@ -97,7 +99,7 @@ def test_half_of_a_run_is_predicted_from_the_other_half_and_the_other_runs() -> 
         HeldOutPart((0,), (half,), np.ones(3, bool), (errors[0],)) for half in (first, ~first)
     ]
     parts = [*halves, held_out(1, errors[1]), held_out(2, errors[2])]
-    found = surprise(solution, parts, solution.samples, WHITE, VARIANCE)
+    found = predictive_deviance(solution, parts, solution.samples, WHITE, VARIANCE)
     assert found == pytest.approx(sum(gaussian(solution, p) for p in parts), rel=1e-9)
 
 
@@ -106,11 +108,11 @@ def test_log_density_of_coloured_errors_is_that_of_their_innovations() -> None:
     solution, noise = linear_model(rng), Noise(0.3, 0.6)
     errors = [rng.standard_normal(n) for n in COUNTS]
     parts = [held_out(i, e) for i, e in enumerate(errors)]
-    found = surprise(solution, parts, solution.samples, noise, VARIANCE)
+    found = predictive_deviance(solution, parts, solution.samples, noise, VARIANCE)
     white = [noise.innovations(np.asarray(j), 0.1) for j in solution.jacobian]
     same = replace(solution, jacobian=white)
     innovations = [held_out(i, noise.innovations(e, 0.1)) for i, e in enumerate(errors)]
-    expected = surprise(same, innovations, same.samples, WHITE, VARIANCE)
+    expected = predictive_deviance(same, innovations, same.samples, WHITE, VARIANCE)
     assert found == pytest.approx(expected, rel=1e-9)
 
 

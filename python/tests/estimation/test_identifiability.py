@@ -19,12 +19,12 @@ from jbf.estimation.identifiability import (
     NOT_SEPARATE,
     at_null,
     idle_effects,
-    put_back,
-    undetermined,
+    reason_not_identifiable,
+    reset_unidentified,
 )
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.standard_errors import spread
+from jbf.estimation.standard_errors import standard_errors
 
 RUNS = there_and_back(coulomb, noise_rms=0.1)
 """Two runs at 0.05 to 0.15 m/s without rests or reversals."""
@@ -143,7 +143,7 @@ def moved_back(
     problem = Problem(Campaign.prepare(Rig(), RUNS), law, "journal", ())
     here = np.array([5.0, p, q])
     solution = problem.solution(here, problem.campaign.samples, WHITE)
-    found = put_back(problem, solution, spread(problem, solution), start or {})
+    found = reset_unidentified(problem, solution, standard_errors(problem, solution), start or {})
     for a, b in zip(found.residuals, problem.residuals(found.values), strict=True):
         np.testing.assert_allclose(a, b, atol=1e-12)
     return float(found.values[1]), float(found.values[2]), found.notes
@@ -211,7 +211,7 @@ SHARE = Parameter("share", lower=0.0, upper=1.0, null=1.0, starts=(0.5,))
 def test_parameter_is_determined_if_signed_or_not_smaller_than_its_error(
     page: Parameter, value: float, error: float
 ) -> None:
-    assert undetermined(page, value, error) is None
+    assert reason_not_identifiable(page, value, error) is None
 
 
 @pytest.mark.parametrize("error", [0.0, 3.0, math.nan])
@@ -228,10 +228,10 @@ def test_parameter_is_determined_if_signed_or_not_smaller_than_its_error(
 def test_parameter_at_a_bound_is_not_determined_whatever_its_error(
     page: Parameter, value: float, bound: str, error: float
 ) -> None:
-    note = undetermined(page, value, error)
+    note = reason_not_identifiable(page, value, error)
     assert bound in str(note)
     # The bound is reported even if the parameter is also confounded with another.
-    assert undetermined(page, value, error, separate=False) == note
+    assert reason_not_identifiable(page, value, error, separate=False) == note
     assert bound_note(page, value, error) == note
 
 
@@ -256,15 +256,15 @@ def test_parameter_bound_is_reached_within_1e_6_of_the_error(share: float, at_bo
 def test_scale_below_its_error_is_reported_with_an_upper_limit_of_two_errors(
     page: Parameter, value: float, error: float, largest: float | None
 ) -> None:
-    note = str(undetermined(page, value, error))
+    note = str(reason_not_identifiable(page, value, error))
     assert "larger than itself" in note
     assert ("below" in note) == (largest is not None)
     assert largest is None or float(note.split()[-1]) == pytest.approx(largest, rel=0.05)
 
 
 def test_parameter_without_influence_or_confounded_is_not_determined() -> None:
-    assert undetermined(SCALE, 1e-7, math.nan, moved=False) == NEVER_MOVED
-    assert undetermined(PLAIN, 9.9, 0.1, separate=False) == NOT_SEPARATE
+    assert reason_not_identifiable(SCALE, 1e-7, math.nan, sensitive=False) == NEVER_MOVED
+    assert reason_not_identifiable(PLAIN, 9.9, 0.1, separate=False) == NOT_SEPARATE
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import pytest
 from by_hand import Array, coulomb, four_runs
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.initial_state import Memory, memories, remembering
+from jbf.estimation.initial_state import Memory, initial_memory, transient_masks
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE
 from jbf.estimation.prepared import Prepared
@@ -22,9 +22,8 @@ from jbf.estimation.settings import DEFAULT as SETTINGS
 from jbf.estimation.solution import Solution
 from jbf.estimation.transients import (
     samples_affected_by_gaps,
-    settled_again,
-    settled_campaign,
-    unsettled,
+    without_further_transients,
+    without_transients,
 )
 from jbf.models.chain import core_motion
 
@@ -64,49 +63,53 @@ def after(run: Run, before: tuple[float, float] | None, seed: int = 0) -> Run:
 
 def masks(*runs: Run, noise_rms: float = NOISE_N) -> list[Array]:
     problem, values = journal_problem(*runs)
-    return [np.asarray(m) for m in unsettled(problem, values, noise_rms)]
+    return [np.asarray(m) for m in problem.transient_samples(values, noise_rms)]
 
 
 @cache
 def two_starts() -> Campaign:
     """A run after slow motion and one after fast motion, without the film transient of the law."""
     runs = [after(journal_run("a", None), SLOW, 0), after(journal_run("b", 2.0), FAST, 1)]
-    return settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
+    return without_transients(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
 
 
 @pytest.mark.parametrize(
     ("law", "names", "directions"),
     [
-        ("coulomb", (), []),
-        ("journal", (), [False]),
-        ("journal", ("sensor_offset",), [False]),
-        ("lugre", (), [True]),
-        ("coulomb", PLAY, [True]),
-        ("journal", PLAY, [True]),
+        ("coulomb", (), None),
+        ("journal", (), False),
+        ("journal", ("sensor_offset",), False),
+        ("lugre", (), True),
+        ("coulomb", PLAY, True),
+        ("journal", PLAY, True),
     ],
 )
 def test_models_with_a_film_contact_or_play_have_a_memory_of_the_initial_state(
-    law: str, names: tuple[str, ...], directions: list[bool]
+    law: str, names: tuple[str, ...], directions: bool | None
 ) -> None:
     """A contact or a load cell depends on past directions of motion, a film only on past speeds."""
-    found = memories(law, names)
-    assert [min(memory.speeds) < 0.0 for memory in found] == directions
-    assert all(memory.longer > 1.0 for memory in found)
+    memory = initial_memory(law, names)
+    if directions is None:
+        assert memory is None
+        return
+    assert memory is not None
+    assert (min(memory.speeds) < 0.0) == directions
+    assert memory.margin > 1.0
 
 
-@pytest.mark.parametrize("longer", [1.0, 1.5])
-def test_interval_in_which_initial_states_matter_is_excluded_and_extended(longer: float) -> None:
+@pytest.mark.parametrize("margin", [1.0, 1.5])
+def test_interval_in_which_initial_states_matter_is_excluded_and_extended(margin: float) -> None:
     problem, values = journal_problem(journal_run("a", 2.0))
     (p,) = problem.campaign.prepared
-    memory = Memory((1e-3, 0.1, 1.0), longer, 0.5)
+    memory = Memory((1e-3, 0.1, 1.0), margin, 0.5)
     starts = [core_motion(p.rig, p.run, p.motion, (s, 6.0)) for s in memory.speeds]
     forces = [problem.chain.predict(values, [motion])[0] for motion in starts]
     apart = np.flatnonzero(
         np.ptp(np.array(forces), axis=0) > SETTINGS.transient.max_difference * NOISE_N
     )
     t = p.run.time_s
-    until = t[apart[0]] + longer * (t[apart[-1]] - t[apart[0]])
-    (found,) = remembering(problem.chain, values, [p], memory, NOISE_N)
+    until = t[apart[0]] + margin * (t[apart[-1]] - t[apart[0]])
+    (found,) = transient_masks(problem.chain, values, [p], memory, NOISE_N)
     np.testing.assert_array_equal(found, (t >= t[apart[0]]) & (t <= until))
 
 
@@ -139,7 +142,7 @@ def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
     runs = [after(journal_run("a", None), SLOW, 0), after(journal_run("b", 2.0), FAST, 1)]
     runs.append(after(journal_run("c", 30.0), FAST, 2))
     campaign = Campaign.prepare(Rig.thesis(), runs)
-    settled = settled_campaign(campaign, "journal", "journal")
+    settled = without_transients(campaign, "journal", "journal")
     assert settled.samples.count < campaign.samples.count
     (found,) = (f for f in settled.more_findings if f.run == "a")
     assert (found.kind, found.done, found.unit) == ("unsettled_start", "set aside", "s")
@@ -158,7 +161,7 @@ def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
 def test_transient_that_agrees_with_the_model_is_excluded_without_a_finding() -> None:
     """The transient causes no finding; this requires residuals twice as large as usual."""
     runs = [after(journal_run("a", None), None, 0), after(journal_run("b", 2.0), None, 1)]
-    settled = settled_campaign(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
+    settled = without_transients(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
     assert settled.more_findings == ()
     assert settled.samples.count < sum(len(r) for r in runs)
 
@@ -172,30 +175,30 @@ def with_memory(campaign: Campaign, factor: float) -> tuple[Problem, Solution]:
 
 def test_slower_film_excludes_further_samples_that_follow_those_already_excluded() -> None:
     campaign = two_starts()
-    again = settled_again(*with_memory(campaign, 0.3))
+    again = without_further_transients(*with_memory(campaign, 0.3))
     for before, now in zip(campaign.samples.counted, again.samples.counted, strict=True):
         gone = np.flatnonzero(before & ~now)
         assert len(gone) > 20
         assert not before[gone[0] - 1]
         assert not now[gone[0] : gone[-1]].any()
         assert not (now & ~before).any()
-    assert settled_again(*with_memory(again, 0.3)) is None
+    assert without_further_transients(*with_memory(again, 0.3)) is None
 
 
 def test_no_further_samples_are_excluded_for_a_film_as_fast_as_that_of_the_law() -> None:
     campaign = two_starts()
-    assert settled_again(*with_memory(campaign, 1.0)) is None
+    assert without_further_transients(*with_memory(campaign, 1.0)) is None
     for names in ((), ("sensor_offset",)):
         problem = Problem(campaign, "journal", "journal", names)
         solution = problem.solution(problem.starts({})[0], campaign.samples, WHITE)
-        assert settled_again(problem, solution) is None
+        assert without_further_transients(problem, solution) is None
 
 
 def test_no_samples_are_excluded_at_starts_or_gaps_for_a_law_without_a_state() -> None:
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1))
-    assert settled_campaign(campaign, "coulomb", "journal") is campaign
+    assert without_transients(campaign, "coulomb", "journal") is campaign
     problem = Problem(campaign, "coulomb", "journal", ())
-    assert not any(m.any() for m in unsettled(problem, problem.starts({})[0], 0.1))
+    assert not any(m.any() for m in problem.transient_samples(problem.starts({})[0], 0.1))
     problem = Problem(Campaign.prepare(Rig(), [with_gap(7.0, 8.11)]), "coulomb", "journal", ())
     assert not samples_affected_by_gaps(problem, problem.starts({})[0], LEAST_N)[0].any()
 
@@ -235,7 +238,7 @@ def play_problem(runs: list[Run]) -> tuple[Problem, Array]:
 def settled_play(runs: list[Run]) -> tuple[Problem, Array, Campaign | None]:
     problem, truth = play_problem(runs)
     solution = problem.solution(truth, problem.campaign.samples, WHITE)
-    return problem, truth, settled_again(problem, solution)
+    return problem, truth, without_further_transients(problem, solution)
 
 
 @pytest.mark.parametrize("branch", [-1.0, 1.0], ids=["fallen", "risen"])
@@ -332,7 +335,7 @@ def test_samples_after_a_gap_are_excluded_if_errors_exceed_a_fifth_of_the_noise(
     run, noise_rms = with_gap(7.0, 8.11, up=False), 0.02
     noise = noise_rms * np.random.default_rng(4).standard_normal(len(run))
     campaign = Campaign.prepare(Rig.thesis(), [replace(run, friction=run.friction + noise)])
-    settled = settled_campaign(campaign, "journal", "journal")
+    settled = without_transients(campaign, "journal", "journal")
     gone = run.time_s[campaign.samples.counted[0] & ~settled.samples.counted[0]]
     (behind,) = samples_affected_by_gaps(
         *journal_problem(run), SETTINGS.transient.max_difference * noise_rms

@@ -16,11 +16,11 @@ from jbf import Model, Parameter, Rig, Run, compare, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.jumps import (
     active_effects,
-    instant_errors_n,
     jumps,
     moves_jumps,
     samples_near_jumps,
     spreads_jumps,
+    timing_errors,
 )
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.problem import Problem
@@ -135,7 +135,7 @@ def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_erro
     found = samples_near_jumps(campaign_.samples, [p], [force], ["sensor_lag"])
     counted = campaign_.samples.counted[0]
     rms = float(np.sqrt(np.mean((force - p.friction)[counted] ** 2)))
-    error_n = instant_errors_n(p, force, 0.5 * rms)
+    error_n = timing_errors(p, force, 0.5 * rms)
     assert 5 < np.count_nonzero(error_n) < 200
     np.testing.assert_array_equal(found.counted[0], counted & (error_n == 0.0))
     expected = np.where(counted, rms / np.hypot(rms, error_n), 0.0)
@@ -190,25 +190,25 @@ def test_error_after_a_reversal_is_rate_of_change_times_error_of_the_instant(uni
     slope = 50.0 * ((np.arange(15) >= 3) & (np.arange(15) < 9))
     prediction = unit * np.concatenate(([0.0], np.cumsum(slope * STEP_S)))
     rate = np.abs(np.gradient(prediction, p.run.time_s))
-    found = instant_errors_n(p, prediction, 0.02 * unit)
+    found = timing_errors(p, prediction, 0.02 * unit)
     np.testing.assert_array_equal(found[:4], 0.0)
     np.testing.assert_allclose(found[4:10], 1e-3 * rate[4:10])
     assert found[5] == pytest.approx(0.05 * unit)
     np.testing.assert_array_equal(found[10:], 0.0)
     # The rate falls to half at the ninth sample.
-    assert instant_errors_n(p, prediction, 0.03 * unit)[9] == 0.0
+    assert timing_errors(p, prediction, 0.03 * unit)[9] == 0.0
 
 
 def test_error_of_the_instant_is_limited_to_that_of_a_uniform_distribution_over_a_step() -> None:
     p = prepared([0.2] * 4 + [-0.2] * 8, error=1e3)
-    found = instant_errors_n(p, ramp(p), 1e-9)
+    found = timing_errors(p, ramp(p), 1e-9)
     np.testing.assert_allclose(found[4:], STEP_S * 10.0 / np.sqrt(12.0), rtol=0.01)
 
 
 def test_samples_of_unknown_sign_next_to_a_reversal_share_its_error() -> None:
     error = np.array([9.0, 1e-3, 5e-3, 1e-3, 2e-3, 9.0, 9.0, 9.0])
     p = prepared([0.2, 0.2, 0.1, -0.1, -0.2, -0.2, -0.2, -0.2], error=error, unknown=(2, 3))
-    found = instant_errors_n(p, ramp(p), 1e-9)
+    found = timing_errors(p, ramp(p), 1e-9)
     np.testing.assert_array_equal(found[:2], 0.0)
     np.testing.assert_allclose(found[2:], 10.0 * 5e-3 / (0.4 / 0.3))
 
@@ -217,12 +217,12 @@ def test_force_error_of_the_instant_of_a_reversal_applies_until_the_next_reversa
     error = np.where(np.arange(11) < 6, 1e-3, 1e-4)
     p = prepared([0.2] * 3 + [-0.2] * 4 + [0.2] * 4, error=error)
     first, second = 1e-3 / 4.0 * 20.0, 1e-4 / 4.0 * 20.0
-    found = instant_errors_n(p, ramp(p, 20.0), 1e-9)
+    found = timing_errors(p, ramp(p, 20.0), 1e-9)
     np.testing.assert_allclose(found, [0.0] * 3 + [first] * 4 + [second] * 4)
     # A rate of change that begins after the reversal has no error from its instant.
     p = prepared([0.2] * 3 + [-0.2] * 8)
     late = np.maximum(ramp(p) - ramp(p)[6], 0.0)
-    assert not instant_errors_n(p, late, 1e-9).any()
+    assert not timing_errors(p, late, 1e-9).any()
 
 
 @pytest.mark.parametrize(
@@ -238,13 +238,13 @@ def test_force_error_of_the_instant_of_a_reversal_applies_until_the_next_reversa
 )
 def test_reversal_is_a_sign_change_without_a_rest(velocity: Any, unknown: Any, first: Any) -> None:
     p = prepared(velocity, unknown=unknown)
-    found = np.flatnonzero(instant_errors_n(p, ramp(p), 1e-9))
+    found = np.flatnonzero(timing_errors(p, ramp(p), 1e-9))
     assert (int(found[0]) if len(found) else None) == first
 
 
 def test_reversal_error_is_zero_in_a_record_of_two_samples() -> None:
     two = prepared([0.2, -0.2])
-    assert instant_errors_n(two, np.array([1.0, -1.0]), 0.0).tolist() == [0.0, 0.0]
+    assert timing_errors(two, np.array([1.0, -1.0]), 0.0).tolist() == [0.0, 0.0]
 
 
 def true_model(
@@ -273,7 +273,7 @@ def test_errors_after_slow_reversals_are_as_large_as_predicted(seeds: range) -> 
     for seed in seeds:
         problem, values, noise_rms = true_model(seed, ("sensor_lag",), speed_noise_m_s=1e-3)
         (p,), (prediction,) = problem.campaign.prepared, problem.predict(values)
-        error_n = instant_errors_n(p, prediction, 0.5 * noise_rms)
+        error_n = timing_errors(p, prediction, 0.5 * noise_rms)
         residual = p.friction - prediction
         counted = p.motion.sign_known
         behind = counted & (error_n > 0.0)

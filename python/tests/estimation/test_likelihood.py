@@ -17,9 +17,8 @@ from coulomb_problems import (
     solution_of,
     values_of,
 )
-from jbf.estimation import likelihood
-from jbf.estimation import variance as long_run
-from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation import least_squares, likelihood, variance
+from jbf.estimation.random_effects import RandomEffects
 from jbf.estimation.variance import clipped_square, robust_size
 from scipy import linalg, stats
 
@@ -41,7 +40,7 @@ def test_log_likelihood_is_that_of_a_normal_vector_with_weights_and_random_effec
     """Two runs with unequal noise and a random offset, against the density of the whole vector."""
     residuals = [white(1, 30) + 1.5, white(2, 20) - 0.5]
     weights = [np.linspace(0.3, 1.0, 30), np.full(20, 0.8)]
-    offset = BetweenRuns(("offset",), tuple(np.full((len(r), 1), 0.7) for r in residuals), 1.2)
+    offset = RandomEffects(("offset",), tuple(np.full((len(r), 1), 0.7) for r in residuals), 1.2)
     samples = replace(samples_of(weights), between=offset)
     found = likelihood.log_likelihood(solution_of(residuals, samples))
     # In units of the noise of a sample with full weight: w^2 (I + u u') of each run.
@@ -122,20 +121,22 @@ TARGET = np.array([3.0, 8.0, -1.0, 2.0])
 def test_regression_residual_does_not_depend_on_the_scale_of_the_columns(scale: float) -> None:
     design = DESIGN * [1.0, scale, 1.0] if scale == 1e200 else scale * DESIGN
     design[:, 2] = design[:, 0] + design[:, 1]
-    left = likelihood.unexplained(design, TARGET)
+    left = least_squares.unexplained(design, TARGET)
     np.testing.assert_allclose(left, [0.0, 0.0, -1.0, 2.0], atol=1e-12)
-    assert likelihood.unexplained_square(design, TARGET) == pytest.approx(5.0)
-    span = likelihood.spanned(scale * DESIGN)
+    assert least_squares.unexplained_square(design, TARGET) == pytest.approx(5.0)
+    span = least_squares.spanned(scale * DESIGN)
     assert span.shape == (4, 2)
     np.testing.assert_allclose(span.T @ span, np.eye(2), atol=1e-12)
     np.testing.assert_allclose(span @ (span.T @ TARGET), [3.0, 8.0, 0.0, 0.0], atol=1e-12)
 
 
 def test_least_squares_solution_has_minimum_norm_in_columns_of_unit_length() -> None:
-    np.testing.assert_allclose(likelihood.least_squares(DESIGN[:, :2], TARGET), [3.0, 4.0])
+    np.testing.assert_allclose(least_squares.least_squares(DESIGN[:, :2], TARGET), [3.0, 4.0])
     twice = np.column_stack([DESIGN[:, 0], DESIGN[:, 0], np.zeros(4)])
-    np.testing.assert_allclose(likelihood.least_squares(twice, TARGET), [1.5, 1.5, 0.0], atol=1e-12)
-    shorter = likelihood.least_squares(1e-2 * DESIGN[:, :2], TARGET)
+    np.testing.assert_allclose(
+        least_squares.least_squares(twice, TARGET), [1.5, 1.5, 0.0], atol=1e-12
+    )
+    shorter = least_squares.least_squares(1e-2 * DESIGN[:, :2], TARGET)
     np.testing.assert_allclose(shorter, [300.0, 400.0])
 
 
@@ -211,14 +212,14 @@ def test_long_run_variance_uses_windows_of_three_seconds_or_an_eighth_of_the_rec
     scores = np.random.default_rng(n).standard_normal((n, 2))
     windows = [scores[k : k + length].sum(axis=0) for k in range(n - length + 1)]
     wanted = sum(np.outer(w, w) for w in windows) * n / (len(windows) * length)
-    np.testing.assert_allclose(long_run.long_run_variance(scores, step_s), wanted)
+    np.testing.assert_allclose(variance.long_run_variance(scores, step_s), wanted)
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.5, 0.9])
 def test_long_run_variance_of_autoregression_sums_its_autocovariances(correlation: float) -> None:
     n = 20000
     noises = (coloured(s, correlation, n)[:, None] for s in range(8))
-    found = [float(long_run.long_run_variance(noise, STEP_S)[0, 0]) for noise in noises]
+    found = [float(variance.long_run_variance(noise, STEP_S)[0, 0]) for noise in noises]
     wanted = (1.0 + correlation) / (1.0 - correlation)
     assert np.mean(found) / n == pytest.approx(wanted, rel=0.15)
 
@@ -227,9 +228,9 @@ def test_score_statistic_uses_the_larger_of_long_run_and_white_noise_variance() 
     """Innovations of mean c with an alternating part a: 16 c^2 over the larger of a^2 and one."""
     swings = np.where(np.arange(16) % 2, 1.0, -1.0)
     direction = np.full((16, 1), 0.25)
-    for a, variance in ((10.0, 100.0), (2.0, 4.0), (0.5, 1.0)):
-        found = long_run.score_square(direction, 0.7 + a * swings, 3.0)
-        assert found == pytest.approx(16.0 * 0.49 / variance)
+    for a, larger in ((10.0, 100.0), (2.0, 4.0), (0.5, 1.0)):
+        found = variance.score_square(direction, 0.7 + a * swings, 3.0)
+        assert found == pytest.approx(16.0 * 0.49 / larger)
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.9])
@@ -237,7 +238,7 @@ def test_score_statistic_in_correlated_noise_follows_chi_square(correlation: flo
     n = 10000
     t = np.arange(n) * STEP_S
     x = np.linalg.qr(np.stack([np.ones(n), np.sin(0.1 * t), t - t.mean()], axis=1))[0]
-    found = [long_run.score_square(x, coloured(s, correlation, n), STEP_S) for s in range(100)]
+    found = [variance.score_square(x, coloured(s, correlation, n), STEP_S) for s in range(100)]
     # Without the long-run variance the squares would be nineteen times as large.
     assert np.mean(found) == pytest.approx(3.0, rel=0.3)
     assert stats.chi2.sf(np.quantile(found, 0.95), 3) > 0.01
@@ -258,18 +259,18 @@ def test_score_inflation_is_the_score_variance_over_that_of_white_noise(scale: f
     wanted = score / (square * white)
     assert wanted > 1.2
     scaled = [scale * x for x in d]
-    assert long_run.score_inflation(scaled, e, (3.0, 3.0)) == pytest.approx(wanted)
-    assert long_run.score_inflation(d, [1e-3 * x for x in e], (3.0, 3.0)) == pytest.approx(wanted)
+    assert variance.score_inflation(scaled, e, (3.0, 3.0)) == pytest.approx(wanted)
+    assert variance.score_inflation(d, [1e-3 * x for x in e], (3.0, 3.0)) == pytest.approx(wanted)
 
 
 def test_score_inflation_is_one_for_alternating_or_degenerate_scores() -> None:
     swings = [np.where(np.arange(n) % 2, 1.0, -1.0) for n in (30, 20)]
-    assert long_run.score_inflation([np.ones(30), np.ones(20)], swings, (0.1, 0.1)) == 1.0
-    for inflation in (long_run.score_inflation, long_run.sure_inflation):
+    assert variance.score_inflation([np.ones(30), np.ones(20)], swings, (0.1, 0.1)) == 1.0
+    for inflation in (variance.score_inflation, variance.significant_inflation):
         assert inflation([np.zeros(50)], [np.ones(50)], (STEP_S,)) == 1.0
         assert inflation([np.ones(50)], [np.zeros(50)], (STEP_S,)) == 1.0
         assert inflation([np.full(30, np.inf)], [np.ones(30)], (STEP_S,)) == 1.0
-    assert long_run.score_inflation([], [], ()) == 1.0
+    assert variance.score_inflation([], [], ()) == 1.0
 
 
 @pytest.mark.parametrize(("ratio", "sure"), [(1.4, False), (2.6, True)])
@@ -280,9 +281,9 @@ def test_inflation_from_few_windows_is_used_only_if_significant(ratio: float, su
     e = np.where(np.arange(400) % 2, 1.0, -1.0)
     size = np.sqrt(ratio * 380.0 / (400.0 - 20.0 * ratio))
     e[::20] = size * np.where(np.arange(20) % 2, 1.0, -1.0)
-    assert long_run.score_inflation([direction], [e], (3.0,)) == pytest.approx(ratio)
+    assert variance.score_inflation([direction], [e], (3.0,)) == pytest.approx(ratio)
     for scale in (1.0, 1e150):
-        found = long_run.sure_inflation([scale * direction], [e], (3.0,))
+        found = variance.significant_inflation([scale * direction], [e], (3.0,))
         assert found == (pytest.approx(ratio) if sure else 1.0)
 
 
@@ -294,23 +295,23 @@ def test_scatter_between_runs_counts_only_if_significant(inflation: float, kept:
     e = [np.array([p / np.sqrt(s), 2.0, -2.0]) for p, s in zip(pull, size, strict=True)]
     white = np.mean(np.concatenate(e) ** 2)
     limit = float(np.sum(pull**2 / size)) / white / (2.0 * np.log(100.0))
-    found = long_run.between_runs(d, e, inflation * limit)
+    found = variance.cluster_inflation(d, e, inflation * limit)
     # Sum of squared run sums over that of white noise, times n / (n - 1).
     assert found == (pytest.approx(27.0 / (white * 6.0) * 1.5) if kept else 0.0)
     # A run that does not depend on the direction is not counted.
-    more = long_run.between_runs([*d, np.zeros(3)], [*e, np.zeros(3)], inflation * limit)
+    more = variance.cluster_inflation([*d, np.zeros(3)], [*e, np.zeros(3)], inflation * limit)
     assert (more > 0.0) == kept
-    assert long_run.between_runs(d[:2], e[:2], 1e-9) == 0.0
-    assert long_run.between_runs(d, [np.zeros(3)] * 3, 1e-9) == 0.0
+    assert variance.cluster_inflation(d[:2], e[:2], 1e-9) == 0.0
+    assert variance.cluster_inflation(d, [np.zeros(3)] * 3, 1e-9) == 0.0
 
 
 def test_inflation_between_runs_is_the_variance_of_run_sums_over_white_noise() -> None:
     ones = [np.ones(400) for _ in range(6)]
     e = [coloured(i, 0.0, 400) for i in range(6)]
-    assert long_run.between_runs(ones, e, 1.0) == 0.0
+    assert variance.cluster_inflation(ones, e, 1.0) == 0.0
     moved = [x + z for x, z in zip(e, (0.5, -0.3, 0.1, -0.6, 0.4, -0.1), strict=True)]
     sums = np.array([np.sum(x) for x in moved])
     wanted = np.sum(sums**2) * 6.0 / 5.0 / (np.mean(np.concatenate(moved) ** 2) * 2400.0)
-    assert long_run.between_runs(ones, moved, 1.0) == pytest.approx(wanted)
+    assert variance.cluster_inflation(ones, moved, 1.0) == pytest.approx(wanted)
     assert wanted > 20.0
-    assert long_run.between_runs(ones, moved, 1000.0) == 0.0
+    assert variance.cluster_inflation(ones, moved, 1000.0) == 0.0

@@ -20,7 +20,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import noise_at
 from jbf.estimation.noise import WHITE, Noise, estimate_noise, innovation_cost
 from jbf.estimation.noise_floor import noise_floor, noise_upper_bound
-from jbf.estimation.random_effects import BetweenRuns
+from jbf.estimation.random_effects import RandomEffects
 from linear_campaigns import mass
 from scipy import optimize, signal
 
@@ -187,7 +187,7 @@ def test_random_effect_of_a_run_is_not_taken_for_coloured_noise() -> None:
     problem = coulomb_problem(runs)
     samples, values = problem.campaign.samples, values_of(problem)
     assert not noise_at(problem, samples, values).white
-    between = BetweenRuns(("zero",), tuple(np.full((len(r), 1), 0.5) for r in runs), 0.1)
+    between = RandomEffects(("zero",), tuple(np.full((len(r), 1), 0.5) for r in runs), 0.1)
     assert noise_at(problem, replace(samples, between=between), values) == WHITE
 
 

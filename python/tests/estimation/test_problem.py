@@ -8,7 +8,7 @@ from by_hand import coulomb, four_runs
 from coulomb_problems import VALUES, coulomb_problem, values_of
 from jbf import InputError, Parameter, Rig, Run
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.least_squares import MOST_SEARCHED, every_so_many, triangular
+from jbf.estimation.least_squares import MOST_SEARCHED, select_runs, triangular
 from jbf.estimation.minimum import minimum
 from jbf.estimation.noise import WHITE, Noise
 from jbf.estimation.problem import BOUNDLESS, Problem, bounded, named_values
@@ -171,10 +171,10 @@ def test_triangular_rows_preserve_all_inner_products() -> None:
 def test_search_above_the_sample_limit_uses_equidistant_runs_sorted_by_name() -> None:
     names = [f"{k:02d}" for k in range(20)]
     length = 2 * MOST_SEARCHED // 20
-    assert every_so_many([length] * 20, names) == [0, 4, 8, 12, 16]
-    assert every_so_many([length] * 20, names[::-1]) == [3, 7, 11, 15, 19]
+    assert select_runs([length] * 20, names) == [0, 4, 8, 12, 16]
+    assert select_runs([length] * 20, names[::-1]) == [3, 7, 11, 15, 19]
     for lengths in ([length // 2] * 20, [10 * length] * 2):
-        assert every_so_many(lengths, names[: len(lengths)]) == list(range(len(lengths)))
+        assert select_runs(lengths, names[: len(lengths)]) == list(range(len(lengths)))
 
 
 @pytest.mark.extended

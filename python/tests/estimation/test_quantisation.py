@@ -16,7 +16,13 @@ from jbf.diagnosis.terms.quantiser import without_bias
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.quantisation import MOST_NOISE, bias_n, curve_rms, noise_before, origin_n
+from jbf.estimation.quantisation import (
+    MOST_NOISE,
+    bias_rms,
+    noise_before_converter,
+    quantisation_bias,
+    zero_offset,
+)
 from jbf.estimation.solution import Solution
 from scipy import integrate, stats
 
@@ -36,13 +42,15 @@ def mean_reading(step: float, noise: float, force: Array) -> Array:
 def test_quantisation_bias_is_the_error_of_the_mean_reading(step: float, noise: float) -> None:
     force = step * np.linspace(-2.3, 2.1, 97)
     expected = mean_reading(step, noise * step, force) - force
-    np.testing.assert_allclose(bias_n(step, noise * step, force), expected, atol=2e-3 * step)
+    np.testing.assert_allclose(
+        quantisation_bias(step, noise * step, force), expected, atol=2e-3 * step
+    )
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.05])
 def test_quantisation_bias_has_the_first_three_harmonics_of_a_saw_tooth(noise: float) -> None:
     force = np.arange(64) / 64.0
-    sines = np.fft.rfft(bias_n(1.0, noise, force)).imag / -32.0
+    sines = np.fft.rfft(quantisation_bias(1.0, noise, force)).imag / -32.0
     k = np.arange(1, 4)
     expected = (-1.0) ** k / (np.pi * k) * np.exp(-2.0 * (np.pi * k * noise) ** 2)
     np.testing.assert_allclose(sines[1:4], expected)
@@ -53,9 +61,9 @@ def test_quantisation_bias_has_the_first_three_harmonics_of_a_saw_tooth(noise: f
 def test_rms_of_the_quantisation_bias_is_that_of_its_first_harmonic(step: float) -> None:
     force = step * np.linspace(0.0, 1.0, 1000, endpoint=False)
     for noise in (0.3, 0.4):
-        rms = np.sqrt(np.mean(bias_n(step, noise * step, force) ** 2))
-        assert curve_rms(step, noise * step) == pytest.approx(rms, rel=1e-2)
-    assert curve_rms(step, 0.0) == pytest.approx(step / (np.pi * np.sqrt(2.0)))
+        rms = np.sqrt(np.mean(quantisation_bias(step, noise * step, force) ** 2))
+        assert bias_rms(step, noise * step) == pytest.approx(rms, rel=1e-2)
+    assert bias_rms(step, 0.0) == pytest.approx(step / (np.pi * np.sqrt(2.0)))
 
 
 @pytest.mark.parametrize("step", [1e-3, 2.5, 40.0])
@@ -64,13 +72,13 @@ def test_origin_of_readings_is_their_offset_from_integer_multiples_of_the_step(
     step: float, origin: float
 ) -> None:
     readings = step * (np.array([-3.0, 0.0, 1.0, 7.0, np.nan]) + origin)
-    assert origin_n(step, readings) == pytest.approx(origin * step, abs=1e-9 * step)
+    assert zero_offset(step, readings) == pytest.approx(origin * step, abs=1e-9 * step)
 
 
 def test_origin_of_noisy_readings_is_their_circular_mean() -> None:
     readings = np.array([-40.1, 0.1, 3.1, 7.9, 50.0, 2e3 - 0.1, 2e3 + 0.1])
-    assert origin_n(1.0, readings) == pytest.approx(0.0, abs=1e-9)
-    assert origin_n(1.0, readings + 0.2) == pytest.approx(0.2)
+    assert zero_offset(1.0, readings) == pytest.approx(0.0, abs=1e-9)
+    assert zero_offset(1.0, readings + 0.2) == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize("step", [1e-3, 40.0])
@@ -82,13 +90,13 @@ def test_noise_before_conversion_follows_from_repeated_readings(step: float, noi
     repeats = round(share * n)
     # A change below half a step counts as a repetition.
     moves = step * np.concatenate((np.full(repeats, 0.49), np.full(n - repeats, -0.51)))
-    assert noise_before(step, moves) == pytest.approx(noise * step, rel=2e-3)
+    assert noise_before_converter(step, moves) == pytest.approx(noise * step, rel=2e-3)
 
 
 def test_noise_before_conversion_is_limited_if_readings_always_or_never_repeat() -> None:
-    assert noise_before(2.0, np.zeros(100)) == 0.0
-    assert noise_before(2.0, np.zeros(0)) == 0.0
-    assert noise_before(2.0, np.full(100, 2.0)) == 2.0 * MOST_NOISE
+    assert noise_before_converter(2.0, np.zeros(100)) == 0.0
+    assert noise_before_converter(2.0, np.zeros(0)) == 0.0
+    assert noise_before_converter(2.0, np.full(100, 2.0)) == 2.0 * MOST_NOISE
 
 
 @cache

@@ -13,7 +13,7 @@ from coulomb_problems import STEP_S, arma_innovations, samples_of
 from jbf import Rig, Run
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE, Noise
-from jbf.estimation.random_effects import BetweenRuns, spread_between
+from jbf.estimation.random_effects import RandomEffects, spread_between
 from jbf.estimation.samples import Samples
 from jbf.estimation.variance import blocks_of
 from scipy import linalg, stats
@@ -56,7 +56,7 @@ def test_rms_is_over_counted_samples_and_sum_of_squares_over_weighted_samples() 
 
 def test_samples_only_selects_all_properties_of_the_given_runs() -> None:
     level = tuple(0.5 * np.ones(len(w)) for w in WEIGHT)
-    between = BetweenRuns(("zero",), (np.ones((4, 1)), 2.0 * np.ones((3, 1))), 0.7)
+    between = RandomEffects(("zero",), (np.ones((4, 1)), 2.0 * np.ones((3, 1))), 0.7)
     one = replace(SAMPLES, level=level, between=between).only([1])
     assert (one.runs, one.steps_s) == (("b",), (0.1,))
     assert one.counted[0] is COUNTED[1]
@@ -116,7 +116,7 @@ def test_innovations_are_zero_at_samples_that_do_not_count() -> None:
 def test_predicted_deviation_of_a_run_is_removed_with_shrinkage() -> None:
     """Offset with a deviation of 2 N: three readings of 3 N in noise of 1 N predict 36/13 N."""
     every = np.ones(3, dtype=bool)
-    between = BetweenRuns(("zero",), (np.full((3, 1), 2.0),), 1.0)
+    between = RandomEffects(("zero",), (np.full((3, 1), 2.0),), 1.0)
     samples = Samples(("a",), (0.02,), (every,), (np.ones(3),), between)
     (left,) = samples.without_deviations([np.full(3, 3.0)], WHITE)
     np.testing.assert_allclose(left, 3.0 - 36.0 / 13.0)
@@ -146,12 +146,12 @@ SLOW_NOISE = Noise(memory_s=0.2, colour=0.4)
 NOISES = pytest.mark.parametrize("noise", [WHITE, SLOW_NOISE], ids=["white", "coloured"])
 
 
-def deviations(runs: int = 2) -> BetweenRuns:
+def deviations(runs: int = 2) -> RandomEffects:
     """Random effects: an offset of 0.5 N and a wave of 0.8 N whose frequency differs by run."""
     time = STEP_S * np.arange(N)
     waves = [0.8 * np.sin((i + 1.0) * time) for i in range(runs)]
     directions = (np.stack([np.full(N, 0.5), wave], axis=1) for wave in waves)
-    return BetweenRuns(("zero", "wave"), tuple(directions), SIGMA_N)
+    return RandomEffects(("zero", "wave"), tuple(directions), SIGMA_N)
 
 
 def weights() -> Array:

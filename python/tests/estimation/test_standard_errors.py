@@ -16,7 +16,7 @@ from jbf import Fit, Parameter, ParameterValue, Rig, Run, fit
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.noise import WHITE
 from jbf.estimation.problem import Problem
-from jbf.estimation.standard_errors import doubtful_errors, spread
+from jbf.estimation.standard_errors import doubtful_errors, standard_errors
 
 NOISE_N = 0.2
 TERMS: dict[str, Friction] = {
@@ -98,7 +98,7 @@ def test_error_of_a_logarithmic_parameter_is_in_the_unit_of_the_parameter() -> N
     assert problem.log[problem.names.index("v_s")]
     x = np.column_stack([slopes[problem.names[i]] for i in problem.open])
     sd, table = errors_and_correlations(x, np.concatenate(solution.residuals))
-    found = spread(problem, solution)
+    found = standard_errors(problem, solution)
     np.testing.assert_allclose(found.sd * found.scale, sd, rtol=1e-6)
     np.testing.assert_allclose(found.correlation, table, atol=1e-6)
     assert [found.error(k) for k in range(3)] == pytest.approx(sd * found.inflation)
@@ -109,9 +109,9 @@ def test_parameters_without_influence_and_confounded_parameters_are_marked() -> 
     runs = four_runs(coulomb, noise_rms=0.1)
     campaign = Campaign.prepare(Rig(), [runs[0], runs[2]])
     problem = Problem(campaign, "coulomb", "journal", ("sensor_offset",))
-    found = spread(problem, solution_at(problem, values_of(problem)))
+    found = standard_errors(problem, solution_at(problem, values_of(problem)))
     names = [problem.names[i] for i in problem.open]
-    moved, separate = (dict(zip(names, x, strict=True)) for x in (found.moved, found.separate))
+    moved, separate = (dict(zip(names, x, strict=True)) for x in (found.sensitive, found.separate))
     assert moved == {n: n != "F_s" for n in names}
     assert {n for n in names if not separate[n]} == {"F_c", "sensor_offset.b"}
     assert np.isnan(found.error(names.index("F_s")))
@@ -130,10 +130,10 @@ def test_error_is_inflated_by_the_long_run_variance_of_slow_noise() -> None:
     solution = solution_at(problem, values_of(problem))
     random = np.random.default_rng(4)
     slow = [np.repeat(random.choice([-1.0, 1.0], 51), 10)[:501] for _ in range(4)]
-    known = spread(problem, replace(solution, residuals=slow))
+    known = standard_errors(problem, replace(solution, residuals=slow))
     assert known.inflation[0] ** 2 == pytest.approx(10.0, rel=0.5)
     swings = [np.where(np.arange(501) % 2, 1.0, -1.0) for _ in range(4)]
-    alternating = spread(problem, replace(solution, residuals=swings))
+    alternating = standard_errors(problem, replace(solution, residuals=swings))
     np.testing.assert_array_equal(alternating.inflation, 1.0)
 
 
@@ -142,7 +142,7 @@ def test_error_is_inflated_by_the_scatter_of_offsets_between_runs() -> None:
     offsets = np.array([0.5, -0.4, 0.3, -0.5, 0.2, -0.3, 0.45, -0.25])
     some = (four_runs(along(z), noise_rms=0.1, seed=k)[k % 4] for k, z in enumerate(offsets))
     problem = dry_level([replace(run, name=f"{k}") for k, run in enumerate(some)])
-    error = spread(problem, solution_at(problem, values_of(problem))).error(0)
+    error = standard_errors(problem, solution_at(problem, values_of(problem))).error(0)
     assert error == pytest.approx(np.std(offsets, ddof=1) / np.sqrt(8.0), rel=0.15)
 
 

@@ -24,7 +24,7 @@ from jbf.estimation.starting_values import (
 from jbf.models.catalogue import effects, laws, parameters_of
 
 SIZES = Scales(
-    whole_n=7.0,
+    median_n=7.0,
     kinetic_n=5.0,
     viscous_n_s_m=20.0,
     breakaway_n=8.0,
@@ -100,7 +100,7 @@ def test_starting_values_of_a_rule_follow_from_the_sizes_of_a_campaign(
 
 def test_law_in_newtons_takes_its_starting_values_from_the_data() -> None:
     sizes = scales(slide())
-    assert started(page("kinetic")).starts == (sizes.kinetic_n, sizes.whole_n)
+    assert started(page("kinetic")).starts == (sizes.kinetic_n, sizes.median_n)
     assert sizes.kinetic_n == pytest.approx(5.0, rel=0.05)
     assert started(page()) == page()
 
@@ -207,7 +207,7 @@ def test_sizes_of_linear_friction_over_a_sine_follow_its_formula(top: float, for
     # Median and 10 % quantile of the absolute value of a sine.
     assert found.usual_m_s == pytest.approx(top * np.sin(0.25 * np.pi), rel=0.03)
     assert found.slow_m_s == pytest.approx(top * np.sin(0.05 * np.pi), rel=0.15)
-    assert found.whole_n == pytest.approx(force + viscous * found.usual_m_s, rel=0.02)
+    assert found.median_n == pytest.approx(force + viscous * found.usual_m_s, rel=0.02)
     # 90 % quantile of the slow half.
     slow = top * np.sin(0.9 * 0.25 * np.pi)
     assert found.breakaway_n == pytest.approx(force + viscous * slow, rel=0.02)
@@ -257,7 +257,7 @@ def test_rest_and_speeds_below_two_percent_of_the_top_do_not_count_as_motion() -
 
     def moving(second_half: Array) -> Array:
         run = Run.from_arrays(t, np.where(half, v, second_half), np.sign(v))
-        (mask,) = Campaign.prepare(Rig(), [run]).moving
+        ((_, mask),) = Campaign.prepare(Rig(), [run]).moving
         assert mask[half].mean() > 0.9
         return mask[~half]
 

@@ -12,7 +12,7 @@ from jbf.diagnosis.which_law import followed
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
 from jbf.estimation.settings import DEFAULT as SETTINGS
-from jbf.estimation.transients import check_film
+from jbf.estimation.transients import check_film_rate
 from jbf.models.chain import chain
 
 
@@ -42,7 +42,7 @@ def test_times_in_milliseconds_are_rejected_with_a_hint_at_the_unit(call: Any) -
 def test_laws_without_a_film_accept_times_in_milliseconds() -> None:
     campaign = Campaign.prepare(Rig.thesis(), [IN_MILLISECONDS])
     for law in ("coulomb", "stribeck", "lugre"):
-        check_film(campaign, law, "journal")
+        check_film_rate(campaign, law, "journal")
 
 
 def test_law_selection_excludes_film_laws_if_times_are_in_milliseconds() -> None:
@@ -58,7 +58,7 @@ def test_sampling_too_coarse_for_the_film_is_rejected(share: float, accepted: bo
     step_s = share * SETTINGS.film.max_steps / film_rate_1_s(IN_SECONDS)
     campaign = Campaign.prepare(Rig.thesis(), [sine_run(step_s, 0.01)])
     with nullcontext() if accepted else pytest.raises(InputError, match="time_s"):
-        check_film(campaign, "journal", "journal")
+        check_film_rate(campaign, "journal", "journal")
 
 
 @pytest.mark.parametrize(("share", "accepted"), [(0.9, True), (1.1, False)])
@@ -69,7 +69,7 @@ def test_coarse_sampling_is_accepted_for_few_film_steps(share: float, accepted: 
     assert step_s * film_rate_1_s(IN_SECONDS) > SETTINGS.film.max_steps
     campaign = Campaign.prepare(Rig.thesis(), [sine_run(step_s, 3.0 / duration_s, samples)])
     with nullcontext() if accepted else pytest.raises(InputError, match="time_s"):
-        check_film(campaign, "journal", "journal")
+        check_film_rate(campaign, "journal", "journal")
 
 
 def test_film_rate_check_uses_the_starting_value_given_by_the_user() -> None:
@@ -78,7 +78,7 @@ def test_film_rate_check_uses_the_starting_value_given_by_the_user() -> None:
     assert slower != film_rate_1_s(IN_MILLISECONDS)
     campaign = Campaign.prepare(Rig.thesis(), [IN_MILLISECONDS])
     with pytest.raises(InputError, match=f"{1.0 / slower:.1g} s"):
-        check_film(campaign, "journal", "journal", seed)
+        check_film_rate(campaign, "journal", "journal", seed)
 
 
 # ---- cached film paths of a motion ---------------------------------------------------------------

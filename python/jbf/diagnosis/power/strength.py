@@ -16,7 +16,7 @@ from jbf.estimation.likelihood import effective_share
 from jbf.estimation.noise import estimate_noise
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import common_samples
-from jbf.estimation.variance import sure_inflation
+from jbf.estimation.variance import significant_inflation
 from jbf.models.catalogue import Parameter
 
 Array = npt.NDArray[np.float64]
@@ -173,7 +173,8 @@ class PresentRuns:
         changes = np.split(change, ends)
         random, settings = np.random.default_rng(DRAWS), self.samples.settings.variance
         return tuple(
-            1.0 / sure_inflation(changes, np.split(noise, ends), self.samples.steps_s, settings)
+            1.0
+            / significant_inflation(changes, np.split(noise, ends), self.samples.steps_s, settings)
             for noise in random.standard_normal((DRAWS, len(change)))
         )
 

@@ -16,7 +16,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
-from jbf.estimation.variance import sure_inflation
+from jbf.estimation.variance import significant_inflation
 
 EVALUATIONS = 8
 """Number of evaluations of a fit with a term. It limits the effort only."""
@@ -103,7 +103,7 @@ def independent_fraction(after: Solution, before: Solution) -> float:
     left, was = (s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before))
     ways = [b - e for b, e in zip(was, left, strict=True)]
     settings = after.samples.settings.variance
-    inflation = sure_inflation(ways, left, after.samples.steps_s, settings)
+    inflation = significant_inflation(ways, left, after.samples.steps_s, settings)
     return min(effective_share(after), 1.0 / inflation)
 
 

@@ -17,7 +17,7 @@ from jbf.diagnosis.terms.proposal import Model, Proposal, independent_fraction, 
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.likelihood import noise_at
 from jbf.estimation.problem import Problem
-from jbf.estimation.quantisation import bias_n, origin_n
+from jbf.estimation.quantisation import quantisation_bias, zero_offset
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 
@@ -86,7 +86,9 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
 
     def bias(noise: float) -> list[Array]:
         return [
-            bias_n(step, noise * step, f - origin_n(step, r)) if step else np.zeros(len(r))
+            quantisation_bias(step, noise * step, f - zero_offset(step, r))
+            if step
+            else np.zeros(len(r))
             for step, f, r in zip(
                 (steps.get(p.run.name, 0.0) for p in campaign.prepared), expected, raw, strict=True
             )

@@ -20,7 +20,7 @@ from jbf.diagnosis.terms.proposal import (
 )
 from jbf.estimation.campaign import Campaign
 from jbf.estimation.problem import Problem
-from jbf.estimation.random_effects import BetweenRuns, spread_between
+from jbf.estimation.random_effects import RandomEffects, spread_between
 from jbf.estimation.samples import Samples
 from jbf.estimation.solution import Solution
 from jbf.estimation.variance import robust_size
@@ -86,7 +86,7 @@ def _log_determinant(solution: Solution) -> float:
 
 def _most_significant(
     problem: Problem, solution: Solution, samples: Samples, chance: float
-) -> tuple[BetweenRuns, Finding] | None:
+) -> tuple[RandomEffects, Finding] | None:
     """The random effects of the samples and the most significant additional one.
 
     Only one is added at a time, since a missing random effect resembles another.
@@ -115,9 +115,9 @@ def _most_significant(
     finding = Finding(kind, "friction_n", runs, sd, unit, "a spread of the runs", words)
     own = [c[:, None] * sd for c in column]
     if known is None:
-        return BetweenRuns((name,), tuple(own), sigma), finding
+        return RandomEffects((name,), tuple(own), sigma), finding
     both = tuple(np.hstack(pair) for pair in zip(known.directions, own, strict=True))
-    return BetweenRuns((*known.names, name), both, sigma), finding
+    return RandomEffects((*known.names, name), both, sigma), finding
 
 
 def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[Array]]]:

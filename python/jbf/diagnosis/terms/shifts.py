@@ -18,7 +18,7 @@ from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
-from jbf.estimation.transients import settled_campaign
+from jbf.estimation.transients import without_transients
 
 Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
@@ -92,7 +92,7 @@ def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
         samples=Samples.of(prepared, old.settings),
         more_findings=tuple(f for f in old.more_findings if f.done == "left out"),
     )
-    return settled_campaign(whole, problem.law, problem.clock)
+    return without_transients(whole, problem.law, problem.clock)
 
 
 def without_delay(effects: Names) -> Names:

@@ -7,14 +7,12 @@ noise, the scale of these errors and a common delay of the force are estimated w
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from jbf.estimation.campaign import Campaign
 from jbf.estimation.delays import common_delay_step, delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import WHITE
@@ -229,16 +227,7 @@ def _rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> 
             again = recorded[1].rougher(recorded[0], factor, same_corners=same_corners)
             recorded = (recorded[0], again)
         prepared.append(replace(p, motion=motion, recorded=recorded))
-    return _with(problem, replace(problem.campaign, prepared=tuple(prepared)))
-
-
-def _with(problem: Problem, campaign: Campaign) -> Problem:
-    """Return the problem for another campaign."""
-    again = copy(problem)
-    again.campaign = campaign
-    for cached in ("searched", "thinned"):
-        again.__dict__.pop(cached, None)
-    return again
+    return problem.with_campaign(replace(problem.campaign, prepared=tuple(prepared)))
 
 
 def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMotion:
@@ -364,7 +353,7 @@ def _delayed(first: Problem, late_s: float) -> Problem:
     campaign = replace(
         first.campaign, prepared=prepared, samples=Samples.of(prepared, first.campaign.settings)
     )
-    return _with(first, campaign.with_findings([finding]))
+    return first.with_campaign(campaign.with_findings([finding]))
 
 
 def _moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:

@@ -53,13 +53,13 @@ class OnDemand(Sequence[Array]):
         return self._count
 
     @overload
-    def __getitem__(self, which: int) -> Array: ...
+    def __getitem__(self, index: int) -> Array: ...
     @overload
-    def __getitem__(self, which: slice) -> list[Array]: ...
-    def __getitem__(self, which: int | slice) -> Array | list[Array]:
-        if isinstance(which, slice):
-            return [self._make(i) for i in range(self._count)[which]]
-        return self._make(range(self._count)[which])
+    def __getitem__(self, index: slice) -> list[Array]: ...
+    def __getitem__(self, index: int | slice) -> Array | list[Array]:
+        if isinstance(index, slice):
+            return [self._make(i) for i in range(self._count)[index]]
+        return self._make(range(self._count)[index])
 
 
 def memory_groups(lengths: Sequence[int], width: int) -> list[list[int]]:

@@ -196,10 +196,15 @@ class Problem:
         selection = self.searched
         if len(selection) == len(self.campaign.prepared):
             return self
-        thinned = copy(self)
-        thinned.campaign = self.campaign.only(selection)
-        del thinned.searched
-        return thinned
+        return self.with_campaign(self.campaign.only(selection))
+
+    def with_campaign(self, campaign: Campaign) -> Problem:
+        """Return the problem for another campaign, with the same bounds and starting values."""
+        problem = copy(self)
+        problem.campaign = campaign
+        for cached in ("searched", "thinned"):
+            vars(problem).pop(cached, None)
+        return problem
 
     def _runs(self, selection: Sequence[int] | None) -> Sequence[Prepared]:
         runs = self.campaign.prepared

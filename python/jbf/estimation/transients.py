@@ -100,13 +100,13 @@ def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) ->
         return affected
     gap_steps = problem.campaign.settings.film.gap_steps
     gaps = [_gaps(p, gap_steps) for p in prepared]
-    with_gaps = [i for i, at in enumerate(gaps) if len(at)]
+    with_gaps = [i for i, indices in enumerate(gaps) if len(indices)]
     interpolated = problem.chain.predict(values, [prepared[i].core for i in with_gaps])
     for at_end in (False, True):
         motions = [_through(prepared[i], gaps[i], at_end=at_end) for i in with_gaps]
-        others = problem.chain.predict(values, motions)
-        for i, one, other in zip(with_gaps, interpolated, others, strict=True):
-            affected[i] |= np.abs(other - one) > least_n
+        predictions = problem.chain.predict(values, motions)
+        for i, usual, changed in zip(with_gaps, interpolated, predictions, strict=True):
+            affected[i] |= np.abs(changed - usual) > least_n
     return affected
 
 
@@ -124,8 +124,8 @@ def _through(p: Prepared, gaps: npt.NDArray[np.intp], *, at_end: bool) -> Driven
     instants = np.sort(np.concatenate([time, new]))
     motion = p.motion.at(time, instants)
     velocity, acceleration = motion.velocity.copy(), motion.acceleration.copy()
-    at = np.searchsorted(instants, new)
-    velocity[at], acceleration[at] = speed, 0.0
+    index = np.searchsorted(instants, new)
+    velocity[index], acceleration[index] = speed, 0.0
     motion = replace(motion, velocity=velocity, acceleration=acceleration)
     run = p.run.at(instants, np.interp(instants, time, p.friction))
     return Driven(core_motion(p.rig, run, motion).motion, np.searchsorted(instants, time))

@@ -65,7 +65,7 @@ friction_n = "friction_n"
 motion = "linear"
 friction = "force"
 """
-FILM_WARNING = "jbf: the film of this model answers at "
+FILM_WARNING = "jbf: the film of this model responds at "
 SECONDS = 20
 """Time limit of one command; far longer than any of them takes."""
 

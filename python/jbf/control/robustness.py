@@ -120,14 +120,14 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
             yield Case(
                 f"viscosity {word}", replace(base, rig=replace(base.rig, lubricant=oil)), bench
             )
-    for word, factor in (("x 1.5", 1.5), ("/ 1.5", 1.0 / 1.5)):
+    for word, factor in (("50 % larger", 1.5), ("33 % smaller", 1.0 / 1.5)):
         stronger = replace(bench, volts_per_n=bench.volts_per_n * factor)
         yield Case(f"friction {word}", base, stronger)
     # The position law itself becomes unstable at a gain 17 % above the nominal one.
     for word, factor in (("10 % larger", 1.1), ("10 % smaller", 0.9)):
         motor = replace(bench, input_rad_s2_v=bench.input_rad_s2_v * factor)
         yield Case(f"motor gain {word}", base, motor)
-    yield Case("noise x 4", base, with_noise(bench, 4.0))
+    yield Case("noise quadrupled", base, with_noise(bench, 4.0))
 
 
 def fit_to_simulated_records(base: Model, seen: Model) -> Model:

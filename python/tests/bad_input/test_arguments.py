@@ -28,7 +28,7 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
     "bootstrap of a model": (lambda: jbf.bootstrap(MODEL, [RUN]), "the fit is a Model"),
     "trajectories to fit": (lambda: jbf.fit_trajectories(RIG, [RUN], [T]), "run 0 is a Run"),
     "list of campaigns": (lambda: jbf.diagnose_many([RIG]), "campaigns is a list; give a dict"),
-    "option of diagnose_many": (lambda: jbf.diagnose_many({}, effects=[]), "there is no option"),
+    "option of diagnose_many": (lambda: jbf.diagnose_many({}, effects=[]), "is not known"),
     "model of a control run": (lambda: jbf.control.run("m.toml"), 'jbf.Model.load("m.toml")'),
     "scheme of a control run": (lambda: jbf.control.run(scheme=ANYTHING), "the scheme is None"),
     "effect": (lambda: jbf.fit(RIG, [RUN], ["sensor_ofset"]), 'did you mean "sensor_offset"?'),
@@ -36,7 +36,7 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
     "no run in a plan": (lambda: jbf.planned_power(MODEL, [], noise_rms=0.1), "no run was given"),
     "value nan": (lambda: Model(Rig(), "coulomb", parameters={"F_c": np.nan}), "F_c"),
     "value an array": (lambda: ParameterValue(ANYTHING or np.ones(2)), "a ndarray is not"),
-    "unknown parameter": (lambda: Model(RIG, parameters={"fm": 0.2}), "no parameter"),
+    "unknown parameter": (lambda: Model(RIG, parameters={"fm": 0.2}), "is not known"),
     "load limit nan": (lambda: Limits(load_n=(5.0, float("nan"))), "load_n = nan"),
     "no angle": (lambda: Model(RIG, effects=["position_ripple"]).predict(RUN), "angle_rad"),
 }

@@ -45,13 +45,13 @@ REFUSED: dict[str, tuple[Text, str]] = {
     "empty": ("", "is empty; start with a header"),
     "header without samples": (LINES[0], "has a header but no samples; add the samples"),
     "nine rows": ("\n".join(LINES[:10]), "has 9 samples; a run needs at least 10"),
-    "no header": ("\n".join(LINES[1:]), "row 1: holds numbers where the header should be"),
+    "no header": ("\n".join(LINES[1:]), "row 1: has numbers where the header should be"),
     "a short row": (GOOD + "1.2,0.1\n", "row 62: has 2 cells where the header has 3"),
-    "a quote in a cell": (with_force('"5'), "row 9: a quote is not closed"),
+    "a quote in a cell": (with_force('"5'), "row 9: a quotation mark is not closed"),
     # Headers
     "time missing": (GOOD.replace("time_s", "when"), "row 1, column time_s: is missing; add it"),
     "a unit in the name": (GOOD.replace("time_s", "time_ms"), 'did you mean "time_ms"?'),
-    "twice": (GOOD.replace("velocity_m", "time"), "column time_s: stands twice in the header"),
+    "twice": (GOOD.replace("velocity_m", "time"), "column time_s: is in the header twice"),
     # Cells
     "text": (with_force("abc"), 'row 9, column friction_n: "abc" is not a number'),
     "escapes": (with_force("\x1b[31m"), "\\x1b[31m"),
@@ -60,7 +60,7 @@ REFUSED: dict[str, tuple[Text, str]] = {
     "1e400": (with_force("1e400"), "row 9, column friction_n: inf is not"),
     "decimal comma": (COMMAS, 'row 2, column friction_n: "7,500000" has a decimal comma'),
     # Times
-    "unsorted": (csv_text([ROWS[1], ROWS[0], *ROWS[2:]]), "row 3, column time_s: time runs back"),
+    "unsorted": (csv_text([ROWS[1], ROWS[0], *ROWS[2:]]), "row 3, column time_s: time decreases"),
     "repeated": (csv_text([*ROWS[:5], *ROWS[4:]]), "row 7, column time_s: time repeats at 0.08"),
     # Sizes beyond those of any machine
     "1e160 N": (with_force("1e160"), "row 9, column friction_n: 1e+160"),

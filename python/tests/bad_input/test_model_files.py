@@ -30,7 +30,10 @@ REFUSED: dict[str, tuple[Text, str]] = {
     "inf": (value("inf"), "key parameters.F_c"),
     "1e300": (value("1e300"), "key parameters.F_c"),
     "a long integer": (value("9" * 400), "key parameters.F_c.value: is too large"),
-    "held error": (value("{value = 5.0, stderr = 1, held = true}"), "what is held has no error"),
+    "held error": (
+        value("{value = 5.0, stderr = 1, held = true}"),
+        "a held parameter has no standard error",
+    ),
     "rig a text": (model("[par", 'rig = "rig.toml"\n[par'), "key rig: is not a table"),
     "a bearing's law": (model('"coulomb"', '"journal"'), "parameters."),
 }

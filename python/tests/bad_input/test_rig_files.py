@@ -36,18 +36,18 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "true": (size("radius_m", "true"), "key bearing.radius_m: a bool is not a number"),
     # Sizes
     "nan": (size("radius_m", "nan"), "key bearing.radius_m: nan is not above zero and finite"),
-    "count 2^32": (size("count", "4294967296"), "4294967296 bearings are more than a shaft has"),
+    "count 2^32": (size("count", "4294967296"), "4294967296 bearings exceed the limit"),
     "wide clearance": (size("clearance_m", "0.02"), "0.02 m is not below the radius of 0.0"),
-    "cold": (rig("= 0.002", "= 0.002\ntemperature_c = -300"), "-300.0 is not from -100 to 1000"),
+    "cold": (rig("= 0.002", "= 0.002\ntemperature_c = -300"), "-300.0 is outside -100 to 1000"),
     **{
-        f"{key} of {value}": (size(key, value), f"{key}: {float(value)} is beyond what any machine")
+        f"{key} of {value}": (size(key, value), f"{key}: {float(value)} is not plausible")
         for key in ("radius_m", "length_m", "mass_kg", "viscosity_pa_s", "normal_n")
         for value in ("1e300", "5e-324")
     },
     # Drives
-    "bearing and drive": (RIG + DRIVE, "key drive: stands beside a [bearing]"),
+    "bearing and drive": (RIG + DRIVE, "key drive: cannot be combined with [bearing]"),
     "constant missing": (CURRENT.replace("torque_c", "#"), "torque_constant_n_m_a"),
-    "rotary mass": (CURRENT + "mass_kg = 1.0\n", "mass_kg: means nothing of a rotary drive"),
+    "rotary mass": (CURRENT + "mass_kg = 1.0\n", "mass_kg: does not apply to a rotary drive"),
 }
 
 ACCEPTED = {

@@ -138,7 +138,7 @@ def test_predict_warns_of_a_too_fast_film(tmp_path: Path, runs: Any, capsys: Cap
     files = [str(tmp_path / name) for name in ("fast.toml", "run.csv", "out.csv")]
     assert main(["predict", *files[:2], "--out", files[2]]) == 0
     message = capsys.readouterr().err
-    assert message.startswith("jbf: the film of this model answers at ")
+    assert message.startswith("jbf: the film of this model responds at ")
     assert message.count("\n") == 1
 
 

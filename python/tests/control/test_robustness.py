@@ -88,11 +88,11 @@ def test_fit_of_records_without_a_hidden_effect_recovers_the_model() -> None:
 def test_robustness_cases_with_a_wrong_constant_differ_by_the_factor_they_name() -> None:
     found = all_cases()
     for name, field, factor in (
-        ("friction x 1.5", "volts_per_n", 3 / 2),
-        ("friction / 1.5", "volts_per_n", 2 / 3),
+        ("friction 50 % larger", "volts_per_n", 3 / 2),
+        ("friction 33 % smaller", "volts_per_n", 2 / 3),
         ("motor gain 10 % larger", "input_rad_s2_v", 1.1),
         ("motor gain 10 % smaller", "input_rad_s2_v", 0.9),
-        ("noise x 4", "input_noise_v", 4.0),
+        ("noise quadrupled", "input_noise_v", 4.0),
     ):
         expected = factor * getattr(THESIS_BENCH, field)
         assert getattr(found[name].bench, field) == pytest.approx(expected), name
@@ -116,7 +116,7 @@ EXTENDED_CASES = (
 )
 
 
-@pytest.mark.parametrize("name", ["friction / 1.5", *EXTENDED_CASES])
+@pytest.mark.parametrize("name", ["friction 33 % smaller", *EXTENDED_CASES])
 def test_robustness_ratio_is_the_error_with_over_that_without_compensation(name: str) -> None:
     """A task of 27 s; both loops are designed for the undisturbed bench."""
     case = all_cases()[name]

@@ -145,7 +145,7 @@ def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
     settled = without_transients(campaign, "journal", "journal")
     assert settled.samples.count < campaign.samples.count
     (found,) = (f for f in settled.more_findings if f.run == "a")
-    assert (found.kind, found.done, found.unit) == ("unsettled_start", "set aside", "s")
+    assert (found.kind, found.done, found.unit) == ("unsettled_start", "excluded", "s")
     gone = campaign.samples.counted[0] & ~settled.samples.counted[0]
     assert found.size == pytest.approx(np.ptp(runs[0].time_s[gone]), abs=0.03)
     problems = [Problem(each, "journal", "journal", ()) for each in (settled, campaign)]

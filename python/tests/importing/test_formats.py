@@ -128,7 +128,7 @@ def test_joint_states_in_json_lines_are_rows_with_a_column_for_each_joint(tmp_pa
         lines.append(json.dumps({"header": {"stamp": stamp}, **state}))
     path = tmp_path / "states.jsonl"
     path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(InputError, match="holds the joints 0, 1"):
+    with pytest.raises(InputError, match="contains the joints 0, 1"):
         jbf.look(path)
     with open_source(path) as source:
         head = source.head(source.tables[0])

@@ -179,7 +179,7 @@ def test_each_joint_of_a_recording_is_imported_as_a_separate_campaign(
     for t, x, v, f in samples():
         lines.append(f"{t:.3f},{x:.5f},{2 * x:.5f},{v:.5f},{2 * v:.5f},{f:.4f},{3 * f:.4f}")
     path = written(tmp_path, "\n".join(lines) + "\n")
-    with pytest.raises(InputError, match=f"holds the joints {joints[0]}, {joints[1]}"):
+    with pytest.raises(InputError, match=f"contains the joints {joints[0]}, {joints[1]}"):
         look(path)
     torques = [
         import_files(path, joint=joint, out=tmp_path / joint).runs[0].friction for joint in joints
@@ -196,7 +196,7 @@ def test_channel_without_any_value_is_omitted_from_the_import(tmp_path: Path) ->
     lines += [f"{t:.3f},{f:.3f},{x:.4f},nan" for t, x, _, f in samples()]
     path = written(tmp_path, "\n".join(lines) + "\n")
     found = look(path)
-    assert found.ignored["v [mm/s]"] == "holds no value"
+    assert found.ignored["v [mm/s]"] == "contains no value"
     channels = import_files(path).ledger["files"][0]["channels"]
     assert [c["channel"] for c in channels] == ["position_m", "friction_n"]
 

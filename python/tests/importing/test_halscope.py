@@ -49,8 +49,8 @@ def test_halscope_log_has_the_names_of_its_pins_and_the_rate_of_its_period(tmp_p
 def test_missing_units_of_a_halscope_log_become_questions(tmp_path: Path) -> None:
     write_log(tmp_path / "scope.log")
     asked = questions(jbf.look(tmp_path / "scope.log"))
-    assert "joint.0.motor-pos-fb: no unit is written" in asked
-    assert "drive.torque-fb: no unit is written" in asked
+    assert "joint.0.motor-pos-fb: it has no unit" in asked
+    assert "drive.torque-fb: it has no unit" in asked
     assert "time_s" not in asked
 
 
@@ -67,7 +67,7 @@ def test_missing_columns_and_rate_of_halsampler_output_become_questions(
     asked = questions(jbf.look(path))
     assert "rate_hz" in asked
     assert "which column is the friction" in asked
-    assert "which column is a place or a speed" in asked
+    assert "which column is a position or a speed" in asked
     first = 2 if tagged else 1
     names = {"position": f"column {first}", "force": f"column {first + 1}"}
     (tmp_path / "map.toml").write_text(MAP.format(**names))

@@ -137,7 +137,7 @@ def test_offsets_and_drift_of_three_files_are_recovered_within_a_fifth_of_a_samp
     assert found["temp.csv"]["drift_ppm"] == 0.0
     assert json.loads(Path("campaign/import.json").read_text()) == result.ledger
     text = " ".join(result.summary().split())
-    assert "from 3 files recorded side by side" in text
+    assert "from 3 files recorded together" in text
     assert "force.csv: its clock is 3.219" in text
     assert "s behind drive.csv's at mid-record and " in text
     assert " ppm slow (by drive/pos ~ lvdt: correlation 1.000" in text
@@ -223,7 +223,7 @@ def test_stated_offset_is_added_to_the_times_of_the_file() -> None:
     assert alignments(result)["force.csv"] == {
         "by": "stated",
         "offset_s": 3.217,
-        "text": "its clock is 3.2170 s behind drive.csv's, as the map states; corrected",
+        "text": "its clock is 3.2170 s behind drive.csv's, as stated in the map; corrected",
     }
     (run,) = result.runs
     assert run.time_s[run.read["friction_n"]][0] == pytest.approx(1.0013, abs=1e-6)
@@ -281,7 +281,7 @@ def test_look_reports_a_missing_common_signal_and_proposes_the_only_common_colum
     Path("map.toml").unlink()
     assert main(shlex.split("import drive.csv --beside force.csv --beside temp.csv")) == 0
     text = " ".join(capsys.readouterr().out.split())
-    assert "align.force: these files have clocks of their own" in text
+    assert "align.force: these files have separate clocks" in text
     assert "temp: 11.9" in text
     written = jbf.read_map("map.toml")
     assert [path.name for path in written.beside] == ["force.csv", "temp.csv"]
@@ -311,19 +311,21 @@ def test_files_are_named_relative_to_the_folder_of_the_map() -> None:
 
 def test_file_without_an_alignment_is_refused_with_the_entry_to_add() -> None:
     set_align("")
-    assert refusal('write force = "A ~ B"').startswith("force.csv: its clock and that of drive.csv")
+    assert refusal('write force = "A ~ B"').startswith(
+        "force.csv: its clock is separate from that of drive.csv"
+    )
 
 
 @pytest.mark.parametrize(
     ("line", "fragment"),
     [
-        ('frce = "drive/pos ~ lvdt"', "key align.frce: is no further file"),
-        ('force = "lvdt"', "is no pair of signals"),
+        ('frce = "drive/pos ~ lvdt"', "key align.frce: is not one of the further files"),
+        ('force = "lvdt"', "is not a pair of signals"),
         ('force = "drive/pos ~ drive/pos"', "needs a signal of drive.csv and one of force.csv"),
         ('force = "drive/pos ~ lvdr"', 'no column "lvdr"'),
         ('force = "?"', "is open"),
-        ("force = true", "does not fit"),
-        ("force = nan", "does not fit"),
+        ("force = true", "is not a signal or an offset"),
+        ("force = nan", "is not a signal or an offset"),
         ("force = 5000", "do not overlap"),
     ],
 )
@@ -335,7 +337,7 @@ def test_invalid_alignment_is_refused_in_one_line(line: str, fragment: str) -> N
 def test_time_that_starts_again_in_a_further_file_is_refused() -> None:
     count = len(np.arange(1.0013, DURATION_S - 3.0, 1 / 200))
     write_force(**{"t [s]": np.arange(count) % (count // 2) / 200.0})
-    assert refusal("its time starts again").startswith("force.csv")
+    assert refusal("its time restarts").startswith("force.csv")
 
 
 def test_damaged_rows_of_a_further_file_are_reported_with_its_name() -> None:
@@ -343,7 +345,7 @@ def test_damaged_rows_of_a_further_file_are_reported_with_its_name() -> None:
     lines[500] = lines[500].split(",")[0] + ",x,y"
     Path("force.csv").write_text("\n".join(lines), encoding="utf-8")
     text = " ".join(jbf.import_files("drive.csv", "two.toml").summary().split())
-    assert "force.csv: 1 row left out, for the row is damaged" in text
+    assert "force.csv: 1 row left out: the row is damaged" in text
     assert "the first in row 501" in text
 
 
@@ -351,7 +353,7 @@ BAD_COMMANDS = {
     "import drive.csv --map two.toml --beside none.csv": "none.csv",
     "import drive.csv temp.csv --beside force.csv": "requires a single FILE",
     "import drive.csv temp.csv --map two.toml --folder campaign": "name one main file",
-    "import drive.csv --beside drive.csv": "called drive, too",
+    "import drive.csv --beside drive.csv": "has the name drive",
     "import drive.csv --map two.toml --beside cut.csv.gz --folder campaign": "cut.csv.gz",
     "import drive.csv --beside force.csv --folder campaign": "align.force",
 }

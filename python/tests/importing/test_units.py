@@ -141,10 +141,10 @@ def test_expression_functions_convert_argument_units(text: str, unit: str, known
 @pytest.mark.parametrize(
     ("text", "fragment"),
     [
-        ("sin(3 [N])", "sin of N, which is no angle"),
-        ("cos(2 [rad] * 1 [rad])", "no angle"),
-        ("sqrt(4 [N])", "the root of N has no unit"),
-        ("abs(20 [C])", "has a zero of its own"),
+        ("sin(3 [N])", "sin requires an angle, not N"),
+        ("cos(2 [rad] * 1 [rad])", "requires an angle"),
+        ("sqrt(4 [N])", "the square root of N has no unit"),
+        ("abs(20 [C])", "has an offset zero"),
     ],
 )
 def test_expression_functions_refuse_arguments_with_wrong_units(text: str, fragment: str) -> None:
@@ -188,18 +188,18 @@ def test_expression_of_columns_is_converted_to_the_unit_of_its_target(text: str,
 
 
 REFUSED = {
-    ("F", "friction_n"): "no N",
-    ("F [mm]", "friction_n"): "no N",
-    ("F [counts] / 4096", "angle_rad"): "turns, degrees or radians?",
-    ("F [mm] / 5 [mm]", "angle_rad"): "turns, degrees or radians?",
+    ("F", "friction_n"): "but N is required",
+    ("F [mm]", "friction_n"): "but N is required",
+    ("F [counts] / 4096", "angle_rad"): "revolutions, degrees or radians",
+    ("F [mm] / 5 [mm]", "angle_rad"): "revolutions, degrees or radians",
     ("Kraft / kN * 1000", "friction_n"): "a second time",
     ("t(ms) / 1000", "time_s"): "a second time",
     ("t(ms) * 0.001", "time_s"): "a second time",
     ("F [bar] + F2 [mm]", "friction_n"): "cannot be added",
-    ("F [kg]", "friction_n"): "no N",
+    ("F [kg]", "friction_n"): "but N is required",
     ("F [?]", "friction_n"): "its unit is open",
-    ("F [foo]", "friction_n"): "is no known unit",
-    ("F [°C] * 2", "temperature_c"): "a zero of its own",
+    ("F [foo]", "friction_n"): "is not known",
+    ("F [°C] * 2", "temperature_c"): "an offset zero",
     ("G", "friction_n"): 'no column "G"',
     ("F +", "friction_n"): "ends where",
     ("(F", "friction_n"): "not closed",

@@ -25,7 +25,7 @@ def test_unsupported_format_is_refused_with_its_name_and_a_remedy(
             format_of(path)
         line = str(refused.value)
         assert line.startswith(f"{path}: is {known.name}")
-        assert line.endswith(f"which is not read; {known.mend}")
+        assert line.endswith(f"which is not supported; {known.mend}")
         assert "\n" not in line
 
 
@@ -40,7 +40,9 @@ def test_look_at_an_unsupported_format_exits_with_2_and_a_one_line_message(tmp_p
     command = [sys.executable, "-m", "jbf", "import", str(path)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 2
-    assert "TwinCAT Scope recording (.svdx), which is not read; export it as CSV" in done.stderr
+    assert (
+        "TwinCAT Scope recording (.svdx), which is not supported; export it as CSV" in done.stderr
+    )
     assert len(done.stderr.strip().splitlines()) == 1
     assert [p.name for p in tmp_path.iterdir()] == ["axis.svdx"]
 

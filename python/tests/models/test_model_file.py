@@ -78,8 +78,8 @@ def test_hand_written_model_file_is_read_with_all_its_sections(path: Path) -> No
 
 
 BAD = [
-    ("format = 1", "format = 2", "key format", "is not one this jbf reads; write format = 1"),
-    ("format = 1", "format = true", "key format", "is not one this jbf reads"),
+    ("format = 1", "format = 2", "key format", "is not supported by this version of jbf; write format = 1"),
+    ("format = 1", "format = true", "key format", "is not supported by this version"),
     ("format = 1\n", "", "key format", "is missing; write format = 1"),
     ('law = "journal"\n', "", "key law", 'is missing; write law = "NAME"'),
     ('law = "journal"', "law = 3", "key law", "is not text"),
@@ -103,8 +103,8 @@ BAD = [
     ("33", "{}", "key parameters.gamma.value", "is missing; write { value = 0.26 }"),
     ("value = 0.26, ", "", "key parameters.f_m.value", "is missing; write { value"),
     ("stderr", "stder", "key parameters.f_m.stder", 'did you mean "stderr"?'),
-    ("0.002 }", "-0.002 }", "key parameters.f_m.stderr", "is negative; drop the sign"),
-    ('"guess"', "3", "key parameters.coulomb_drag.F_d.note", "is not text; put it in quotes"),
+    ("0.002 }", "-0.002 }", "key parameters.f_m.stderr", "is negative; remove the sign"),
+    ('"guess"', "3", "key parameters.coulomb_drag.F_d.note", "is not text; put it in quot"),
     ("radius_m = 0.0127", "radius_m = 0", "key rig.bearing.radius_m", "is not above zero"),
     ("[rig.load]", "[rig.lod]", "key rig.lod", 'did you mean "load"?'),
     ("normal_n = 104.0", "", "key rig.load.normal_n", "is missing; add it to [rig.load]"),

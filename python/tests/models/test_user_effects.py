@@ -213,14 +213,14 @@ def test_user_effect_that_is_analytic_is_differentiated_by_a_complex_step() -> N
     ("change", "message"),
     [
         ({"name": "coulomb_drag"}, "is in the catalogue already"),
-        ({"name": "no name"}, "has no proper name"),
-        ({"stage": "film"}, 'cannot act at the stage "film"; choose other or instrument'),
+        ({"name": "no name"}, "has an invalid name"),
+        ({"stage": "film"}, 'cannot be at the stage "film"; choose other or instrument'),
         ({"parameters": []}, "has no parameters"),
         ({"parameters": [Parameter("k_n_k", starts=(0.1,))]}, "without bounds"),
         ({"parameters": [Parameter("k_n_k", lower=0, upper=1, null=0)]}, "starting value"),
         ({"parameters": [Parameter("k_n_k", lower=0, upper=1, starts=(0.5,))]}, "never vanishes"),
         ({"parameters": [HEAT, Parameter("b", lower=0, upper=1, starts=(0.5,))]}, "parameter b"),
-        ({"parameters": [HEAT, HEAT]}, "two parameters of one name"),
+        ({"parameters": [HEAT, HEAT]}, "two parameters of the same name"),
     ],
 )
 def test_registration_of_an_invalid_effect_is_refused(change: dict[str, Any], message: str) -> None:
@@ -235,8 +235,8 @@ FACTOR = Parameter("a", lower=-1.0, upper=1.0, null=0.0, starts=(0.5,))
 @pytest.mark.parametrize(
     ("body", "message"),
     [
-        (lambda time_s, a: a * time_s[:-1], "gives shape"),
-        (lambda time_s, a: a / (time_s * 0.0), "gives (nan|inf|-inf) at sample 0 with a = 0.5"),
+        (lambda time_s, a: a * time_s[:-1], "returns shape"),
+        (lambda time_s, a: a / (time_s * 0.0), "returns (nan|inf|-inf) at sample 0 with a = 0.5"),
         (lambda time_s, a: str(a), "gives <U"),
         (lambda time_s, a: {}[a], "the effect bad fails: KeyError"),
     ],
@@ -267,7 +267,7 @@ def test_commands_require_an_option_to_load_a_user_effect(tmp_path: Path, capsys
     option = ["--effects-from", str(tmp_path / "mine.py")]
     rig, model, runs = (str(tmp_path / name) for name in ("rig.toml", "m.toml", "*.csv"))
     assert main(["effects", *option]) == 0
-    assert "[your own, other friction]" in capsys.readouterr().out
+    assert "[user-defined, other friction]" in capsys.readouterr().out
     assert main(["effects", "cooler", *option, "--json", str(tmp_path / "page.json")]) == 0
     assert "temperature_c" in capsys.readouterr().out
     assert main(["fit", rig, runs, "--effects", "cooler", "--out", model, *option]) == 0

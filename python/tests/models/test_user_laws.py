@@ -125,8 +125,8 @@ def test_export_of_a_model_with_a_user_law_is_refused(law: str) -> None:
     ("options", "fragment"),
     [
         ({"name": "lugre"}, 'the law "lugre" is in the catalogue already'),
-        ({"name": "auto"}, "has no proper name"),
-        ({"name": "my law"}, "has no proper name"),
+        ({"name": "auto"}, "has an invalid name"),
+        ({"name": "my law"}, "has an invalid name"),
         ({"parameters": [Parameter("F_c", "N", starts=(1.0,))]}, "without bounds"),
     ],
 )

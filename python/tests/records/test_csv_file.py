@@ -71,7 +71,7 @@ def test_unknown_csv_columns_are_read_if_all_their_cells_are_finite_numbers(writ
         ("friction_n", "pressure", "friction_n", "the header has time_s, angle_rad"),
         ("angle_rad", "angle_deg", "angle_deg", "angle_rad"),
         ("load_n", "load", "load", "load_n"),
-        ("load_n", "friction_n", "friction_n", "rename or drop"),
+        ("load_n", "friction_n", "friction_n", "rename or remove"),
     ],
 )
 def test_invalid_csv_header_is_reported_with_column_and_remedy(
@@ -122,7 +122,7 @@ def test_row_of_an_invalid_cell_is_counted_with_comments_and_blank_lines(write: 
         (ROWS, 1, "numbers"),
         ([line.replace(",", " ") for line in [HEADER, *ROWS]], 1, "blanks"),
         (DECIMAL_COMMA, 2, "decimal comma"),
-        ([HEADER, *ROWS[:3], '"0.06,0.3', *ROWS[4:]], 5, "quote"),
+        ([HEADER, *ROWS[:3], '"0.06,0.3', *ROWS[4:]], 5, "quotation"),
         (["a\0b"], None, "binary"),
     ],
 )

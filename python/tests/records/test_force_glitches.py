@@ -48,7 +48,7 @@ def test_force_glitch_size_is_the_largest_distance_from_the_neighbours_mean() ->
     assert places(mask) == [200, 500, 700]
     assert finding.size == pytest.approx(abs(force[500] - 0.5 * (force[499] + force[501])))
     assert (finding.kind, finding.channel, finding.run) == ("glitches", "friction_n", "a")
-    assert (finding.unit, finding.done) == ("N", "set aside")
+    assert (finding.unit, finding.done) == ("N", "excluded")
 
 
 @pytest.mark.parametrize(

@@ -98,5 +98,5 @@ def test_finding_of_time_stamp_jitter_states_which_instants_are_used(even: bool)
     path = quantised(path_of(read), 1e-6)
     motion = estimate_motion(Run.from_arrays(stamped, position_m=path), None)
     (done,) = (f.done for f in motion.findings if f.kind == "jitter")
-    assert ("even clock" in done) == even
+    assert ("regular clock" in done) == even
     assert (motion.clock_s is not None) == even

@@ -58,7 +58,7 @@ def test_units_and_radius_of_a_rig_follow_from_its_bearing_or_drive() -> None:
         ("0.002", "nan", "lubricant.viscosity_pa_s", "finite"),
         ("0.002", "0.002\ntemperature_c = 1000.1", "lubricant.temperature_c", "-100 to 1000"),
         ("5.08e-5", "0.0127", "bearing.clearance_m", "radius"),
-        ("= 4 ", "= 4.0 ", "bearing.count", "whole number"),
+        ("= 4 ", "= 4.0 ", "bearing.count", "integer"),
         ("= 4 ", "= 1001 ", "bearing.count", "1001"),
         ("[load]\n", "load = 3\n", "lubricant.load", "not known"),
     ],

@@ -26,7 +26,7 @@ def test_noise_floor_of_a_command_is_unknown_and_no_error_is_relative_to_it(digi
     assert comparison.to_dict()["noise_rms"] is None
     assert comparison.rms > 0.1
     for text in (comparison.summary(), repr(comparison)):
-        assert "not known" in text
+        assert "unknown" in text
         assert "times the noise" not in text
 
 

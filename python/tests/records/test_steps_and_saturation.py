@@ -118,7 +118,7 @@ def test_noise_free_force_with_or_without_a_plateau_has_no_saturation(force: Arr
 def test_saturation_finding_has_the_largest_limit_of_both_directions() -> None:
     (finding,), _ = find_saturation(run_of(clipped(-8.0, 9.0)))
     assert (finding.kind, finding.channel) == ("saturation", "friction_n")
-    assert (finding.size, finding.unit, finding.done) == (9.0, "N m", "set aside")
+    assert (finding.size, finding.unit, finding.done) == (9.0, "N m", "excluded")
     assert find_saturation(run_of(clipped(low=-8.0)))[0][0].size == 8.0
     assert find_saturation(run_of(clipped()))[0] == []
 

@@ -93,7 +93,7 @@ def test_unit_and_sign_in_import_form_change_the_numbers_and_the_map(client: Tes
     assert 'friction_n = "-`Force [N]` [mN]"' in result["map"]
     # Lines that the form leaves unchanged keep their text.
     assert 'time_s = "`Time [ms]`"' in result["map"]
-    assert "# its name and its unit" in result["map"]
+    assert "# by name and unit" in result["map"]
 
 
 def test_friction_in_percent_requires_the_rated_force_of_the_drive(client: TestClient) -> None:
@@ -118,7 +118,7 @@ def test_import_form_with_two_columns_for_one_quantity_is_refused(client: TestCl
     rows = [{**row, "key": "time_s"} for row in outcome["form"]["rows"]]
     answer = preview_with_form(client, outcome["map"], rows)
     assert answer.status_code == 422
-    assert "two columns are the time" in answer.json()["error"]
+    assert "two columns are assigned to time" in answer.json()["error"]
 
 
 @pytest.mark.parametrize("text", ["[columns", "", "[columns]\ntime_s = 3\n", "x = 1"])

@@ -43,7 +43,7 @@ def test_server_on_an_occupied_port_reports_the_port() -> None:
     listener.listen()
     port = int(listener.getsockname()[1])
     try:
-        with pytest.raises(InputError, match=f"port {port} cannot be had"):
+        with pytest.raises(InputError, match=f"port {port} is not available"):
             listening(port)
     finally:
         listener.close()

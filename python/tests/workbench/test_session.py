@@ -204,10 +204,10 @@ def test_model_selected_during_a_comparison_is_compared_later(fitted: Session) -
 @pytest.mark.parametrize(
     ("text", "key"),
     [
-        ("{", "is no JSON"),
-        ("[]", "is not of the format"),
-        ('{"format": "jbf workbench 9"}', "is not of the format"),
-        ('{"format": "jbf workbench 1"}', "is broken"),
+        ("{", "is not valid JSON"),
+        ("[]", "does not have the format"),
+        ('{"format": "jbf workbench 9"}', "does not have the format"),
+        ('{"format": "jbf workbench 1"}', "is not valid"),
         ('{"format": "jbf workbench 1", "rig": "../rig.toml", "runs": []}', "not a name"),
         ('{"format": "jbf workbench 1", "rig": "gone.toml", "runs": ["a.csv"]}', "does not exist"),
     ],
@@ -245,7 +245,8 @@ def test_diagnosis_cancelled_twice_ends_without_a_model(loaded: Session) -> None
 
 
 @pytest.mark.parametrize(
-    ("span", "words"), [((0.0, 0.05), "samples would be left"), ((float("nan"), 1.0), "no number")]
+    ("span", "words"),
+    [((0.0, 0.05), "samples would remain"), ((float("nan"), 1.0), "not a number")],
 )
 def test_trim_to_few_samples_or_with_nan_is_refused(
     loaded: Session, span: tuple[float, float], words: str

@@ -141,7 +141,7 @@ def test_box_with_only_a_lower_speed_limit_selects_all_faster_samples(loaded: Se
 
 
 def test_selection_by_a_mark_is_refused_without_a_model(loaded: Session) -> None:
-    with pytest.raises(InputError, match="no such model"):
+    with pytest.raises(InputError, match="does not exist"):
         views.brushed(loaded, None, {"mark": 0}, ["stopgo"], SIZE)
 
 

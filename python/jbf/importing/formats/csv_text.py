@@ -238,11 +238,7 @@ class TextSource(Source):
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return the rows of words among the samples, and the damaged rows."""
-        words = (
-            [(len(self._words), "the row contains only words", self._words[0])]
-            if self._words
-            else []
-        )
+        words = [(len(self._words), "only words", self._words[0])] if self._words else []
         return [*words, *self._damage.skipped_rows()]
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
@@ -323,10 +319,7 @@ class TextSource(Source):
                 continue
             if not dialect.is_number(cell):
                 other = "," if dialect.decimal == "." else "."
-                mend = (
-                    f'correct the cell, or set empty = ["{cell}"] under [file] if '
-                    "it marks a missing value"
-                )
+                mend = f'correct the cell; a missing value needs empty = ["{cell}"] under [file]'
                 if Dialect(dialect.delimiter, other).is_number(cell):
                     mend = "use one decimal mark in all cells"
                 problem = f"{quoted(cell)} is not a number"

@@ -162,7 +162,7 @@ def test_edited_cut_file_renames_and_shortens_a_run(tmp_path: Path) -> None:
 INVALID_CUT_FILES = {
     'pieces = [{ name = "a", file = "other.csv", from_s = 0.0, to_s = 9.0 }]': "is not imported",
     'pieces = [{ name = "a", file = "log.csv", from_s = 9.0, to_s = 1.0 }]': "contains no samples",
-    'pieces = [{ name = "a/b", file = "log.csv", from_s = 0.0, to_s = 9.0 }]': "not a valid file name",
+    'pieces = [{ name = "a/b", file = "log.csv", from_s = 0.0, to_s = 9.0 }]': "not a valid file",
     'pieces = [{ name = "a", file = "log.csv", from_s = 0.0 }]': "to_s: is missing",
     'pieces = [{ name = "a", file = "log.csv", from_s = 0.0, to_s = 9.0, stretch = 3 }]': "stre",
     'pieces = [{ name = "a", file = "log.csv", from_s = 0.0, to_s = 9.0, kep = true }]': "kep",

@@ -78,7 +78,7 @@ def test_hand_written_model_file_is_read_with_all_its_sections(path: Path) -> No
 
 
 BAD = [
-    ("format = 1", "format = 2", "key format", "is not supported by this version of jbf; write format = 1"),
+    ("format = 1", "format = 2", "key format", "of jbf; write format = 1"),
     ("format = 1", "format = true", "key format", "is not supported by this version"),
     ("format = 1\n", "", "key format", "is missing; write format = 1"),
     ('law = "journal"\n', "", "key law", 'is missing; write law = "NAME"'),

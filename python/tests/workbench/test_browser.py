@@ -45,8 +45,8 @@ def models(page: Page) -> list[dict[str, float | None]]:
     texts = page.locator("#models [data-key^=model-] small").all_inner_texts()
     result = []
     for text in texts:
-        inside, outside = text.split("; left out ")
-        result.append({"rms": float(inside.split()[0]), "left_out": float(outside)})
+        inside, outside = text.split("; held out ")
+        result.append({"rms": float(inside.split()[0]), "held_out": float(outside)})
     return result
 
 
@@ -71,7 +71,7 @@ def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path:
         assert_page_fits_the_window(page)
 
         open_tab(page, 2)
-        page.wait_for_selector("text=The records alone")
+        page.wait_for_selector("text=Data only")
         open_tab(page, 3)
         press_by_keyboard(page, "fit-law")
         await_models(page, 1)
@@ -89,12 +89,12 @@ def test_demo_can_be_fitted_diagnosed_saved_and_resumed_in_the_browser(tmp_path:
         leader = page.locator("[data-key^=add-]").first
         name = str(leader.get_attribute("data-key")).removeprefix("add-")
         click(page, f"sketch-{name}")
-        page.wait_for_selector(f"text=/^{name} on .* times its usual strength/")
+        page.wait_for_selector(f"text=/^{name} on .* times its typical strength/")
         leader.click()
         await_models(page, 2)
         before, after = models(page)
         assert after["rms"] < 0.7 * before["rms"]
-        assert after["left_out"] < 0.7 * before["left_out"]
+        assert after["held_out"] < 0.7 * before["held_out"]
         assert page.locator("svg[aria-label='error of each model'] rect.bar").count() == 4
         assert page.locator(f"svg text >> text='+ {name}'").count() == 1
 
@@ -166,7 +166,7 @@ def test_keyboard_reaches_every_control_visibly_and_selects_samples(tmp_path: Pa
         page.keyboard.press("Enter")
         page.wait_for_selector("text=/^Selected: [1-9][0-9]* samples/")
         page.keyboard.press("Escape")
-        page.wait_for_selector("text=/^Select by dragging/")
+        page.wait_for_selector("text=/^Drag in any plot/")
         assert messages.complaints == []
 
 
@@ -240,7 +240,7 @@ def test_browser_imports_trims_and_fits_uploaded_recordings(tmp_path: Path) -> N
         assert first.get_attribute("data-key") == "add-inertia"
         click(page, "add-inertia")
         await_models(page, 2)
-        assert models(page)[1]["left_out"] < 0.33
+        assert models(page)[1]["held_out"] < 0.33
         open_tab(page, 4)
         click(page, "keep-model")
         page.wait_for_selector("text=/^Written: model.toml/")

@@ -75,8 +75,8 @@ def score_text(tables: Tables) -> str:
     ]
     lines = [
         f"Fitted: the seven cells without compensation, largest deviation {100.0 * worst:.0f} %.",
-        f"Predicted: {tables.within(2.0)} of {len(tables.predicted)} cells within a "
-        f"factor of 2, {tables.within(1.5)} within 1.5.",
+        f"Predicted: {len(tables.predicted)} cells, {tables.within(2.0)} within a factor of 2, "
+        f"{tables.within(1.5)} within 1.5.",
     ]
     if far:
         lines.append(f"Larger deviations: {'; '.join(far)}.")

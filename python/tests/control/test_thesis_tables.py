@@ -163,11 +163,11 @@ def test_each_changed_assumption_alters_only_the_table_columns_that_it_concerns(
     found = dict(assumptions(base))
     assert len(found) == 9
     unchanged = {
-        "the rig's scale, elastic belt": {"none", "learning", "coulomb", "observed"},
+        "scale of the rig, elastic belt": {"none", "learning", "coulomb", "observed"},
         "scale 3.5 V": {"none", "coulomb", "observed"},
         "k_F 0.02": {"none", "learning", "observed"},
-        "nothing elastic": {"observed"},
-        "first seconds counted": {"observed"},
+        "no elasticity": {"observed"},
+        "with the first seconds": {"observed"},
     }
     for name, columns in unchanged.items():
         for column in ("none", "learning", "coulomb", "observed"):
@@ -175,5 +175,5 @@ def test_each_changed_assumption_alters_only_the_table_columns_that_it_concerns(
             assert same == (column in columns), (name, column)
     # Fewer cells agree with the friction scale of the listings than with that of the rig.
     assert found["scale 25.5 V, as listed"].within(2.0) < base.within(2.0)
-    assert found["nothing elastic"].model.effects == ()
+    assert found["no elasticity"].model.effects == ()
     assert found["elastic contact, no belt"].model.effects == ("presliding",)

@@ -201,19 +201,21 @@ def test_deviation_of_a_signed_parameter_is_reported_in_its_unit(more: float, wo
     """One of four runs has 8 N s/m more viscous friction, or 6 more than in the common fit."""
     problem, solution = solved(lambda t, v, a: coulomb(t, v, a) + more * v, 0.05)
     (found,) = find_disagreement(problem, solution, DEFAULT)
-    (change,) = numbers_in(rf"run d asks for F_v (\S+) N s/m {words}", found.where)
+    (change,) = numbers_in(rf"run d fits best with F_v (\S+) N s/m {words}", found.where)
     assert change == pytest.approx(6.0, rel=0.25)
 
 
-@pytest.mark.parametrize(("step", "size"), [(2.99, "%"), (3.01, "large"), (-3.01, "small")])
-def test_parameter_change_over_twentyfold_is_reported_as_many_times(step: float, size: str) -> None:
+@pytest.mark.parametrize(("step", "size"), [(2.99, "%"), (3.01, "larger"), (-3.01, "smaller")])
+def test_parameter_change_over_twentyfold_is_reported_without_a_number(
+    step: float, size: str
+) -> None:
     """The search variable is the logarithm of the dry friction of 5 N."""
     orthogonal = ALTERNATING - np.mean(ALTERNATING)
     residuals = [orthogonal + step * 5.0 * LEVEL, orthogonal]
     words = run_specific_step(*solution_with(one_way(2), residuals), "a")
     assert words.startswith("F_c")
     assert size in words
-    assert ("many times" in words) == (size != "%")
+    assert ("much" in words) == (size != "%")
 
 
 def test_disagreement_is_reported_with_its_share_and_runs_in_order_of_size() -> None:
@@ -224,7 +226,7 @@ def test_disagreement_is_reported_with_its_share_and_runs_in_order_of_size() -> 
     assert found.axis == "parameters"
     assert found.share == pytest.approx((statistic.gain - statistic.degrees) / (5 * N))
     assert list(statistic.by_run)[:2] == ["b", "e"]
-    assert "run b asks for" in found.where
+    assert "run b fits best with" in found.where
     assert re.search(r"next: e, [ad]\)", found.where)
     agreeing = [ALTERNATING + a for a in (0.02, 0.0, 0.01, 0.0, 0.03)]
     assert find_disagreement(*solution_with(one_way(5), agreeing), DEFAULT) == []
@@ -259,4 +261,4 @@ def test_run_with_an_eight_percent_larger_force_is_reported_as_deviating() -> No
     rig, runs, _ = simulated(11)
     changed = replace(runs[2], friction=1.08 * np.asarray(runs[2].friction))
     (found,) = find_disagreement(*fitted(rig, [*runs[:2], changed, *runs[3:]]), DEFAULT)
-    assert f"run {runs[2].name} asks for" in found.where
+    assert f"run {runs[2].name} fits best with" in found.where

@@ -141,7 +141,7 @@ def test_diagnose_command_writes_json_and_models_of_many_folders(
     ("words", "problem"),
     [
         (["diagnose"], "RIG and RUN are missing"),
-        (["diagnose", "--many", "nowhere"], "holds no campaign"),
+        (["diagnose", "--many", "nowhere"], "contains no campaign"),
         (["diagnose", "rig.toml", "--many", "."], "excludes"),
         (["diagnose", "--many", ".", "--jobs", "0"], "1 or more"),
     ],

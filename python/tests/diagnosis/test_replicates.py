@@ -62,7 +62,7 @@ def test_error_that_recurs_with_the_motion_is_reported_with_its_share(unit: floa
     (found,) = recurring_in(residual)
     assert found.axis == "period"
     assert found.share == pytest.approx(1.44 / 2.44, rel=1e-6)
-    assert "77 % of the residual's RMS" in found.where
+    assert "77 % of the residual RMS" in found.where
     assert recurring_in(unit * not_recurring(N)) == []
     for part, there in ((0.99, True), (1.01, False)):
         assert bool(recurring_in(residual, **{"replicates.min_share": part * 1.44 / 2.44})) == there

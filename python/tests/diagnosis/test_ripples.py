@@ -64,7 +64,7 @@ def ripples_in(campaign: Campaign, signals: list[Array], share: float = 1e-6) ->
 
 def pitch_and_size(found: Remainder) -> tuple[float, float]:
     """Pitch (m) and amplitude (N) stated in a description."""
-    pitch_m, size_n = numbers_in(r"every ([\d.e+-]+) m.*?, ([\d.e+-]+) N,", found.where)
+    pitch_m, size_n = numbers_in(r"period ([\d.e+-]+) m.*?, ([\d.e+-]+) N;", found.where)
     return pitch_m, size_n
 
 
@@ -201,4 +201,5 @@ def test_ripple_is_described_by_periods_per_turn_if_the_drive_turns(
     campaign = slides([np.where(np.arange(N) < N // 2, v, -v) for v in SPEEDS_M_S], rig=rig)
     (found,) = ripples_in(campaign, waves(campaign, [1.0] * 5, pitch=pitch))
     assert found.where.startswith(f"a {noun}")
-    assert numbers_in(r"([\d.]+) times a turn", found.where) == pytest.approx([per_turn], rel=0.01)
+    found_per_turn = numbers_in(r"([\d.]+) per revolution", found.where)
+    assert found_per_turn == pytest.approx([per_turn], rel=0.01)

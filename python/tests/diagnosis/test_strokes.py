@@ -106,7 +106,7 @@ def test_stroke_levels_agree_with_a_weighted_analysis_of_variance() -> None:
     ratio, share, degrees = anova(campaign, residuals)
     (found,) = levels_in(campaign, residuals)
     assert found.share == pytest.approx(share)
-    assert f"({round(ratio)} times" in found.where
+    assert f"(F = {round(ratio)})" in found.where
     chance = float(stats.f.sf(ratio, degrees, degrees))
     for part in (0.99, 1.01):
         significant = levels_in(campaign, residuals, **{"constancy.chance": part * chance})
@@ -121,7 +121,7 @@ def test_standard_deviation_of_stroke_levels_is_recovered() -> None:
     sizes: list[float] = []
     for seed in range(10):
         (found,) = levels_in(campaign, with_levels(campaign, 0.08, seed))
-        sizes.extend(numbers_in(r"by ([\d.]+) % from stroke to stroke", found.where))
+        sizes.extend(numbers_in(r"by ([\d.]+) % RMS", found.where))
     assert np.mean(sizes) == pytest.approx(8.0, rel=0.15)
 
 

@@ -106,7 +106,7 @@ def missing_requirement(effect: str, *runs: Run) -> str | None:
 def test_effect_is_excluded_if_loads_do_not_differ_or_a_run_has_no_position() -> None:
     loaded = [make(load_n=np.full(N, load)) for make, load in ((run, 80.0), (other, 120.0))]
     assert missing_requirement("zero_load_dependence", *loaded) is None
-    assert "one load" in str(missing_requirement("zero_load_dependence", loaded[0]))
+    assert "same load" in str(missing_requirement("zero_load_dependence", loaded[0]))
     assert (
         missing_requirement("stroke_dependence", run(position_m=PATH), other(position_m=PATH))
         is None

@@ -116,7 +116,7 @@ def test_fit_rejects_unknown_names_values_out_of_range_and_unusable_runs() -> No
         ("gama", (rig, runs), {"fixed": {"gama": 3.0}}),
         ("out of range", (rig, runs), {"start": {"gamma": -3.0}}),
         ("no run", (rig, []), {}),
-        ("one load", (Rig(), there_and_back(along(0.0))), loads),
+        ("same load", (Rig(), there_and_back(along(0.0))), loads),
     ):
         with pytest.raises(InputError, match=reason):
             fit(*arguments, **options)

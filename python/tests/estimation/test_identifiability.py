@@ -65,7 +65,7 @@ def test_only_confounded_parameters_and_those_without_influence_are_held() -> No
     found = fit(Rig(), RUNS, law="seven_parameter")
     notes = notes_of(found)
     # The last point of the search in its flat valley determines which of two notes is given.
-    assert notes["v_s"] == NOT_SEPARATE or "larger than itself" in notes["v_s"]
+    assert notes["v_s"] == NOT_SEPARATE or "exceeds its value" in notes["v_s"]
     assert notes["gamma_s"] == notes["k_t"] == NEVER_MOVED
     friction = found.parameters["F_c"]
     assert abs(friction.value - LAW["F_c"]) < 3.0 * friction.stderr < 0.3
@@ -257,7 +257,7 @@ def test_scale_below_its_error_is_reported_with_an_upper_limit_of_two_errors(
     page: Parameter, value: float, error: float, largest: float | None
 ) -> None:
     note = str(reason_not_identifiable(page, value, error))
-    assert "larger than itself" in note
+    assert "exceeds its value" in note
     assert ("below" in note) == (largest is not None)
     assert largest is None or float(note.split()[-1]) == pytest.approx(largest, rel=0.05)
 

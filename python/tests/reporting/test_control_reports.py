@@ -35,7 +35,7 @@ def test_loop_status_states_the_share_of_samples_with_each_flag(loop: Result) ->
     for flags, expected in (
         ([0, 0, 0, 0], "ok"),
         ([SATURATED, 0, 0, 0], "saturated 25 %"),
-        ([FROZEN | FALLBACK, FALLBACK, 0, 0], "encoder frozen 25 %, control law alone 50 %"),
+        ([FROZEN | FALLBACK, FALLBACK, 0, 0], "encoder frozen 25 %, control law only 50 %"),
         ([JUMPED, NOT_FINITE, SATURATED, SATURATED], THREE_FLAGS),
     ):
         assert status_words(replace(loop, status=np.array(flags, dtype=np.uint8))) == expected

@@ -36,7 +36,7 @@ def test_summary_of_a_computed_diagnosis_has_verdict_errors_and_estimates(name: 
     assert all(effect in lines[0] for effect in diagnosis.effects)
     last = diagnosis.steps[-1]
     errors = [
-        float(x) for x in cells(lines, f"+ {last.effects[-1]}" if last.effects else "bare law")[1:]
+        float(x) for x in cells(lines, f"+ {last.effects[-1]}" if last.effects else "base law")[1:]
     ]
     expected = [last.rms, last.held_out_rms, last.noise_rms, last.held_out_rms / last.noise_rms]
     assert errors == pytest.approx(expected, rel=6e-3)

@@ -85,4 +85,4 @@ def test_file_of_a_run_is_listed_with_its_hash_or_as_missing(tmp_path: Path) -> 
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     assert file_rows([run_of("x"), run]) == [("a", str(path), digest[:16])]
     path.unlink()
-    assert file_rows([replace(run, name="b")]) == [("b", str(path), "no longer there")]
+    assert file_rows([replace(run, name="b")]) == [("b", str(path), "no longer present")]

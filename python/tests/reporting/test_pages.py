@@ -118,7 +118,7 @@ def test_diagnosis_page_begins_with_the_verdict_and_the_ledger() -> None:
 
 
 def test_diagnosis_page_lists_the_errors_of_each_step_of_the_ledger() -> None:
-    bare = ["bare law", "2.50", "2.75", "0.500", "5.50"]
+    bare = ["base law", "2.50", "2.75", "0.500", "5.50"]
     added = ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"]
     assert page("missing").below(*LEDGER) == [bare, added]
     torques = [cell.replace("(N)", "(N m)") for cell in LEDGER]
@@ -126,7 +126,7 @@ def test_diagnosis_page_lists_the_errors_of_each_step_of_the_ledger() -> None:
 
 
 def test_diagnosis_page_has_the_rms_of_each_run_under_bare_law_and_final_model() -> None:
-    both = ("run", "samples", "bare law (N)", "final model (N)", "final / noise")
+    both = ("run", "samples", "base law (N)", "final model (N)", "final / noise")
     there, back = page("missing").below(*both)
     assert there == ["there", "501", "2.00", "0.450", "0.90"]
     assert back == ["back", "500", "3.00", "0.600", "1.20"]
@@ -145,7 +145,7 @@ def test_diagnosis_page_tabulates_candidates_with_a_gain_and_names_the_others() 
 
 def test_diagnosis_page_lists_candidates_under_each_step_that_tried_them() -> None:
     headings = re.findall(r"<h3>Added to the (.*?)</h3>", html_of("missing"))
-    assert headings == ["bare law", "bare law + sensor_offset"]
+    assert headings == ["base law", "base law + sensor_offset"]
     assert len(re.findall("inertia</td>", html_of("missing"))) == 2
 
 

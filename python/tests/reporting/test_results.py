@@ -139,7 +139,7 @@ def test_fit_parameter_is_accessible_by_name() -> None:
     assert "F_v" in fit
     assert "F_x" not in fit
     assert list(fit) == list(fit.parameters)
-    with pytest.raises(InputError, match="there is no parameter"):
+    with pytest.raises(InputError, match="is not known"):
         fit["F_w_n"]
 
 

@@ -73,8 +73,8 @@ def test_name_of_a_step_lists_the_effects_that_it_added_and_removed() -> None:
     steps = tuple(Step(names, 1.0, 1.0, 1.0) for names in effects)
     diagnosis = replace(diagnosis_by_hand("missing"), steps=steps)
     names = [step_name(diagnosis, i) for i in range(len(steps))]
-    assert names == ["bare law", "+ a", "+ b, + c", "- a", "refitted", "+ d, - c"]
-    assert step_name(replace(diagnosis, steps=steps[2:]), 0) == "bare law + a, b, c"
+    assert names == ["base law", "+ a", "+ b, + c", "- a", "refitted", "+ d, - c"]
+    assert step_name(replace(diagnosis, steps=steps[2:]), 0) == "base law + a, b, c"
 
 
 def findings_of(*cases: tuple[str, str]) -> list[Finding]:

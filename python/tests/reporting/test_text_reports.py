@@ -21,7 +21,7 @@ from jbf.records.findings.finding import Finding
 from jbf.reporting.fit_text import noise_words
 from jbf.reporting.power_text import level_words
 
-GAP = Finding("gaps", "time_s", "there", 0.1, "s", "stepped over", "3 rows are missing")
+GAP = Finding("gaps", "time_s", "there", 0.1, "s", "bridged", "3 rows are missing")
 
 
 def section(text: str, heading: str) -> list[list[str]]:
@@ -64,7 +64,7 @@ def test_fit_report_has_statistics_parameters_and_correlations() -> None:
     [
         (0.5, "= 0.500 N (the residual is 1.05 times the noise)", False),
         (0.105, "= 0.105 N (the residual is 5.00 times the noise)", True),
-        (None, "= not known", False),
+        (None, "= unknown", False),
     ],
 )
 def test_fit_report_compares_the_residual_with_the_noise_of_the_records(
@@ -73,7 +73,7 @@ def test_fit_report_compares_the_residual_with_the_noise_of_the_records(
     report = replace(fit_by_hand(), noise_floor=noise_rms).summary()
     statistics = {row[0]: row[1] for row in section(report, "[[Fit]]")}
     assert statistics["noise of the records"] == words
-    assert ("larger than the noise of the records" in " ".join(report.split())) == larger
+    assert ("exceeds the noise of the records" in " ".join(report.split())) == larger
 
 
 def test_fit_report_names_doubtful_errors_and_a_failed_search() -> None:
@@ -128,7 +128,7 @@ def test_comparison_report_without_failures_lists_findings_only() -> None:
     assert "no lack of fit" in report.splitlines()[0]
     assert not has_section(report, "Lack of fit")
     findings = section(report, "Data quality")
-    assert findings == [["gaps: 3 rows are missing, in there (stepped over)"]]
+    assert findings == [["gaps: 3 rows are missing, in there (bridged)"]]
 
 
 def test_diagnosis_report_has_measurement_candidates_steps_and_parameters() -> None:
@@ -137,17 +137,17 @@ def test_diagnosis_report_has_measurement_candidates_steps_and_parameters() -> N
     measurement = section(report, "Measurement")
     assert measurement[0][0].startswith("2 runs, 20 s in total, 1002 samples")
     assert "noise floor 0.500 N" in measurement[1][0]
-    bare = section(report, "The bare law (coulomb)")
+    bare = section(report, "The base law (coulomb)")
     assert "2.50 N, 5.00 times the noise" in bare[0][0]
     assert bare[1] == ["direction", "60 %", "record above the model"]
-    candidates = section(report, "Candidates added to the bare law")
+    candidates = section(report, "Candidates added to the base law")
     assert candidates[0] == ["effect", "RMS (N)", "evidence", "outcome", "reason"]
     assert candidates[1] == ["sensor_offset", "0.525", "+812", "added", "largest evidence"]
     assert len(candidates) == 5
     assert section(report, "Not tested")[0][0].startswith("position_ripple: ")
     assert section(report, "Error by step (N)") == [
         ["step", "fit RMS", "held-out RMS", "noise", "held-out / noise"],
-        ["bare law", "2.50", "2.75", "0.500", "5.50"],
+        ["base law", "2.50", "2.75", "0.500", "5.50"],
         ["+ sensor_offset", "0.525", "0.550", "0.500", "1.10"],
     ]
     parameters = section(report, "Parameters of the final model")

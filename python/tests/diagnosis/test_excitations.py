@@ -34,7 +34,7 @@ def sine(speed: float, rate: float) -> str:
 
 
 def stops(speed: float) -> str:
-    return f"stop and go to {speed:g} m/s, both ways, with rests of 8 s"
+    return f"stop and go to {speed:g} m/s, both directions, with rests of 8 s"
 
 
 def test_proposed_sines_have_two_periods_and_respect_the_acceleration_limit() -> None:

@@ -135,7 +135,7 @@ def test_proposal_names_only_effects_that_differ_between_the_rivals() -> None:
     groups = [[("sensor_offset", "inertia"), ("sensor_offset",)]]
     found = propose(four_effects(), groups, LIMITS)
     assert isinstance(found, Experiment)
-    assert "inertia and nothing more" in found.words
+    assert "inertia and no further effect" in found.words
     assert "sensor_offset" not in found.words
 
 

@@ -74,7 +74,7 @@ def test_ripple_is_reported_with_its_pitch_median_size_and_share(unit: float) ->
     signals = [unit * x for x in waves(campaign, sizes)]
     (found,) = ripples_in(campaign, signals)
     assert found.axis == "way"
-    assert found.where.startswith("a force")
+    assert found.where.startswith("periodic force")
     assert pitch_and_size(found) == pytest.approx((PITCH_M, unit), rel=0.1)
     power = 0.5 * float(np.mean(np.square(sizes)))
     assert found.share == pytest.approx(power / (1.0 + power), rel=0.1)
@@ -85,7 +85,7 @@ def test_ripple_is_reported_with_its_pitch_median_size_and_share(unit: float) ->
 def test_ripple_with_the_sign_of_the_velocity_is_reported_as_friction() -> None:
     campaign = reversing()
     (found,) = ripples_in(campaign, waves(campaign, [1.0] * 5, friction=True))
-    assert found.where.startswith("friction")
+    assert found.where.startswith("periodic friction")
     assert pitch_and_size(found) == pytest.approx((PITCH_M, 1.0), rel=0.1)
     assert found.share == pytest.approx(1.0 / 3.0, rel=0.1)
 
@@ -96,7 +96,7 @@ def test_only_the_larger_of_two_ripples_is_reported(amplitude: float) -> None:
     force = waves(campaign, [1.0] * 5)
     friction = waves(campaign, [amplitude] * 5, friction=True, seed=4)
     (found,) = ripples_in(campaign, [a + b for a, b in zip(force, friction, strict=True)])
-    assert found.where.startswith("friction" if amplitude > 1.0 else "a force")
+    assert found.where.startswith("periodic friction" if amplitude > 1.0 else "periodic force")
 
 
 def test_no_ripple_is_reported_in_white_noise() -> None:
@@ -200,6 +200,6 @@ def test_ripple_is_described_by_periods_per_turn_if_the_drive_turns(
 ) -> None:
     campaign = slides([np.where(np.arange(N) < N // 2, v, -v) for v in SPEEDS_M_S], rig=rig)
     (found,) = ripples_in(campaign, waves(campaign, [1.0] * 5, pitch=pitch))
-    assert found.where.startswith(f"a {noun}")
+    assert found.where.startswith(f"periodic {noun}")
     found_per_turn = numbers_in(r"([\d.]+) per revolution", found.where)
     assert found_per_turn == pytest.approx([per_turn], rel=0.01)

@@ -262,7 +262,7 @@ def test_ranking_plot_has_descending_gains_and_rejects_unknown_step(diagnosis: D
     assert names == ["sensor_offset", "sensor_drift", "inertia"]
     with pytest.raises(InputError, match="tested at step 1"):
         jbf.plot.ranking(diagnosis, 1)
-    with pytest.raises(InputError, match="there is no step 7"):
+    with pytest.raises(InputError, match="step 7 does not exist"):
         jbf.plot.ranking(diagnosis, 7)
 
 

@@ -192,9 +192,8 @@ def propose(
     noise_rms = max(model.noise_rms for model in models.values())
     unit = candidates.campaign.rig.quantities.force
     words = (
-        f"record {excitation.words} for {limits.duration_s:g} s: {names} differ there "
-        f"by {sigma * noise_rms:.2g} {unit} RMS ({sigma:.2g} times the noise) after "
-        "refitting"
+        f"record {excitation.words} for {limits.duration_s:g} s: there the predictions of {names} "
+        f"differ by {sigma * noise_rms:.2g} {unit} RMS after refitting, {sigma:.2g} times the noise"
     )
     return Experiment(words, run, sigma * noise_rms, sigma, evidence)
 

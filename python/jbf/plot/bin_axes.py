@@ -19,7 +19,7 @@ def _names(said: Quantities) -> dict[Axis, str]:
         "velocity": f"{said.velocity} ({said.speed})",
         "angle": "Shaft angle (deg)" if said.motion == "bearing" else "Angle (deg)",
         "time": "Time in the run (s)",
-        "time since a rest": "Time since the last rest (s)",
+        "time since a rest": "Time since the last rest",
         "distance since a reversal": "Distance since the last reversal",
         "direction": "Direction of motion",
         "regime": "Lubrication regime",

@@ -19,11 +19,12 @@ NUMERICAL = {
         diagnosis.power.distinction: NEVER MOST FURTHER
         diagnosis.check: SURE
         diagnosis.decoys: DRAWS SURE
-        diagnosis.excitations: RATES_RAD_S SHARES STOP_SHARES REST_S USUAL_RATE_RAD_S
-        diagnosis.plan: ENOUGH MORE
-        diagnosis.power: LEVELS NEARLY_ALL BEYOND FURTHER
-        diagnosis.separation: MOST_SAMPLES LEAST_SAMPLES
-        diagnosis.strength: DRAWS
+        diagnosis.experiment_design.excitations: MOST_SAMPLES RATES_RAD_S SHARES STOP_SHARES REST_S
+        diagnosis.experiment_design.excitations: USUAL_RATE_RAD_S
+        diagnosis.experiment_design.next_run: LEAST_SAMPLES
+        diagnosis.experiment_design.plan: ENOUGH MORE
+        diagnosis.power.detection_limits: LEVELS NEARLY_ALL BEYOND
+        diagnosis.power.strength: DRAWS
         estimation.delay_scan: LEAST_STEPS CLIPPED BLURRED
         estimation.robust_fit: TUNING FREEDOM ELSEWHERE BETTER NO_WORSE SHARPER
         estimation.standard_errors: BENT
@@ -56,6 +57,7 @@ NUMERICAL = {
         diagnosis.candidates: RANKING_EVALUATIONS
         diagnosis.power.detection_limits: MOST_STRENGTHS MOST_ITERATIONS
         diagnosis.terms.proposal: EVALUATIONS
+        estimation.parallel_fits: MOST_AT_ONCE
         diagnosis.terms.quantiser: EVALUATIONS MOST_ITERATIONS
         diagnosis.terms.shifts: EVALUATIONS STEPS
         estimation.generalised_least_squares: ROUNDS EVALUATIONS
@@ -76,7 +78,7 @@ NUMERICAL = {
     """,
     "resolution of a grid, a derivative or a number of draws": """
         diagnosis.level: DRAWS
-        diagnosis.ripples: MOST_BINS PADDING
+        diagnosis.residual_structure.periodic: MOST_BINS PADDING
         estimation.delays: FINE_S
         estimation.delay_scan: COARSE FINE
         estimation.generalised_least_squares: STEP INTENSITY_STEP
@@ -88,7 +90,7 @@ NUMERICAL = {
         estimation.transients: EDGE
     """,
     "range of a search, wider than any plausible result": """
-        diagnosis.power: POWERS
+        diagnosis.power.detection_limits: EXPONENTS
         estimation.delay_scan: REACH LEAST_REACH_STEPS
         estimation.generalised_least_squares: LEAST_NOISE LEAST_INTENSITY
         estimation.quantisation: MOST_NOISE

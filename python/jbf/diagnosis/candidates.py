@@ -113,13 +113,13 @@ class Candidates:
 
     def fitted_extensions(self, effects: Iterable[str]) -> dict[str, Fitted]:
         """Fitted sets with exactly one more effect, by the name of that effect."""
-        here = frozenset(effects)
-        found = {}
+        present = frozenset(effects)
+        extensions = {}
         for key, fitted in self._fitted.items():
-            if len(key) == len(here) + 1 and here < key and fitted.solution is not None:
-                (name,) = key - here
-                found[name] = fitted
-        return found
+            if len(key) == len(present) + 1 and present < key and fitted.solution is not None:
+                (name,) = key - present
+                extensions[name] = fitted
+        return extensions
 
     # ---- state of the fits ------------------------------------------------------------------
 
@@ -155,10 +155,11 @@ class Candidates:
             if not reach or any(find_effect(name).moves_jumps for name in added):
                 fitted.score = np.inf
             else:
-                known = self._values_of(near)
-                starts = fitted.problem.starts({**known, **nulls})
-                told = score_test(fitted.problem, starts, near, added)
-                fitted.score, fitted.directions, fitted.stepped = told
+                near_values = self._values_of(near)
+                starts = fitted.problem.starts({**near_values, **nulls})
+                fitted.score, fitted.directions, fitted.stepped = score_test(
+                    fitted.problem, starts, near, added
+                )
                 # Likewise where jumps are spread: the samples next to them may be the most
                 # informative. Likewise for a free initial state: most of its gain lies far from the
                 # null.
@@ -216,16 +217,16 @@ class Candidates:
         """The search of a fit that starts from the solution of a smaller model."""
         seeds: list[Mapping[str, float]] = [{}]
         if near is not None:
-            law = self._values_of(near)
+            near_values = self._values_of(near)
             # The law may be a poor start, since it compensated for a missing effect. For effects
             # with many peaks, the peak found without the new effect is not a useful start.
             anew = many_peaks(near.effects)
-            kept = {} if anew else {n: v for n, v in law.items() if "." in n}
-            seeds = [law, kept]
-        known = None if self.before is None else self.before.values_of(effects)
-        if known is not None:
+            kept = {} if anew else {n: v for n, v in near_values.items() if "." in n}
+            seeds = [near_values, kept]
+        earlier_values = None if self.before is None else self.before.values_of(effects)
+        if earlier_values is not None:
             # Start from the solution before the sample weights changed.
-            seeds = [known]
+            seeds = [earlier_values]
         each = near is not None and many_peaks(near.effects)
         fitted.least = self._required_square(near)
         return Approach(fitted.problem, seeds, each=each, stepped=fitted.stepped)
@@ -277,15 +278,15 @@ class Candidates:
         if fitted.peaks_searched:
             return near
         fitted.peaks_searched = True
-        found = search_peaks(fitted.problem, near)
+        highest = search_peaks(fitted.problem, near)
         if len(frozenset(effects)) > 1 and many_peaks(effects):
             # Repeat the fit from default values, without the earlier solutions.
             fresh = approach(fitted.problem, [{}], RANKING_EVALUATIONS)
-            if likelihood_gain(fresh, found) > -self.policy.search.rank_margin:
+            if likelihood_gain(fresh, highest) > -self.policy.search.rank_margin:
                 fresh = search_peaks(fitted.problem, settle(fitted.problem, fresh))
-                found = fresh if likelihood_gain(fresh, found) > 0.0 else found
-        fitted.improve(found)
-        return found
+                highest = fresh if likelihood_gain(fresh, highest) > 0.0 else highest
+        fitted.improve(highest)
+        return highest
 
     def refit_from(self, effects: Sequence[str], richer: Sequence[str]) -> Solution:
         """Refit a smaller set of effects from the parameter values of a richer model.
@@ -294,15 +295,15 @@ class Candidates:
         """
         near, fitted = self.converge(effects), self.fitted(effects)
         self.converge(richer)
-        problem, known = fitted.problem, self.fitted(richer).named_values()
-        start = np.array([known[name] for name in problem.names])
+        problem, richer_values = fitted.problem, self.fitted(richer).named_values()
+        start = np.array([richer_values[name] for name in problem.names])
         samples = problem.samples_at(start)
-        there = problem.solution(start, samples, near.noise, False)
-        there = settle(problem, there, samples)
+        refit = problem.solution(start, samples, near.noise, False)
+        refit = settle(problem, refit, samples)
         # With run-specific parameters a wrong law can be more likely and yet have a far larger RMS.
-        astray = there.rms > self.policy.selection.max_rms_ratio * near.rms
-        if likelihood_gain(there, near) > 0.0 and not astray:
-            fitted.improve(there)
+        too_large = refit.rms > self.policy.selection.max_rms_ratio * near.rms
+        if likelihood_gain(refit, near) > 0.0 and not too_large:
+            fitted.improve(refit)
         return fitted.current_solution()
 
     def idle(self, solution: Solution) -> tuple[str, ...]:
@@ -318,13 +319,13 @@ class Candidates:
         richer = (*present, name)
         before, after = self.converge(present), self.converge(richer)
         halved = sorted(indispensable_runs(self.fitted(richer).problem, after))
-        left, richer_left = (
+        held_out, richer_held_out = (
             self.held_out_parts(present, halved),
             self.held_out_parts(richer, halved),
         )
         names = tuple(self.campaign.samples.runs[i] for i in halved)
         prepared = self.campaign.prepared
-        return Confirmation.of(before, after, left, richer_left, names, prepared)
+        return Confirmation.of(before, after, held_out, richer_held_out, names, prepared)
 
     def held_out_parts(
         self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
@@ -343,13 +344,13 @@ class Candidates:
         solution, fitted = self.converge(effects), self.fitted(effects)
         if not fitted.held_out:
             fitted.held_out = held_out_parts(fitted.problem, solution)
-        found = [p for part in fitted.held_out if (p := part.without(halved)).runs]
+        parts = [p for part in fitted.held_out if (p := part.without(halved)).runs]
         for run in halved:
             if (run, alternate) not in fitted.halves:
-                own = held_out_halves(fitted.problem, solution, run, alternate=alternate)
-                fitted.halves[run, alternate] = own
-            found += fitted.halves[run, alternate]
-        return found
+                predictions = held_out_halves(fitted.problem, solution, run, alternate=alternate)
+                fitted.halves[run, alternate] = predictions
+            parts += fitted.halves[run, alternate]
+        return parts
 
     @cached_property
     def beyond(self) -> list[ExtrapolatedRun]:

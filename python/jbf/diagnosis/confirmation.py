@@ -56,8 +56,8 @@ class Confirmation:
         cls,
         simpler: Solution,
         richer: Solution,
-        left: Sequence[HeldOutPart],
-        richer_left: Sequence[HeldOutPart],
+        held_out: Sequence[HeldOutPart],
+        richer_held_out: Sequence[HeldOutPart],
         halved: Names = (),
         prepared: Sequence[Prepared] = (),
     ) -> Confirmation:
@@ -67,7 +67,7 @@ class Confirmation:
         ----------
         simpler, richer
             Solutions without and with the candidate.
-        left, richer_left
+        held_out, richer_held_out
             Held-out predictions of the two models.
         halved
             Names of the runs of which halves were held out.
@@ -78,12 +78,18 @@ class Confirmation:
         # Compare on common samples: a model may exclude those next to its jumps.
         counted = common_samples(simpler.samples, richer.samples).counted
         errors = [
-            errors_by_run(simpler, left, deviations=False, counted=counted),
-            errors_by_run(richer, richer_left, deviations=False, counted=counted),
+            errors_by_run(simpler, held_out, deviations=False, counted=counted),
+            errors_by_run(richer, richer_held_out, deviations=False, counted=counted),
         ]
-        before_n, after_n = (_rms(np.concatenate(list(own.values()))) for own in errors)
-        better = [_rms(errors[1][i]) < _rms(own) for i, own in errors[0].items() if len(own)]
-        density = _density_share(simpler, richer, left, richer_left)
+        before_n, after_n = (
+            _rms(np.concatenate(list(run_errors.values()))) for run_errors in errors
+        )
+        better = [
+            _rms(errors[1][i]) < _rms(run_errors)
+            for i, run_errors in errors[0].items()
+            if len(run_errors)
+        ]
+        density = _density_share(simpler, richer, held_out, richer_held_out)
         ratios = _unit_ratios(errors[0], errors[1], prepared, counted, settings)
         return cls(
             before_n,
@@ -135,7 +141,7 @@ def _unit_ratios(
     """Log ratios of the mean squares without and with a candidate, one per unit."""
     units = independent_units({i: counted[i] for i in before}, prepared, settings)
     squares = np.array(
-        [(np.mean(before[i][own] ** 2), np.mean(after[i][own] ** 2)) for i, own in units]
+        [(np.mean(before[i][rows] ** 2), np.mean(after[i][rows] ** 2)) for i, rows in units]
     ).reshape(-1, 2)
     squares = squares[(squares > 0.0).all(axis=1)]
     ratios: Array = np.log(squares[:, 0] / squares[:, 1])
@@ -159,8 +165,8 @@ def _rms(errors: Array) -> float:
 def _density_share(
     simpler: Solution,
     richer: Solution,
-    left: Sequence[HeldOutPart],
-    richer_left: Sequence[HeldOutPart],
+    held_out: Sequence[HeldOutPart],
+    richer_held_out: Sequence[HeldOutPart],
 ) -> float:
     """Gain in held-out log predictive density as a share of the gain in the fit.
 
@@ -170,8 +176,8 @@ def _density_share(
     before, _ = mean_square(simpler, samples, noise)
     after, count = mean_square(richer, samples, noise)
     after = max(after, 1e-300)
-    gained = predictive_deviance(simpler, left, samples, noise, after)
-    gained -= predictive_deviance(richer, richer_left, samples, noise, after)
+    gained = predictive_deviance(simpler, held_out, samples, noise, after)
+    gained -= predictive_deviance(richer, richer_held_out, samples, noise, after)
     return gained / max(count * (before - after) / after, 1e-300)
 
 

@@ -48,8 +48,8 @@ def evidence(
     price = price_of(candidates, richer.free - simpler.free)
     if gain > price:
         # A gain that is due to a few samples may only reflect errors of these samples.
-        of_most = robust_gain(richer, simpler)
-        gain = gain if of_most > price else max(of_most, 0.0)
+        robust = robust_gain(richer, simpler)
+        gain = gain if robust > price else max(robust, 0.0)
     if _filters_motion(candidates, richer, simpler):
         gain = min(gain, price)
     return gain - price
@@ -86,8 +86,8 @@ def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution)
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
     """Whether two models differ by less than the quantisation error of a mean reading."""
     samples = common_samples(richer.samples, simpler.samples)
-    ways = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
-    return bool(samples.rms(ways) < campaign.steps_rms(simpler.rms))
+    differences = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
+    return bool(samples.rms(differences) < campaign.steps_rms(simpler.rms))
 
 
 def evidence_on_common_samples(
@@ -104,34 +104,34 @@ def evidence_on_common_samples(
         return gain
     problem, samples = candidates.fitted(simpler.effects).problem, richer.samples
     values = search(problem, samples, simpler.values, simpler.noise, RANKING_EVALUATIONS).values
-    there = problem.solution(values, samples, noise_at(problem, samples, values))
-    return min(gain, evidence(candidates, richer, there, anywhere=anywhere))
+    refit = problem.solution(values, samples, noise_at(problem, samples, values))
+    return min(gain, evidence(candidates, richer, refit, anywhere=anywhere))
 
 
 def swap_cost(
-    candidates: Candidates, effects: tuple[str, ...], whole: Solution, near: Solution
+    candidates: Candidates, effects: tuple[str, ...], current: Solution, near: Solution
 ) -> float:
-    """Evidence lost when these effects replace those of `whole`.
+    """Evidence lost when these effects replace those of `current`.
 
     Parameters
     ----------
-    whole
+    current
         Solution of the complete model.
     near
         Solution of the model without the effect that is exchanged.
     """
-    # As for evidence: where even `whole` leaves a smooth error, samples count for less.
-    share = effective_share(whole)
+    # As for evidence: where even `current` leaves a smooth error, samples count for less.
+    share = effective_share(current)
 
     def cost(solution: Solution) -> float:
-        lost = share * likelihood_gain(whole, solution)
-        return lost + price_of(candidates, solution.free) - price_of(candidates, whole.free)
+        lost = share * likelihood_gain(current, solution)
+        return lost + price_of(candidates, solution.free) - price_of(candidates, current.free)
 
     policy = candidates.policy
     score = candidates.score_test(effects, near)
     shows = policy.search.min_score_share * price_of(candidates, 1)
     # Subtract the step that the law itself would still make; it is not due to the effect.
-    least = policy.search.min_swap_share * likelihood_gain(whole, near)
+    least = policy.search.min_swap_share * likelihood_gain(current, near)
     if score <= shows or score - next_step_gain(near) <= least:
         return cost(near)
     if not many_peaks(effects):
@@ -146,7 +146,7 @@ def swap_cost(
     if first >= policy.search.rank_margin:
         return first
     solution = candidates.converge(effects, near)
-    if solution.rms > policy.selection.max_rms_ratio * whole.rms:
+    if solution.rms > policy.selection.max_rms_ratio * current.rms:
         # Where the model is wrong, the whitest residual is not the smallest one.
         return float("inf")
     # An effect without evidence of its own replaces nothing: its fit may be better only because it

@@ -171,7 +171,7 @@ class Directions:
 
     @classmethod
     def of(
-        cls, innovations: Array, own: Array, law: Array, samples: Samples, share: float
+        cls, innovations: Array, effect: Array, law: Array, samples: Samples, share: float
     ) -> Directions:
         """Compute the directions from rows of a likelihood.
 
@@ -179,7 +179,7 @@ class Directions:
         ----------
         innovations
             Innovations of the model without the effect, shape (n,).
-        own, law
+        effect, law
             Derivatives with respect to the effect's parameters, (n, k), and to those of that model.
         samples
             The samples of the rows.
@@ -188,19 +188,19 @@ class Directions:
         """
         size = np.linalg.norm(law, axis=0)
         law = law[:, size > 0.0] / size[size > 0.0]
-        step, *_ = np.linalg.lstsq(law, own, rcond=1e-10)
-        left = own - law @ step
-        length = np.linalg.norm(left, axis=0)
-        told = length > 1e-8 * np.maximum(np.linalg.norm(own, axis=0), 1e-300)
-        ways = np.linalg.qr(left[:, told] / length[told])[0]
+        step, *_ = np.linalg.lstsq(law, effect, rcond=1e-10)
+        unexplained = effect - law @ step
+        length = np.linalg.norm(unexplained, axis=0)
+        independent = length > 1e-8 * np.maximum(np.linalg.norm(effect, axis=0), 1e-300)
+        ways = np.linalg.qr(unexplained[:, independent] / length[independent])[0]
         ends = _ends(samples)
         unit = innovations / np.sqrt(max(float(np.mean(innovations**2)), 1e-300))
         parts, settings = np.split(unit, ends), samples.settings.variance
-        more = [
+        inflations = [
             significant_inflation(np.split(way, ends), parts, samples.steps_s, settings)
             for way in ways.T
         ]
-        counted = np.array([min(share, 1.0 / m) for m in more])
+        counted = np.array([min(share, 1.0 / m) for m in inflations])
         return cls(ways, unit, counted, blocks_of(samples, share), ends)
 
     def by_block(self, innovations: Array, blocks: Places) -> Array:
@@ -219,14 +219,14 @@ def _ends(samples: Samples) -> Places:
     return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
 
 
-_known: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDictionary()
+_stacked_rows: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDictionary()
 
 
 def _rows(near: Solution) -> tuple[Array, Array]:
     """Innovations of a solution and their derivatives, cached while every candidate is tested."""
-    if near not in _known:
-        _known[near] = near.stacked()
-    return _known[near]
+    if near not in _stacked_rows:
+        _stacked_rows[near] = near.stacked()
+    return _stacked_rows[near]
 
 
 def score_test(
@@ -242,41 +242,43 @@ def score_test(
         The predicted gain (`score_gain`), the directions of the added effects, and the values after
         one step from the best start.
     """
-    few = problem.thinned
+    thinned = problem.thinned
     # Samples that a smaller model excludes next to its jumps would support any effect.
-    samples = near.samples if few is problem else few.campaign.samples
-    mine = np.array([few.names[i].split(".")[0] in added for i in few.open], dtype=bool)
+    samples = near.samples if thinned is problem else thinned.campaign.samples
+    is_added = np.array([thinned.names[i].split(".")[0] in added for i in thinned.open], dtype=bool)
     # At the null the rest of the model is unchanged, and so are its derivatives.
-    known = few is problem and near.free == np.count_nonzero(~mine)
+    reuse_rows = thinned is problem and near.free == np.count_nonzero(~is_added)
     best: tuple[float, Array, Array, Array] | None = None
     for start in starts:
-        if known:
-            own = [i for i, added_here in zip(few.open, mine, strict=True) if added_here]
+        if reuse_rows:
+            columns = [
+                i for i, added_here in zip(thinned.open, is_added, strict=True) if added_here
+            ]
             r, rest = _rows(near)
-            _, ways = samples.stacked(*few.linearise(start, by=own), near.noise)
-            j = np.empty((len(r), len(mine)))
-            j[:, mine], j[:, ~mine] = ways, rest
+            _, ways = samples.stacked(*thinned.linearise(start, by=columns), near.noise)
+            j = np.empty((len(r), len(is_added)))
+            j[:, is_added], j[:, ~is_added] = ways, rest
         else:
-            r, j = samples.stacked(*few.linearise(start), near.noise)
+            r, j = samples.stacked(*thinned.linearise(start), near.noise)
         gain = promised_gain(*triangular(r, j), len(r))
-        if few is not problem:
+        if thinned is not problem:
             gain = score_gain(problem, start, near)
         if best is None or gain > best[0]:
             best = gain, r, j, start
     assert best is not None
     gain, r, j, start = best
-    there = few.decode(few.encode(start) + least_squares(j, r), start)
-    shown = Directions.of(r, j[:, mine], j[:, ~mine], samples, effective_share(near))
-    return gain, shown, there
+    stepped = thinned.decode(thinned.encode(start) + least_squares(j, r), start)
+    directions = Directions.of(r, j[:, is_added], j[:, ~is_added], samples, effective_share(near))
+    return gain, directions, stepped
 
 
 def _explained(ways: Array, target: Array) -> Array:
     """Part of a target that unit columns explain; the columns may be collinear."""
     size, axes = np.linalg.eigh(ways.T @ ways)
-    told = size > 1e-12 * size[-1]
-    step = axes[:, told] @ ((axes[:, told].T @ (ways.T @ target)) / size[told])
-    found: Array = ways @ step
-    return found
+    resolved = size > 1e-12 * size[-1]
+    step = axes[:, resolved] @ ((axes[:, resolved].T @ (ways.T @ target)) / size[resolved])
+    explained: Array = ways @ step
+    return explained
 
 
 def _largest_common_group(directions: list[Directions]) -> list[Directions]:
@@ -297,39 +299,39 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     jumps, which changes nothing at its null. These, and candidates on other samples, keep their
     share of the level.
     """
-    told = _largest_common_group([d for d in directions if d.ways.size])
-    if not told:
+    tested = _largest_common_group([d for d in directions if d.ways.size])
+    if not tested:
         return level
-    every = np.column_stack([d.ways for d in told])
-    noise = told[0].innovations - _explained(every, told[0].innovations)
+    every = np.column_stack([d.ways for d in tested])
+    noise = tested[0].innovations - _explained(every, tested[0].innovations)
     noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
     # Scores may refer to models whose residuals have different memory; use the fewest blocks.
-    blocks = min((d.blocks for d in told), key=len)
+    blocks = min((d.blocks for d in tested), key=len)
     random = np.random.default_rng(len(blocks))
     signs = random.integers(0, 2, (DRAWS, len(blocks)), dtype=np.int8).astype(np.float32)
     signs = 2.0 * signs - np.float32(1.0)
     # One matrix product for all candidates: the signs are read from memory once.
-    columns = np.column_stack([one.by_block(noise, blocks) for one in told])
+    columns = np.column_stack([one.by_block(noise, blocks) for one in tested])
     scores = (signs @ columns.astype(np.float32)).astype(np.float64)
-    ends = np.cumsum([one.ways.shape[1] for one in told])
+    ends = np.cumsum([one.ways.shape[1] for one in tested])
     least: Array = np.ones(DRAWS)
     for squares in np.split(scores**2, ends[:-1], axis=1):
         least = np.minimum(least, special.chdtrc(squares.shape[1], np.sum(squares, axis=1)))
     least.sort()
-    silent = max(level.candidates - len(told), 0)
+    untested = max(level.candidates - len(tested), 0)
     # Count the draws with a name; untested candidates may add theirs.
-    false = np.arange(1, DRAWS + 1) / DRAWS + silent * least
+    false = np.arange(1, DRAWS + 1) / DRAWS + untested * least
     allowed = np.flatnonzero(false <= level.false_alarm_rate)
-    own = float(least[allowed[-1]]) if len(allowed) else float(0.5 * least[0])
-    return replace(level, chance=min(level.chance, own), blocks=len(blocks))
+    calibrated_chance = float(least[allowed[-1]]) if len(allowed) else float(0.5 * least[0])
+    return replace(level, chance=min(level.chance, calibrated_chance), blocks=len(blocks))
 
 
 def with_decoys(level: Level, directions: Sequence[Directions], samples: int) -> Level:
     """Add to the level the number of decoy campaigns in which a decoy exceeds its threshold."""
-    told = [d for d in directions if d.ways.size]
-    if not told:
+    tested = [d for d in directions if d.ways.size]
+    if not tested:
         return level
-    gains = decoy_gains(told)
-    prices = [level.price(d.ways.shape[1], samples) for d in told]
+    gains = decoy_gains(tested)
+    prices = [level.price(d.ways.shape[1], samples) for d in tested]
     named = np.any([g > price for g, price in zip(gains, prices, strict=True)], axis=0)
     return replace(level, decoys=len(named), decoys_named=int(np.sum(named)))

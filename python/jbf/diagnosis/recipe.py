@@ -146,10 +146,10 @@ def _diagnose(
     names: tuple[str, ...] = (law,)
     margin = policy.held_out.no_worse_ratio
     if law == AUTO:
-        known = comparable(recorded, clock, policy)
-        laws, no_law = which_law(known, clock, policy, progress)
+        with_motion_errors = comparable(recorded, clock, policy)
+        laws, no_law = which_law(with_motion_errors, clock, policy, progress)
         names = _to_diagnose(laws)
-        margin = max(margin, (1.0 + policy.least_share(known.motion_share)) ** 0.5)
+        margin = max(margin, (1.0 + policy.least_share(with_motion_errors.motion_share)) ** 0.5)
     best: Diagnosis | None = None
     for name in names:
         if best is not None and not _may_predict_better(name, best, laws, margin):
@@ -207,12 +207,12 @@ def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[f
     """
     compared = [compare_prepared(answer.model, recorded) for answer in answers]
     samples = recorded.samples
-    for own in compared:
-        samples = samples.within(own.samples.counted)
+    for comparison in compared:
+        samples = samples.within(comparison.samples.counted)
     lasts = [answer.steps[-1] for answer in answers]
     return [
-        samples.rms(own.residuals) * last.held_out_rms / max(last.rms, 1e-300)
-        for own, last in zip(compared, lasts, strict=True)
+        samples.rms(comparison.residuals) * last.held_out_rms / max(last.rms, 1e-300)
+        for comparison, last in zip(compared, lasts, strict=True)
     ]
 
 
@@ -238,9 +238,9 @@ def _with_law(
     campaign = without_transients(recorded, law, clock)
     candidates = Candidates(campaign, law, clock, policy, progress)
     candidates.reached = reached
-    certain = with_errors_of_motion(candidates, start_model(candidates))
-    if certain is not None:
-        candidates = candidates.of(certain)
+    with_motion_errors = with_errors_of_motion(candidates, start_model(candidates))
+    if with_motion_errors is not None:
+        candidates = candidates.of(with_motion_errors)
     selected = select(candidates)
     candidates = selected.candidates
     before = _before(candidates)
@@ -261,8 +261,8 @@ def _with_law(
     uncertain = effects_without_estimate(fit.parameters, missing, policy)
     doubted, missing = (*doubted, *uncertain), tuple(e for e in missing if e not in uncertain)
     steps = with_final_outcomes(steps, present, doubted)
-    asked = (*missing, OFFSET)
-    posterior = {name: w for name, w in weights(candidates, named).items() if name in asked}
+    weighted = (*missing, OFFSET)
+    posterior = {name: w for name, w in weights(candidates, named).items() if name in weighted}
     equal = {name: tuple(w)[1:] for name, w in posterior.items()}
     tied = {name: others for name, others in equal.items() if others and name in missing}
     answer = verdict(effects=len(missing), alternatives=len(tied), remains=bool(remains))

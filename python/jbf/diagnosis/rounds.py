@@ -96,16 +96,16 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             present = still_needed(candidates, present)
             visited = {frozenset(present)}
         candidates.reached.candidates, candidates.reached.present = candidates, present
-        found = try_candidates(candidates, present, follow)
-        steps.append(step(candidates, present, found.trials))
+        trial_round = try_candidates(candidates, present, follow)
+        steps.append(step(candidates, present, trial_round.trials))
         completed.append(Selected(candidates, present, list(steps)))
         may_update = updates < policy.terms.max_updates
         update, grown = None, present
-        if found.leader is not None:
-            least = _evidence_of_leader(candidates, present, found)
+        if trial_round.leader is not None:
+            least = _evidence_of_leader(candidates, present, trial_round)
             update = best_term_update(candidates, present, least) if may_update else None
             if update is None and len(present) < policy.selection.max_effects:
-                grown = _grown(candidates, present, found)
+                grown = _grown(candidates, present, trial_round)
         ended = frozenset(grown) in visited
         if update is None and ended and follow == "promising" and may_update:
             update = best_term_update(candidates, present)
@@ -121,11 +121,11 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
             steps.pop()
             continue
         if ended and follow == "all":
-            grown = _pair(candidates, present, found)
+            grown = _pair(candidates, present, trial_round)
         if frozenset(grown) in visited:
-            if found.leader is not None and len(present) >= policy.selection.max_effects:
+            if trial_round.leader is not None and len(present) >= policy.selection.max_effects:
                 refused: tuple[Remainder, ...] = (
-                    _effect_limit_reached(candidates, present, found.leader),
+                    _effect_limit_reached(candidates, present, trial_round.leader),
                 )
             else:
                 refused = _refused(candidates, present)
@@ -134,9 +134,9 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
         present, follow = grown, "promising"
 
 
-def _evidence_of_leader(candidates: Candidates, present: Names, found: Round) -> float:
+def _evidence_of_leader(candidates: Candidates, present: Names, trial_round: Round) -> float:
     """Evidence for the leading effect; its full gain if independent units confirmed it."""
-    leader = next(t for t in found.trials if t.effect == found.leader)
+    leader = next(t for t in trial_round.trials if t.effect == trial_round.leader)
     if leader.evidence > 0.0:
         return leader.evidence
     richer = candidates.converge((*present, leader.effect))
@@ -149,17 +149,17 @@ def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...
     return find_residual_structure(problem, solution, candidates.policy)
 
 
-def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
+def _grown(candidates: Candidates, present: Names, trial_round: Round) -> Names:
     """Add the leading candidate and remove effects that it makes unnecessary.
 
     A candidate that is tied with the leader is used instead if this results in fewer effects.
     """
-    tied = [t.effect for t in found.trials if t.outcome == "ties"]
+    tied = [t.effect for t in trial_round.trials if t.outcome == "ties"]
     best: Names | None = None
-    for name in (found.leader, *tied) if present else (found.leader,):
+    for name in (trial_round.leader, *tied) if present else (trial_round.leader,):
         assert name is not None
         candidates.search_peaks((*present, name))
-        grown = reconsider(candidates, (*present, name), found.unconfirmed)
+        grown = reconsider(candidates, (*present, name), trial_round.unconfirmed)
         if best is None or (
             len(grown) < len(best)
             # A tied candidate has not been confirmed by held-out runs.
@@ -170,7 +170,7 @@ def _grown(candidates: Candidates, present: Names, found: Round) -> Names:
     return best
 
 
-def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
+def _pair(candidates: Candidates, present: Names, trial_round: Round) -> Names:
     """Add the pair of effects that explains most, if it is needed.
 
     Where two effects are missing, neither may have evidence alone, because the residual remains
@@ -179,7 +179,9 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     policy = candidates.policy
     if len(present) + 2 > policy.selection.max_effects:
         return present
-    ahead = [t.effect for t in sorted(found.trials, key=lambda t: t.rms)[: policy.search.paired]]
+    ahead = [
+        t.effect for t in sorted(trial_round.trials, key=lambda t: t.rms)[: policy.search.paired]
+    ]
     pairs = [(*present, *pair) for pair in itertools.combinations(ahead, 2)]
     pairs += [
         (*present, name, other)
@@ -196,13 +198,13 @@ def _pair(candidates: Candidates, present: Names, found: Round) -> Names:
     base = candidates.converge(present)
     candidates.rank_all(pairs, base)
     best = max(pairs, key=lambda pair: likelihood_gain(candidates.rank(pair), base))
-    whole = candidates.converge(best)
+    richer = candidates.converge(best)
     if (
         candidates.held_out_rms(best)
         > candidates.held_out_rms(present) / policy.held_out.no_worse_ratio
     ):
         return present
-    if evidence(candidates, whole, base) <= 0.0 and full_gain(candidates, whole, base) <= 0.0:
+    if evidence(candidates, richer, base) <= 0.0 and full_gain(candidates, richer, base) <= 0.0:
         return present
     return reconsider(candidates, still_needed(candidates, best))
 
@@ -232,9 +234,9 @@ def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> S
     """Create a step of the ledger: a model, its errors, and the candidates tried with it."""
     solution = candidates.converge(effects)
     noise_rms = noise_floor(candidates.campaign.prepared, solution.samples)
-    left_out_n = candidates.held_out_rms(effects)
+    held_out_n = candidates.held_out_rms(effects)
     beyond = _extrapolations(candidates, effects)
-    return Step(effects, solution.rms, left_out_n, noise_rms, trials, beyond)
+    return Step(effects, solution.rms, held_out_n, noise_rms, trials, beyond)
 
 
 def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolation, ...]:
@@ -243,16 +245,16 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
         return ()
     unit, names = candidates.campaign.rig.quantities, candidates.campaign.samples.runs
     errors = errors_by_run(candidates.converge(effects), candidates.held_out_parts(effects))
-    found = []
+    extrapolations = []
     for beyond in candidates.beyond:
-        own = errors.get(beyond.run, np.zeros(0))
-        if len(own):
+        run_errors = errors.get(beyond.run, np.zeros(0))
+        if len(run_errors):
             size = f" {unit.speed}" if beyond.quantity == "speed" else ""
             own_range = f"{beyond.quantity} {beyond.value:.3g}{size}"
             where = f"{own_range}, others to {beyond.others:.3g}{size}"
-            rms = float(np.sqrt(np.mean(own**2)))
-            found.append(Extrapolation(names[beyond.run], rms, where))
-    return tuple(found)
+            rms = float(np.sqrt(np.mean(run_errors**2)))
+            extrapolations.append(Extrapolation(names[beyond.run], rms, where))
+    return tuple(extrapolations)
 
 
 def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
@@ -266,7 +268,7 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
     # Exclude the samples that a delay would move, as in the fit of the delay itself.
     delay = fitted.get(DELAY)
     away = base.samples if delay is None else delay.current_solution().samples
-    found = []
+    refused = []
     for name, problem in fitted.items():
         richer = problem.current_solution()
         samples = common_samples(richer.samples, away)
@@ -277,10 +279,10 @@ def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
             > policy.selection.weak_evidence
         )
         if better and gains:
-            found.append((richer.rms, name))
-    if not found:
+            refused.append((richer.rms, name))
+    if not refused:
         return ()
-    rms, name = min(found)
+    rms, name = min(refused)
     share = max(1.0 - (rms / base.rms) ** 2, 0.0)
     if share < policy.least_share(candidates.campaign.motion_share):
         return ()

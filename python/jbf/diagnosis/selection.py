@@ -101,9 +101,9 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     unconfirmed: set[str] = set()
     bare = base.rms
     least = min((r.solution.rms for r in ranked if r.evidence > 0), default=bare)
-    for found in sorted(ranked, key=lambda r: _has_larger_rms(r, least, policy)):
-        name, gain = found.effect, found.evidence
-        rms = min(found.solution.rms, bare)
+    for candidate in sorted(ranked, key=lambda r: _has_larger_rms(r, least, policy)):
+        name, gain = candidate.effect, candidate.evidence
+        rms = min(candidate.solution.rms, bare)
         outcome: Outcome
         outcome = "no gain"
         reason = SMOOTH if rms < LESS * bare else CHANCE
@@ -112,25 +112,25 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
         if gain <= 0.0 and gain > candidates.level.significant - price_of(candidates, 1):
             outcome = "negligible"
             reason = f"significant, but reduces the error by only {1.0 - rms / bare:.1%}"
-        if np.isfinite(found.most):
+        if np.isfinite(candidate.most):
             outcome = "rejected"
-            reason = f"skipped: its evidence is at most {max(found.most, 0.0):.0f}"
+            reason = f"skipped: its evidence is at most {max(candidate.most, 0.0):.0f}"
         elif gain > 0 and leader is None:
-            out = candidates.confirmation(present, name)
-            alone = evidence_on_common_samples(candidates, found.solution, base)
+            confirmation = candidates.confirmation(present, name)
+            alone = evidence_on_common_samples(candidates, candidate.solution, base)
             if alone <= 0.0:
                 gain, reason = alone, "the gain comes from the samples that it excludes"
-            elif out.confirms(gain, bare**2 - rms**2, policy):
+            elif confirmation.confirms(gain, bare**2 - rms**2, policy):
                 if _gain_is_from_local_minimum(candidates, present, name, base):
                     return try_candidates(candidates, present, follow)
                 leader, best = name, gain
-                outcome, reason = "added", f"largest evidence; {out.describe(unit)}"
+                outcome, reason = "added", f"largest evidence; {confirmation.describe(unit)}"
             else:
                 outcome = "rejected"
-                held_out = out.describe_gain(unit)
+                held_out = confirmation.describe_gain(unit)
                 reason = f"fits better, but does not predict held-out runs better ({held_out})"
                 unconfirmed.add(name)
-        elif gain > 0 and _has_larger_rms(found, least, policy):
+        elif gain > 0 and _has_larger_rms(candidate, least, policy):
             outcome, reason = "rejected", f"leaves an RMS of {rms:.3g} {unit}, more than {leader}"
         elif gain > 0 and gain > best - policy.selection.tie:
             outcome, reason = "ties", f"fits as well as {leader}"
@@ -163,10 +163,12 @@ def _by_units(
     }
     for name in sorted(gains, key=lambda name: -gains[name])[: candidates.policy.search.leaders]:
         if gains[name] > 0.0 and units_confirm(candidates, present, name):
-            out = candidates.confirmation(present, name)
+            confirmation = candidates.confirmation(present, name)
             unit = candidates.campaign.rig.quantities.force
-            better = f"{out.units} units are predicted better, p = {out.chance:.1g}"
-            reason = f"{better}; {out.describe(unit)}"
+            better = (
+                f"{confirmation.units} units are predicted better, p = {confirmation.chance:.1g}"
+            )
+            reason = f"{better}; {confirmation.describe(unit)}"
             added = [
                 replace(t, outcome="added", reason=reason) if t.effect == name else t
                 for t in trials
@@ -182,11 +184,11 @@ def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
 
 def needed(candidates: Candidates, current: Names, name: str, simpler: Solution) -> bool:
     """Whether an effect of a model has evidence, or is confirmed by independent units."""
-    whole = candidates.converge(current)
-    if evidence(candidates, whole, simpler) >= 0.0:
+    full = candidates.converge(current)
+    if evidence(candidates, full, simpler) >= 0.0:
         return True
     rest = tuple(e for e in current if e != name)
-    gains = full_gain(candidates, whole, simpler) > 0.0
+    gains = full_gain(candidates, full, simpler) > 0.0
     return gains and units_confirm(candidates, rest, name)
 
 
@@ -201,9 +203,9 @@ def _gain_is_from_local_minimum(
     return likelihood_gain(better, base) > candidates.policy.search.rank_margin
 
 
-def _has_larger_rms(found: Ranked, least_n: float, policy: Policy) -> bool:
+def _has_larger_rms(candidate: Ranked, least_n: float, policy: Policy) -> bool:
     """Whether a candidate has a much larger RMS than another one that also has evidence."""
-    return found.solution.rms > policy.selection.max_rms_ratio * least_n
+    return candidate.solution.rms > policy.selection.max_rms_ratio * least_n
 
 
 def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow) -> list[Ranked]:
@@ -230,7 +232,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
         policy.search.rank_fraction * max(max(first.values(), default=0.0), 0.0)
         - policy.search.rank_margin
     )
-    found: list[Ranked] = []
+    ranked: list[Ranked] = []
     for name in rivals:
         effects = (*present, name)
         if name in behind:
@@ -247,18 +249,18 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
         # At its null an effect does not change the model: evidence has this lower bound.
         more = len(candidates.fitted(effects).problem.open) - base.free
         gain = max(evidence(candidates, solution, base), -price_of(candidates, more))
-        found.append(Ranked(gain, name, solution, behind.get(name, np.inf)))
-    found.sort(key=lambda r: -r.evidence)
+        ranked.append(Ranked(gain, name, solution, behind.get(name, np.inf)))
+    ranked.sort(key=lambda r: -r.evidence)
     # Search the other peaks of candidates that might lead from a higher one.
-    for i, r in enumerate(found):
+    for i, r in enumerate(ranked):
         effects = (*present, r.effect)
-        likely = max(policy.search.min_peaks_fraction * found[0].evidence, 0.0)
+        likely = max(policy.search.min_peaks_fraction * ranked[0].evidence, 0.0)
         if many_peaks(effects) and r.evidence > likely and r.effect not in behind:
             solution = candidates.search_peaks(effects)
-            found[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
+            ranked[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
     # Of two indistinguishable effects, prefer the one closer to the recording: it assumes less.
     order = {name: i for i, name in enumerate(rivals)}
-    return sorted(found, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
+    return sorted(ranked, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
 
 
 def _cannot_reach_leader(
@@ -346,7 +348,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
         rest = tuple(e for e in current if e != name)
         candidates.search_peaks(rest)
         simpler = candidates.refit_from(rest, current)
-        whole = candidates.converge(current)
+        full = candidates.converge(current)
         if not needed(candidates, current, name, simpler):
             current = rest
             continue
@@ -356,7 +358,7 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
         for other in candidates.names:
             if other in current or other in unconfirmed or not can_be_added(other, rest):
                 continue
-            better = -swap_cost(candidates, (*rest, other), whole, simpler)
+            better = -swap_cost(candidates, (*rest, other), full, simpler)
             if better > gain:
                 best, gain = other, better
         if best != name:
@@ -371,13 +373,13 @@ def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float
     alone (Kass & Raftery 1995). The effect is first, the others follow by weight. An effect without
     alternatives has weight one.
     """
-    whole = candidates.converge(present)
-    found: dict[str, dict[str, float]] = {}
+    full = candidates.converge(present)
+    posterior: dict[str, dict[str, float]] = {}
     for name in present:
         rest = tuple(e for e in present if e != name)
         simpler = candidates.converge(rest)
         costs = {
-            other: swap_cost(candidates, (*rest, other), whole, simpler)
+            other: swap_cost(candidates, (*rest, other), full, simpler)
             for other in candidates.names
             if other not in present and can_be_added(other, rest)
         }
@@ -386,5 +388,5 @@ def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float
         }
         order = [name, *sorted(close, key=lambda other: close[other])]
         share = special.softmax([-0.5 * close.get(other, 0.0) for other in order])
-        found[name] = dict(zip(order, share.tolist(), strict=True))
-    return found
+        posterior[name] = dict(zip(order, share.tolist(), strict=True))
+    return posterior

@@ -282,9 +282,9 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
         if name == candidates.law or count > most:
             continue
         # A law with a much larger fit error is not a better predictor.
-        far = policy.selection.max_rms_ratio * candidates.converge(effects).rms
+        max_rms = policy.selection.max_rms_ratio * candidates.converge(effects).rms
         try:
-            errors = held_out_errors(other, kept) if other.converge(kept).rms < far else None
+            errors = held_out_errors(other, kept) if other.converge(kept).rms < max_rms else None
         except Unfinished:
             continue
         if errors is not None:
@@ -292,8 +292,8 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
             names.append(name)
             counts.append(count)
     tried = _compared(names, counts, held_out, policy, campaign)
-    here = next(t for t in tried if t.law == "")
+    present = next(t for t in tried if t.law == "")
     others = [t for t in tried if t.law and t.tied]
     # Of equivalent laws prefer the one with the fewest parameters, whichever is ahead by chance.
-    better = [t for t in others if t.parameters < most or t.held_out_rms <= here.held_out_rms]
+    better = [t for t in others if t.parameters < most or t.held_out_rms <= present.held_out_rms]
     return min(better, key=lambda t: t.parameters, default=None)

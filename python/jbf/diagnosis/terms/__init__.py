@@ -77,19 +77,19 @@ def best_term_update(
         Evidence for the accepted effect, with which some terms compete; None if no effect is
         accepted.
     """
-    whole = _model(candidates, present, present)
+    full = _model(candidates, present, present)
     terms = TERMS if min_evidence is None else COMPETING
-    found = [(term(whole), whole) for term in terms]
+    estimates = [(term(full), full) for term in terms]
     explained = explained_by_delays(present)
     if explained and min_evidence is None:
-        rest = _model(candidates, tuple(n for n in present if n not in explained), present)
-        found.append((delays(rest), rest))
-    proposals = [(p, model) for p, model in found if p is not None]
+        reduced = _model(candidates, tuple(n for n in present if n not in explained), present)
+        estimates.append((delays(reduced), reduced))
+    proposals = [(p, model) for p, model in estimates if p is not None]
     proposals.sort(key=lambda pair: -pair[0].evidence)
     for proposal, model in proposals:
         if is_accepted(proposal, model, min_evidence or 0.0):
             return TermUpdate(proposal.campaign, proposal.problem.effects)
-    fewer = without_random_effect(whole) if min_evidence is None else None
+    fewer = without_random_effect(full) if min_evidence is None else None
     return None if fewer is None else TermUpdate(fewer, present)
 
 

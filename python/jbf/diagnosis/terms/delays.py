@@ -48,19 +48,19 @@ def delays(model: Model) -> Proposal | None:
     proposals, estimates = [], _estimates(model)
     if not estimates:
         return None
-    best = min((found.solution for found in estimates), key=lambda s: s.rms)
+    best = min((estimate.solution for estimate in estimates), key=lambda s: s.rms)
     counted = zip(best.residuals, best.samples.counted, strict=True)
     steps_s, noise = best.samples.steps_s, best.samples.settings.noise
     share = min(independent_share([r * c for r, c in counted], steps_s, noise), 1.0)
-    for found in estimates:
+    for estimate in estimates:
         price = price_of_term(model.policy)
-        if found.drift == 0.0 and np.mean(found.late_s) > 0.0:
+        if estimate.drift == 0.0 and np.mean(estimate.late_s) > 0.0:
             # The mean delay corresponds to an effect and must reach the threshold of one.
             price += model.price_of_effect
-        price -= model.price_of_effect * max(model.reference.free - found.solution.free, 0)
-        shifted = found.campaign.with_findings(_findings(known_delays(campaign), found))
-        gain = _gain(found, model.reference, share)
-        proposals.append(Proposal(shifted, found.problem, found.solution, gain, price))
+        price -= model.price_of_effect * max(model.reference.free - estimate.solution.free, 0)
+        shifted = estimate.campaign.with_findings(_findings(known_delays(campaign), estimate))
+        gain = _gain(estimate, model.reference, share)
+        proposals.append(Proposal(shifted, estimate.problem, estimate.solution, gain, price))
     return max(proposals, key=lambda p: p.evidence)
 
 
@@ -100,33 +100,33 @@ def _estimates(model: Model) -> list[Shifted]:
     return [f for f in estimates if f is not start and _significant(f, policy)]
 
 
-def _significant(found: Shifted, policy: Policy) -> bool:
+def _significant(shifted: Shifted, policy: Policy) -> bool:
     """Whether a drift, or the differences between the delays of runs, are significant.
 
     A delay that is equal in all runs belongs to the effect, unless the force is early.
     """
-    problem, solution = found.problem, found.solution
-    if found.drift != 0.0:
+    problem, solution = shifted.problem, shifted.solution
+    if shifted.drift != 0.0:
         # The residual of a wrong model is not white: half of Wald's statistic is used.
         square = (
             policy.delays.drift_square_factor
-            * found.drift**2
+            * shifted.drift**2
             / drift_step(problem, solution).variance
         )
         # A delay common to all runs resembles a drift.
-        beside = drift_step(problem, solution, with_delay=True)
-        left = (found.drift + beside.drift) ** 2 / beside.variance
+        joint = drift_step(problem, solution, with_delay=True)
+        joint_square = (shifted.drift + joint.drift) ** 2 / joint.variance
         return bool(
             special.chdtrc(1, square) < policy.terms.chance
-            and special.chdtrc(1, left) < policy.delays.hint_chance
+            and special.chdtrc(1, joint_square) < policy.delays.hint_chance
         )
-    if np.ptp(found.late_s) == 0.0:
-        return bool(found.late_s[0] < 0.0)
+    if np.ptp(shifted.late_s) == 0.0:
+        return bool(shifted.late_s[0] < 0.0)
     step = run_delay_step(problem, solution)
-    return step.differences_p_value(found.late_s) < policy.terms.chance
+    return step.differences_p_value(shifted.late_s) < policy.terms.chance
 
 
-def _gain(found: Shifted, other: Solution, share: float) -> float:
+def _gain(shifted: Shifted, other: Solution, share: float) -> float:
     """Gain of shifted runs over another model in twice the log marginal likelihood.
 
     The delays that differ between runs are a random effect: their number of parameters is included
@@ -137,37 +137,37 @@ def _gain(found: Shifted, other: Solution, share: float) -> float:
     share
         Number of independent samples per sample.
     """
-    here = found.solution
-    prepared = found.campaign.prepared
-    forces = [p.friction - r for p, r in zip(prepared, here.residuals, strict=True)]
+    solution = shifted.solution
+    prepared = shifted.campaign.prepared
+    forces = [p.friction - r for p, r in zip(prepared, solution.residuals, strict=True)]
     # Samples that the other model excludes next to jumps are excluded here as well.
-    samples = samples_near_jumps(here.samples, prepared, forces, other.effects)
-    after = samples.without_deviations(here.residuals, here.noise)
+    samples = samples_near_jumps(solution.samples, prepared, forces, other.effects)
+    after = samples.without_deviations(solution.residuals, solution.noise)
     before = other.samples.without_deviations(other.residuals, other.noise)
     ratio = other.samples.rms(before) / max(samples.rms(after), 1e-300)
-    return 2.0 * share * other.samples.count * float(np.log(max(ratio, 1e-300))) - _volume(found)
+    return 2.0 * share * other.samples.count * float(np.log(max(ratio, 1e-300))) - _volume(shifted)
 
 
-def _volume(found: Shifted) -> float:
+def _volume(shifted: Shifted) -> float:
     """Logarithm of the determinant of the covariance of delays that differ between runs."""
-    if found.drift != 0.0 or np.ptp(found.late_s) == 0.0:
+    if shifted.drift != 0.0 or np.ptp(shifted.late_s) == 0.0:
         return 0.0
-    step = run_delay_step(found.problem, found.solution)
-    known = found.late_s[step.identifiable]
-    if len(known) < 2:
+    step = run_delay_step(shifted.problem, shifted.solution)
+    delays_s = shifted.late_s[step.identifiable]
+    if len(delays_s) < 2:
         return 0.0
-    variance = float(np.var(known, ddof=1))
+    variance = float(np.var(delays_s, ddof=1))
     return float(np.sum(np.log1p(variance / np.diag(step.covariance_s2))))
 
 
-def _findings(before_s: dict[str, float], found: Shifted) -> list[Finding]:
+def _findings(before_s: dict[str, float], shifted: Shifted) -> list[Finding]:
     late_s = [
         late + before_s.get(p.run.name, 0.0)
-        for p, late in zip(found.campaign.prepared, found.late_s.tolist(), strict=True)
+        for p, late in zip(shifted.campaign.prepared, shifted.late_s.tolist(), strict=True)
     ]
     return [
-        _finding(p.run.name, late, found.drift)
-        for p, late in zip(found.campaign.prepared, late_s, strict=True)
+        _finding(p.run.name, late, shifted.drift)
+        for p, late in zip(shifted.campaign.prepared, late_s, strict=True)
     ]
 
 

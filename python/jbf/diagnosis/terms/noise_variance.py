@@ -63,10 +63,10 @@ def _weighted(
     )
     if any(f.kind == kind for f in campaign.more_findings):
         return None
-    found = weights(problem, solution, policy)
-    if found is None:
+    estimate = weights(problem, solution, policy)
+    if estimate is None:
         return None
-    levels, finding = found
+    levels, finding = estimate
     ones = [np.ones(len(w)) for w in levels]
     samples = campaign.samples.weighed(levels, ones, campaign.samples.between)
     counted = solution.samples.counted
@@ -96,10 +96,10 @@ def heavy_tails(model: Model) -> Proposal | None:
         return None
     if campaign.step_n >= policy.noise.max_step_ratio * solution.rms:
         return None
-    found = robust_weights(solution, policy)
-    if found is None:
+    estimate = robust_weights(solution, policy)
+    if estimate is None:
         return None
-    weights, finding, gain = found
+    weights, finding, gain = estimate
     ones = [np.ones(len(w)) for w in weights]
     samples = campaign.samples.weighed(ones, weights, campaign.samples.between)
     after = refitted(problem, solution, samples.within(solution.samples.counted))
@@ -159,19 +159,19 @@ def run_weights(
     samples = solution.samples
     e = _white_parts(solution)
     innovations = samples.innovations(solution.residuals, solution.noise)
-    white, whole = (
+    white, total = (
         np.array([robust_size(x[c]) for x, c in zip(v, samples.counted, strict=True)])
         for v in (e, innovations)
     )
     # Equal readings of a coarse converter have zero differences.
     rounding = np.array([p.converter_step_n for p in problem.campaign.prepared]) / np.sqrt(12.0)
-    white, whole = np.maximum(white, rounding), np.maximum(whole, rounding)
+    white, total = np.maximum(white, rounding), np.maximum(total, rounding)
     counts = np.array([int(c.sum()) for c in samples.counted])
-    some = (counts > policy.noise.min_samples) & (white > 0.0) & (whole > 0.0)
-    if not some.any() or not all(_uneven(x[some], counts[some], policy) for x in (white, whole)):
+    valid = (counts > policy.noise.min_samples) & (white > 0.0) & (total > 0.0)
+    if not valid.any() or not all(_uneven(x[valid], counts[valid], policy) for x in (white, total)):
         return None
-    by_run = np.ones(len(some))
-    by_run[some] = np.maximum(*(x[some].min() / x[some] for x in (white, whole)))
+    by_run = np.ones(len(valid))
+    by_run[valid] = np.maximum(*(x[valid].min() / x[valid] for x in (white, total)))
     ratio = float(by_run.max() / by_run.min())
     words = f"the noise level differs between runs by a factor of up to {ratio:.2g}"
     names = ", ".join(samples.runs)
@@ -218,19 +218,19 @@ def _student_gain(innovations: Array, sigma: float) -> float:
         return float(2.0 * len(innovations) * constant + (freedom + 1.0) * np.sum(tails))
 
     start = np.log([START_FREEDOM, sigma])
-    found = optimize.minimize(minus_twice, start, method="Nelder-Mead", options={"fatol": 0.1})
+    fit = optimize.minimize(minus_twice, start, method="Nelder-Mead", options={"fatol": 0.1})
     normal = len(innovations) * (1.0 + np.log(2.0 * np.pi * np.mean(innovations**2)))
-    return float(normal - found.fun)
+    return float(normal - fit.fun)
 
 
 def _white_parts(solution: Solution) -> list[Array]:
     """White part of each residual from its third differences, scaled by the known variances."""
     levels = solution.samples.level or [np.ones(len(r)) for r in solution.residuals]
-    found = []
+    white_parts = []
     for residual, level in zip(solution.residuals, levels, strict=True):
         third = np.diff(residual, 3) / np.sqrt(20.0)
-        found.append(np.pad(third, (1, len(residual) - len(third) - 1), mode="edge") * level)
-    return found
+        white_parts.append(np.pad(third, (1, len(residual) - len(third) - 1), mode="edge") * level)
+    return white_parts
 
 
 def _uneven(sizes: Array, counts: npt.NDArray[np.int_], policy: Policy) -> bool:

@@ -100,10 +100,12 @@ def independent_fraction(after: Solution, before: Solution) -> float:
 
     It is the same measure as for an effect (`share_of_gain`).
     """
-    left, was = (s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before))
-    ways = [b - e for b, e in zip(was, left, strict=True)]
+    after_errors, before_errors = (
+        s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before)
+    )
+    differences = [b - e for b, e in zip(before_errors, after_errors, strict=True)]
     settings = after.samples.settings.variance
-    inflation = significant_inflation(ways, left, after.samples.steps_s, settings)
+    inflation = significant_inflation(differences, after_errors, after.samples.steps_s, settings)
     return min(effective_share(after), 1.0 / inflation)
 
 

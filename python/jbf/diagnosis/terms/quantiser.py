@@ -56,7 +56,7 @@ def without_bias(
     The fit to biased readings predicts another force, which has another bias. Correction and fit
     are repeated until the bias no longer changes.
     """
-    found = None
+    corrected = None
     for _ in range(MOST_ITERATIONS):
         campaign = _corrected(problem, solution, policy)
         if campaign is None:
@@ -65,8 +65,8 @@ def without_bias(
         samples, noise = problem.samples_at(solution.values), solution.noise
         end = search(problem, samples, solution.values, noise, EVALUATIONS)
         solution = problem.solution(end.values, samples, noise, end.converged, end.message)
-        found = campaign, problem, solution
-    return found
+        corrected = campaign, problem, solution
+    return corrected
 
 
 def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
@@ -82,7 +82,7 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
     expected = [p.friction - e for p, e in zip(campaign.prepared, solution.residuals, strict=True)]
     raw = [p.readings_n for p in campaign.prepared]
     flat = solution.samples.flat
-    left = flat([r - f for r, f in zip(raw, expected, strict=True)])
+    deviation = flat([r - f for r, f in zip(raw, expected, strict=True)])
 
     def bias(noise: float) -> list[Array]:
         return [
@@ -95,7 +95,7 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
         ]
 
     def square(noise: float) -> float:
-        e = left - flat(bias(noise))
+        e = deviation - flat(bias(noise))
         return float(e @ e)
 
     noise = float(

@@ -38,10 +38,10 @@ def random_effect(model: Model) -> Proposal | None:
     if campaign.samples.motion is not None:
         return None
     counted = campaign.samples.within(solution.samples.counted)
-    found = _most_significant(problem, solution, counted, model.policy.terms.chance)
-    if found is None:
+    estimate = _most_significant(problem, solution, counted, model.policy.terms.chance)
+    if estimate is None:
         return None
-    between, finding = found
+    between, finding = estimate
     after = refitted(problem, solution, replace(counted, between=between))
     samples = replace(campaign.samples, between=between)
     again = replace(campaign, samples=samples).with_findings([finding])
@@ -93,18 +93,18 @@ def _most_significant(
     """
     if len(samples.runs) < samples.settings.variance.min_runs:
         return None
-    known = samples.between
+    present = samples.between
     r, _ = samples.stacked(solution.residuals, solution.jacobian, solution.noise)
     sigma = robust_size(r)
     best: tuple[float, str, str, float, list[Array]] | None = None
     for name, unit, column in _columns(problem, solution):
-        if known is not None and name in known.names:
+        if present is not None and name in present.names:
             continue
-        found = _spread(samples, solution, column, sigma)
-        if found is None or found[1] > chance or found[0] <= 0.0:
+        estimate = _spread(samples, solution, column, sigma)
+        if estimate is None or estimate[1] > chance or estimate[0] <= 0.0:
             continue
-        if best is None or found[2] > best[0]:
-            best = (found[2], name, unit, found[0], column)
+        if best is None or estimate[2] > best[0]:
+            best = (estimate[2], name, unit, estimate[0], column)
     if best is None:
         return None
     _, name, unit, sd, column = best
@@ -113,37 +113,37 @@ def _most_significant(
     kind, words = _words(name, sd, unit)
     runs = ", ".join(samples.runs)
     finding = Finding(kind, "friction_n", runs, sd, unit, "a spread of the runs", words)
-    own = [c[:, None] * sd for c in column]
-    if known is None:
-        return RandomEffects((name,), tuple(own), sigma), finding
-    both = tuple(np.hstack(pair) for pair in zip(known.directions, own, strict=True))
-    return RandomEffects((*known.names, name), both, sigma), finding
+    directions = [c[:, None] * sd for c in column]
+    if present is None:
+        return RandomEffects((name,), tuple(directions), sigma), finding
+    both = tuple(np.hstack(pair) for pair in zip(present.directions, directions, strict=True))
+    return RandomEffects((*present.names, name), both, sigma), finding
 
 
 def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[Array]]]:
     """Name, unit and derivative of the force by each random effect, one (n,) array per run."""
-    said = problem.campaign.rig.quantities
-    found = [("zero", said.force, [np.ones(len(r)) for r in solution.residuals])]
+    quantities = problem.campaign.rig.quantities
+    columns = [("zero", quantities.force, [np.ones(len(r)) for r in solution.residuals])]
     times = [p.run.time_s for p in problem.campaign.prepared]
-    found.append(("drift", said.unit("N/s"), [t - 0.5 * (t[0] + t[-1]) for t in times]))
+    columns.append(("drift", quantities.unit("N/s"), [t - 0.5 * (t[0] + t[-1]) for t in times]))
     by_name = {problem.names[i]: k for k, i in enumerate(problem.open)}
     for name in ("U_tr_m_s", "gamma"):
         # Warmer oil: a higher transition speed and less viscous friction.
         if name in by_name:
-            found.append((name, "1", [j[:, by_name[name]] for j in solution.jacobian]))
-    found.append(("gain", "1", problem.predict(solution.values)))
-    return found
+            columns.append((name, "1", [j[:, by_name[name]] for j in solution.jacobian]))
+    columns.append(("gain", "1", problem.predict(solution.values)))
+    return columns
 
 
 def _within_runs(samples: Samples, solution: Solution, column: list[Array]) -> Array:
     """Innovations of all runs less the estimated deviation of each, N."""
-    left = []
+    innovations = []
     columns = [c[:, None] for c in column]
     for i in range(len(samples.runs)):
         r, n = samples.stacked(solution.residuals, columns, solution.noise, [i])
         size = float(n[:, 0] @ n[:, 0])
-        left.append(r - n[:, 0] * (float(n[:, 0] @ r) / size if size > 0.0 else 0.0))
-    return np.concatenate(left)
+        innovations.append(r - n[:, 0] * (float(n[:, 0] @ r) / size if size > 0.0 else 0.0))
+    return np.concatenate(innovations)
 
 
 def _spread(

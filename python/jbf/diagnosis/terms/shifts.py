@@ -86,13 +86,13 @@ def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
     old = problem.campaign
-    whole = replace(
+    shifted = replace(
         old,
         prepared=tuple(prepared),
         samples=Samples.of(prepared, old.settings),
         more_findings=tuple(f for f in old.more_findings if f.done == "left out"),
     )
-    return without_transients(whole, problem.law, problem.clock)
+    return without_transients(shifted, problem.law, problem.clock)
 
 
 def without_delay(effects: Names) -> Names:
@@ -104,12 +104,12 @@ def refitted(
     problem: Problem,
     campaign: Campaign,
     effects: Names,
-    known: dict[str, float],
+    start_values: dict[str, float],
     near: Solution,
 ) -> tuple[Problem, Solution]:
     """Fit a law with effects to shifted runs by a few steps."""
     again = Problem(campaign, problem.law, problem.clock, effects)
-    start = np.array([known[name] for name in again.names])
+    start = np.array([start_values[name] for name in again.names])
     samples = again.samples_at(start)
     end = search(again, samples, start, near.noise, EVALUATIONS)
     solution = again.solution(end.values, samples, near.noise, end.converged, end.message)
@@ -142,8 +142,8 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
             now = _coloured(now)
             continue
         # Where delays differ between runs, a common delay is also attributed to the recording.
-        known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
-        later_s = np.clip(step.delays_s, -linear_s, linear_s) + known.get(TAU, 0.0)
+        values = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
+        later_s = np.clip(step.delays_s, -linear_s, linear_s) + values.get(TAU, 0.0)
         late_s = now.late_s + later_s
         late_s[~step.identifiable] = step.mean_s(late_s)
         apart_s = float(np.max(np.abs(late_s - np.median(late_s))))
@@ -154,7 +154,7 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
             return start
         campaign = moved(first, late_s, start.drift)
         effects = without_delay(now.problem.effects)
-        problem, solution = refitted(now.problem, campaign, effects, known, now.solution)
+        problem, solution = refitted(now.problem, campaign, effects, values, now.solution)
         now = Shifted(problem, solution, late_s, start.drift)
     if white:
         now = _coloured(now)
@@ -182,10 +182,10 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
         late_s = 0.5 * drift * lasts_s
         if not possible_clocks(first, late_s, drift):
             return start
-        known = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
+        values = dict(zip(now.problem.names, now.solution.values.tolist(), strict=True))
         campaign = moved(first, late_s, drift)
         problem, solution = refitted(
-            now.problem, campaign, now.problem.effects, known, now.solution
+            now.problem, campaign, now.problem.effects, values, now.solution
         )
         now = Shifted(problem, solution, late_s, drift)
     if white:
@@ -198,9 +198,9 @@ def with_mean_delay(shifted: Shifted) -> Shifted:
     problem, solution = shifted.problem, shifted.solution
     mean_s = run_delay_step(problem, solution).mean_s(shifted.late_s)
     change_s = mean_s - shifted.late_s
-    known = dict(zip(problem.names, solution.values.tolist(), strict=True))
+    values = dict(zip(problem.names, solution.values.tolist(), strict=True))
     campaign = moved(problem, change_s, 0.0)
-    again, fit = refitted(problem, campaign, problem.effects, known, solution)
+    again, fit = refitted(problem, campaign, problem.effects, values, solution)
     return Shifted(again, fit, np.full(len(change_s), mean_s), shifted.drift)
 
 
@@ -220,14 +220,14 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
     old, first = campaign, problem
     late_s, drift = np.zeros(len(campaign.prepared)), 0.0
     for look in range(policy.delays.max_searches):
-        found = scan_delays(problem, solution, look, policy.terms.chance)
-        if found is None:
+        scan = scan_delays(problem, solution, look, policy.terms.chance)
+        if scan is None:
             break
         # Where delays differ between runs, a common delay is also attributed to the recording.
-        known = dict(zip(problem.names, solution.values.tolist(), strict=True))
-        shared = known.get(TAU, 0.0) if found.spread_s > 0.0 else 0.0
-        later_s, drifted = late_s + np.array(found.delays_s) + shared, drift + found.drift
-        if look > 0 and found.drift != 0.0 and found.spread_s == 0.0:
+        values = dict(zip(problem.names, solution.values.tolist(), strict=True))
+        shared = values.get(TAU, 0.0) if scan.spread_s > 0.0 else 0.0
+        later_s, drifted = late_s + np.array(scan.delays_s) + shared, drift + scan.drift
+        if look > 0 and scan.drift != 0.0 and scan.spread_s == 0.0:
             # The drift was already corrected at the middle of the runs.
             later_s = late_s
         if not possible_clocks(first, later_s, drifted):
@@ -235,11 +235,11 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
         late_s, drift = later_s, drifted
         campaign = moved(first, late_s, drift)
         effects = without_delay(problem.effects)
-        problem, solution = refitted(problem, campaign, effects, known, solution)
+        problem, solution = refitted(problem, campaign, effects, values, solution)
     return None if campaign is old else Shifted(problem, solution, late_s, drift)
 
 
-def fit_common_delay(problem: Problem, found: Shifted) -> Shifted:
+def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
     """Estimate the additional delay common to all runs.
 
     A law can take a common delay for its own memory. The delays of the runs therefore determine
@@ -248,22 +248,24 @@ def fit_common_delay(problem: Problem, found: Shifted) -> Shifted:
     """
     steps = [p.step_s for p in problem.campaign.prepared]
     ahead_s = max(problem.campaign.settings.delays.reserve_s, float(np.median(steps)))
-    late_s = found.late_s - ahead_s
+    late_s = shifted.late_s - ahead_s
     campaign = moved(problem, late_s, 0.0)
     effects = without_delay(problem.effects)
     late = Problem(campaign, problem.law, problem.clock, [*effects, DELAY])
-    last = Problem(found.campaign, problem.law, problem.clock, effects)
-    known = dict(zip(last.names, found.solution.values.tolist(), strict=True)) | {TAU: ahead_s}
-    start = np.array([known[name] for name in late.names])
+    last = Problem(shifted.campaign, problem.law, problem.clock, effects)
+    start_values = dict(zip(last.names, shifted.solution.values.tolist(), strict=True)) | {
+        TAU: ahead_s
+    }
+    start = np.array([start_values[name] for name in late.names])
     samples = late.samples_at(start)
-    values = search(late, samples, start, found.solution.noise, EVALUATIONS).values
+    values = search(late, samples, start, shifted.solution.noise, EVALUATIONS).values
     shared_s = float(values[late.names.index(TAU)]) - ahead_s
-    late_s = found.late_s + shared_s
+    late_s = shifted.late_s + shared_s
     if not possible_clocks(problem, late_s, 0.0):
-        return found
+        return shifted
     campaign = moved(problem, late_s, 0.0)
     near = dict(zip(late.names, values.tolist(), strict=True))
-    again, solution = refitted(problem, campaign, effects, near, found.solution)
-    if solution.rms >= found.solution.rms:
-        return found
+    again, solution = refitted(problem, campaign, effects, near, shifted.solution)
+    if solution.rms >= shifted.solution.rms:
+        return shifted
     return Shifted(again, solution, late_s, 0.0)

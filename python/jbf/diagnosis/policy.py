@@ -22,7 +22,7 @@ from jbf.estimation.settings import Settings, documented
 class Policy:
     """Numbers that determine a verdict.
 
-    Four of them are a choice of the user. The others are in sections by what they decide; those of
+    Four of them are chosen by the user. The others are grouped into sections by purpose; those of
     the estimation are in `estimation`. Evidence is in units of twice the log likelihood.
 
     Examples
@@ -88,10 +88,10 @@ class Policy:
                 )
 
     def least_share(self, motion_share: float) -> float:
-        """Share of the mean square that structure must have, and a law or a filter must explain.
+        """Minimum share of the mean square that structure, a law or a filter must explain.
 
-        The errors of the motion contribute a share of the variance, and their covariance is an
-        estimate. An effect that filters a force or a motion can explain the same share.
+        The errors of the motion contribute this share of the variance, and their covariance is
+        estimated. An effect that filters a force or a motion can explain the same share.
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class Policy:
         return min(motion_share, self.motion.max_structure_share)
 
     def least_effect_share(self, motion_share: float) -> float:
-        """Share of the mean square that an effect other than a filter must explain."""
+        """Minimum share of the mean square that an effect other than a filter must explain."""
         return min(motion_share, self.motion.max_effect_share)
 
     def with_values(self, values: Mapping[str, Any]) -> Policy:
@@ -135,7 +135,7 @@ class Policy:
 
 
 def _numbers(section: Any, before: str = "") -> Iterator[tuple[str, Any, str, Mapping[Any, Any]]]:
-    """Dotted name, owner, name and metadata of each number in a section and those within it."""
+    """Dotted name, owner, name and metadata of each number in a section and its subsections."""
     for f in fields(section):
         value = getattr(section, f.name)
         if is_dataclass(value):

@@ -40,7 +40,10 @@ class Tones:
 
 @dataclass(frozen=True)
 class Ripples:
-    """Residual structure of one pitch over the travel; its chance and share are those of a tone."""
+    """Periodic residual structure over the travel.
+
+    The significance level and the share of the mean square are those of `Tones`.
+    """
 
     min_periods: float = documented(
         8.0, "number of periods within the travel, at least", "longer waves are patterns"
@@ -107,7 +110,7 @@ class Bursts:
 
 @dataclass(frozen=True)
 class Constancy:
-    """Runs that require different parameters."""
+    """Constancy of the parameters over the runs."""
 
     chance: float = documented(1e-8, "probability of the disagreement by chance", SET_BEFORE)
     min_ratio: float = documented(
@@ -125,7 +128,10 @@ class Constancy:
 
 @dataclass(frozen=True)
 class Strokes:
-    """Levels that differ between strokes; share and chance are those of patterns and constancy."""
+    """Friction levels that differ between strokes.
+
+    The share of the mean square is that of `Patterns`, the significance level that of `Constancy`.
+    """
 
     min_strokes: int = documented(
         3, "number of strokes from which a run is tested", "two degrees of freedom"

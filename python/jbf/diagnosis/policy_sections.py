@@ -1,4 +1,4 @@
-"""Sections of the policy: selection of effects, terms and laws, by what the numbers decide.
+"""Sections of the policy: selection of effects, terms and laws.
 
 Evidence and gains are in units of twice the log likelihood.
 """
@@ -92,7 +92,7 @@ class HeldOut:
 
 @dataclass(frozen=True)
 class Search:
-    """Candidates that are fitted, and how far."""
+    """Selection of the candidates to fit, and of those to fit to convergence."""
 
     min_score_share: float = documented(
         0.3,
@@ -307,7 +307,7 @@ class Laws:
 
 @dataclass(frozen=True)
 class Experiments:
-    """The proposed run."""
+    """Proposed runs."""
 
     min_evidence: float = documented(
         25.0,

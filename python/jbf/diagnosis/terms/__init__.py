@@ -1,4 +1,4 @@
-"""Terms of the observation model: what the recording adds to the output of a model.
+"""Terms of the observation model: differences between recording and model output.
 
 Each module estimates one kind of term for a given model and returns it as a `Proposal`, whose
 evidence is comparable with that of an effect. The selection (`jbf.diagnosis.rounds`) adds the term
@@ -47,8 +47,8 @@ TERMS: tuple[Term, ...] = (
 )
 """All terms, in order of preference at equal evidence.
 
-The error of a model that lacks an effect resembles most of them. They are therefore estimated where
-no effect is accepted.
+The error of a model with a missing effect resembles most of them. They are therefore estimated only
+if no effect is accepted.
 """
 
 
@@ -65,7 +65,7 @@ def best_term_update(
 ) -> TermUpdate | None:
     """Return the campaign with the term of the largest evidence, or with one random effect fewer.
 
-    A random effect is removed where the model no longer needs it. None if no term changes.
+    A random effect is removed if it is no longer significant. None if no term changes.
 
     Parameters
     ----------

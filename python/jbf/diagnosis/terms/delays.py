@@ -1,6 +1,6 @@
-"""Time delay of the force by run, and drift of the clock of its channel.
+"""Time delay of the force by run, and drift of the clock of the force channel.
 
-The force is compared with the motion at the instants at which it was read. A delay common to all
+The force is compared with the motion at the sampling instants of the force. A delay common to all
 runs is the effect `time_delay`; a force that is early in all runs is a recording artefact.
 """
 
@@ -38,7 +38,7 @@ LATE, DRIFT = "late_channel", "drifting_clock"
 def delays(model: Model) -> Proposal | None:
     """Propose delays by run or a clock drift, whichever has the larger evidence.
 
-    None if the runs show neither.
+    None if neither is significant.
     """
     campaign = model.campaign
     if not campaign.force_has_clock or campaign.samples.motion is not None:
@@ -55,7 +55,7 @@ def delays(model: Model) -> Proposal | None:
     for estimate in estimates:
         price = price_of_term(model.policy)
         if estimate.drift == 0.0 and np.mean(estimate.late_s) > 0.0:
-            # The mean delay corresponds to an effect and must reach the threshold of one.
+            # The mean delay corresponds to an effect: add the threshold of an effect.
             price += model.price_of_effect
         price -= model.price_of_effect * max(model.reference.free - estimate.solution.free, 0)
         shifted = estimate.campaign.with_findings(_findings(known_delays(campaign), estimate))
@@ -65,12 +65,12 @@ def delays(model: Model) -> Proposal | None:
 
 
 def known_delays(campaign: Campaign) -> dict[str, float]:
-    """Delay of each run that was corrected before, s."""
+    """Delays of the runs that have already been corrected, s."""
     return {f.run: f.size for f in campaign.more_findings if f.kind == LATE}
 
 
 def explained_by_delays(effects: Sequence[str]) -> tuple[str, ...]:
-    """The effects that delays by run may explain.
+    """Effects that delays by run may explain.
 
     These are effects of the instrument, and effects that move the instants of jumps.
     """
@@ -91,7 +91,7 @@ def _estimates(model: Model) -> list[Shifted]:
         by_run = fit_delays_by_run(problem, start)
         estimates.append(by_run if _significant(by_run, policy) else with_mean_delay(by_run))
     if not known_delays(problem.campaign):
-        # The parameters of the model adapt slowly to a drift.
+        # The model parameters compensate for a drift: use a less strict significance level.
         if special.chdtrc(1, drift_step(problem, solution).square) < policy.delays.hint_chance:
             estimates.append(fit_clock_drift(problem, start))
         coarse = fit_delays_by_search(problem, solution, policy)
@@ -103,11 +103,11 @@ def _estimates(model: Model) -> list[Shifted]:
 def _significant(shifted: Shifted, policy: Policy) -> bool:
     """Whether a drift, or the differences between the delays of runs, are significant.
 
-    A delay that is equal in all runs belongs to the effect, unless the force is early.
+    A delay that is equal in all runs is part of the effect `time_delay`, unless it is negative.
     """
     problem, solution = shifted.problem, shifted.solution
     if shifted.drift != 0.0:
-        # The residual of a wrong model is not white: half of Wald's statistic is used.
+        # The residual of a wrong model is not white: reduce the Wald statistic.
         square = (
             policy.delays.drift_square_factor
             * shifted.drift**2
@@ -129,13 +129,13 @@ def _significant(shifted: Shifted, policy: Policy) -> bool:
 def _gain(shifted: Shifted, other: Solution, share: float) -> float:
     """Gain of shifted runs over another model in twice the log marginal likelihood.
 
-    The delays that differ between runs are a random effect: their number of parameters is included
-    in the determinant of its covariance.
+    Delays that differ between runs are a random effect, whose number of parameters is included in
+    the determinant of its covariance.
 
     Parameters
     ----------
     share
-        Number of independent samples per sample.
+        Ratio of the effective number of samples to the number of samples.
     """
     solution = shifted.solution
     prepared = shifted.campaign.prepared
@@ -149,7 +149,7 @@ def _gain(shifted: Shifted, other: Solution, share: float) -> float:
 
 
 def _volume(shifted: Shifted) -> float:
-    """Logarithm of the determinant of the covariance of delays that differ between runs."""
+    """Log-determinant of the covariance of the delays; zero for a drift or equal delays."""
     if shifted.drift != 0.0 or np.ptp(shifted.late_s) == 0.0:
         return 0.0
     step = run_delay_step(shifted.problem, shifted.solution)

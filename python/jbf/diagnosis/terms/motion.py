@@ -9,10 +9,10 @@ from jbf.estimation.generalised_least_squares import with_motion_errors_again
 
 
 def errors_of_motion(model: Model) -> Proposal | None:
-    """Re-estimate the motion's errors (noise, scale, smoothness) for a model with other effects.
+    """Propose motion errors re-estimated (noise, scale, smoothness) with the present effects.
 
-    The gain is relative to the present errors in the likelihood. None if the noise is not clearly
-    smaller than that for which they were estimated.
+    The gain is relative to the likelihood with the present motion errors. None if the noise has not
+    decreased by the minimum ratio of the policy since they were estimated.
     """
     before = model.campaign.samples.motion
     if before is None:

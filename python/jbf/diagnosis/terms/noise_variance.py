@@ -1,6 +1,6 @@
 """Residual-error model: heteroscedastic noise by force or by run, and heavy tails.
 
-The samples get weights, 0 to 1, relative to where the noise is smallest.
+The weights of the samples are between 0 and 1, relative to the smallest noise level.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ ERROR = 1.9
 """Relative standard error of a robust standard deviation, times the root of the sample count.
 
 The estimate is the median of absolute third differences. The value is 1.17 for independent
-differences (Rousseeuw & Croux 1993) and larger here, since these share readings. It follows from
-the estimator.
+differences (Rousseeuw & Croux 1993) and larger here, since neighbouring differences share readings.
+It is a property of the estimator.
 """
 START_FREEDOM = 5.0
 """Degrees of freedom of Student's t distribution at the start of its fit.
 
-It only starts a search.
+It is a starting value only.
 """
 
 
@@ -54,7 +54,7 @@ def _weighted(
     weights: Callable[[Problem, Solution, Policy], tuple[Weights, Finding] | None],
     parameters: int,
 ) -> Proposal | None:
-    """Propose weights by a variance function; None if the campaign already has them."""
+    """Propose weights from a variance function; None if the campaign already has them."""
     problem, solution, campaign, policy = (
         model.problem,
         model.solution,
@@ -82,9 +82,9 @@ def _weighted(
 
 
 def heavy_tails(model: Model) -> Proposal | None:
-    """Propose Huber's weights, if Student's t distribution is more likely than the normal one.
+    """Propose Huber weights if Student's t distribution is more likely than the normal one.
 
-    Not proposed if the heavy tails are due to the steps of a converter.
+    None if the heavy tails are due to the quantisation steps of a converter.
     """
     problem, solution, campaign, policy = (
         model.problem,
@@ -117,7 +117,7 @@ def force_weights(
     None if the variance does not depend on the force.
     """
     samples = solution.samples
-    # Use the white part only: the error of a model is smooth.
+    # Use the white part only: the lack of fit of a model is autocorrelated.
     e = _white_parts(solution)
     force = [np.abs(f) for f in problem.predict(solution.values)]
     flat_e, flat_f = samples.flat(e), samples.flat(force)
@@ -128,7 +128,7 @@ def force_weights(
     middle = 0.5 * (edges[1:] + edges[:-1])
     which = np.clip(np.searchsorted(edges, flat_f) - 1, 0, bins - 1)
     counts = np.bincount(which, minlength=bins)
-    # Bins may be empty where many forces are equal, as at rest.
+    # Bins may be empty if many forces are equal, as at rest.
     full = np.flatnonzero(counts)
     counts, middle = counts[full], middle[full]
     sizes = np.array([robust_size(flat_e[which == k]) for k in full])
@@ -151,10 +151,10 @@ def force_weights(
 def run_weights(
     problem: Problem, solution: Solution, policy: Policy
 ) -> tuple[Weights, Finding] | None:
-    """A weight for the samples of each run; None if the noise does not differ between runs.
+    """Weights by run; None if the noise does not differ between runs.
 
-    Both the white part and the innovations must differ. A smooth channel has no white noise, and
-    the innovations of a wrong model are larger than the noise.
+    Both the white part and the innovations must differ, since a filtered channel has no white
+    noise, and the innovations of a wrong model are larger than the noise.
     """
     samples = solution.samples
     e = _white_parts(solution)
@@ -163,7 +163,7 @@ def run_weights(
         np.array([robust_size(x[c]) for x, c in zip(v, samples.counted, strict=True)])
         for v in (e, innovations)
     )
-    # Equal readings of a coarse converter have zero differences.
+    # Equal readings of a coarse converter have zero differences: use the rounding error.
     rounding = np.array([p.converter_step_n for p in problem.campaign.prepared]) / np.sqrt(12.0)
     white, total = np.maximum(white, rounding), np.maximum(total, rounding)
     counts = np.array([int(c.sum()) for c in samples.counted])
@@ -208,7 +208,7 @@ def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding
 def _student_gain(innovations: Array, sigma: float) -> float:
     """Gain of Student's t distribution over the normal one in twice the log likelihood.
 
-    Each has its most likely parameters (Lange, Little & Taylor 1989).
+    Both have their maximum-likelihood parameters (Lange, Little & Taylor 1989).
     """
 
     def minus_twice(x: Array) -> float:
@@ -224,7 +224,7 @@ def _student_gain(innovations: Array, sigma: float) -> float:
 
 
 def _white_parts(solution: Solution) -> list[Array]:
-    """White part of each residual from its third differences, scaled by the known variances."""
+    """White part of each residual from third differences, scaled by the known noise levels."""
     levels = solution.samples.level or [np.ones(len(r)) for r in solution.residuals]
     white_parts = []
     for residual, level in zip(solution.residuals, levels, strict=True):

@@ -1,4 +1,4 @@
-"""A term of the observation model at its estimate, and the criterion for its acceptance."""
+"""Estimated term of the observation model, and the criterion for its acceptance."""
 
 from __future__ import annotations
 
@@ -57,14 +57,14 @@ class Model:
     Attributes
     ----------
     problem, solution
-        Its fit.
+        Fit of the model.
     reference_problem, reference
-        The fit that the term is compared with: this one, or that of a model with more effects,
-        which the term would replace.
+        Fit with which the term is compared: this one, or that of a model with additional effects
+        that the term would replace.
     policy
         Numbers of the decision.
     price_of_effect
-        Threshold of the first parameter of an effect.
+        Threshold for the gain of an effect with one parameter.
     """
 
     problem: Problem
@@ -84,21 +84,22 @@ class Term(Protocol):
     """Estimator of one kind of term for a given model."""
 
     def __call__(self, model: Model) -> Proposal | None:
-        """Estimate the term; None if the runs do not show it."""
+        """Estimate the term; None if it is not identifiable or not significant."""
 
 
 def price_of_term(policy: Policy, parameters: int = 1) -> float:
     """Critical value of the likelihood-ratio test for a term.
 
-    It is the upper quantile of chi-square at the false-term probability of one kind.
+    It is the upper chi-square quantile at the false-term probability, with a Bonferroni correction
+    for the kinds of terms.
     """
     return float(special.chdtri(parameters, policy.terms.chance / policy.terms.kinds))
 
 
 def independent_fraction(after: Solution, before: Solution) -> float:
-    """Number of independent samples per sample in the gain of a term, 0 to 1.
+    """Ratio of the effective number of samples in the gain of a term to the number of samples.
 
-    It is the same measure as for an effect (`share_of_gain`).
+    It is computed as for an effect (`share_of_gain`).
     """
     after_errors, before_errors = (
         s.samples.weighted_innovations(s.residuals, after.noise) for s in (after, before)
@@ -110,18 +111,18 @@ def independent_fraction(after: Solution, before: Solution) -> float:
 
 
 def is_accepted(proposal: Proposal | None, model: Model, min_evidence: float = 0.0) -> bool:
-    """Whether a term exceeds the minimum evidence without a larger held-out error."""
+    """Whether a term exceeds the minimum evidence and does not increase the held-out error."""
     if proposal is None or proposal.evidence <= max(min_evidence, 0.0):
         return False
     return not predicts_worse(proposal, model)
 
 
 def predicts_worse(proposal: Proposal, model: Model) -> bool:
-    """Whether the held-out error is larger with a term.
+    """Whether a term increases the held-out error significantly.
 
-    The increase must exceed the policy's ratio by more than the standard error of its mean over the
-    runs. Every run has the same weight: with between-run variance, the largest deviation must not
-    decide alone. Delays and the quantiser bias are those of the whole fit.
+    The mean log ratio over the runs must exceed the limit of the policy by more than its standard
+    error. All runs have equal weight, so that with between-run variance the largest deviation does
+    not dominate. Delays and the quantisation bias are those of the fit to all runs.
     """
     fits = ((proposal.problem, proposal.solution), (model.reference_problem, model.reference))
     rms = [
@@ -137,6 +138,6 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
 
 
 def refitted(problem: Problem, near: Solution, samples: Samples) -> Solution:
-    """Fit a few steps to samples with other weights or correlations, and re-estimate the noise."""
+    """Refit by a few steps with other sample weights or correlations, and re-estimate the noise."""
     values = search(problem, samples, near.values, near.noise, EVALUATIONS).values
     return problem.solution(values, samples, noise_at(problem, samples, values))

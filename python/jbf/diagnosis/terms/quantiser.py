@@ -1,4 +1,4 @@
-"""Quantisation bias of the mean reading of a converter whose steps are as large as the noise.
+"""Quantisation bias of the mean reading of a converter with steps as large as the noise.
 
 The difference between the mean reading and the force is a periodic function of the force (Widrow
 1956). Averaging does not remove it.
@@ -32,7 +32,7 @@ MOST_ITERATIONS = 8
 def quantiser(model: Model) -> Proposal | None:
     """Propose readings without quantisation bias.
 
-    None if the converter is fine enough, or the bias changes by less than the policy's limit.
+    None if the quantisation is fine, or if the bias changes by less than the limit of the policy.
     """
     solution = model.solution
     corrected = without_bias(model.problem, solution, model.policy)
@@ -51,10 +51,10 @@ def quantiser(model: Model) -> Proposal | None:
 def without_bias(
     problem: Problem, solution: Solution, policy: Policy
 ) -> tuple[Campaign, Problem, Solution] | None:
-    """The campaign without quantisation bias, and the model fitted to it.
+    """Return the campaign corrected for quantisation bias, and the model fitted to it.
 
-    The fit to biased readings predicts another force, which has another bias. Correction and fit
-    are repeated until the bias no longer changes.
+    Since the bias depends on the predicted force, correction and fit are repeated until the bias no
+    longer changes. None if no correction is necessary.
     """
     corrected = None
     for _ in range(MOST_ITERATIONS):
@@ -70,7 +70,7 @@ def without_bias(
 
 
 def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
-    """Correct the campaign once.
+    """Return the campaign corrected once for the quantisation bias; None if the change is small.
 
     The noise before the converter is estimated by least squares.
     """
@@ -78,7 +78,7 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
     steps = {f.run: f.size for f in campaign.findings if f.kind == "steps"}
     if not steps:
         return None
-    # Mean readings by the model: the correction so far is part of the residual.
+    # Predicted mean readings; the residual contains the earlier correction.
     expected = [p.friction - e for p, e in zip(campaign.prepared, solution.residuals, strict=True)]
     raw = [p.readings_n for p in campaign.prepared]
     flat = solution.samples.flat

@@ -32,7 +32,7 @@ Array = npt.NDArray[np.float64]
 def random_effect(model: Model) -> Proposal | None:
     """Propose the most significant random effect that is not yet in the model.
 
-    None if none is significant, or if the likelihood has errors of the motion.
+    None if none is significant, or if the likelihood includes motion errors.
     """
     problem, solution, campaign = model.problem, model.solution, model.campaign
     if campaign.samples.motion is not None:
@@ -50,9 +50,9 @@ def random_effect(model: Model) -> Proposal | None:
 
 
 def without_random_effect(model: Model) -> Campaign | None:
-    """The campaign without the random effect that explains least in addition to the others.
+    """Return the campaign without the random effect of the smallest gain.
 
-    None if each of them increases the marginal likelihood.
+    None if every random effect increases the marginal likelihood.
     """
     problem, solution, campaign = model.problem, model.solution, model.campaign
     between = campaign.samples.between
@@ -87,9 +87,9 @@ def _log_determinant(solution: Solution) -> float:
 def _most_significant(
     problem: Problem, solution: Solution, samples: Samples, chance: float
 ) -> tuple[RandomEffects, Finding] | None:
-    """The random effects of the samples and the most significant additional one.
+    """Return the present random effects with the most significant additional one.
 
-    Only one is added at a time, since a missing random effect resembles another.
+    One is added at a time, since random effects resemble each other.
     """
     if len(samples.runs) < samples.settings.variance.min_runs:
         return None
@@ -121,14 +121,14 @@ def _most_significant(
 
 
 def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[Array]]]:
-    """Name, unit and derivative of the force by each random effect, one (n,) array per run."""
+    """Name, unit and derivative of the force for each random effect, one array (n,) per run."""
     quantities = problem.campaign.rig.quantities
     columns = [("zero", quantities.force, [np.ones(len(r)) for r in solution.residuals])]
     times = [p.run.time_s for p in problem.campaign.prepared]
     columns.append(("drift", quantities.unit("N/s"), [t - 0.5 * (t[0] + t[-1]) for t in times]))
     by_name = {problem.names[i]: k for k, i in enumerate(problem.open)}
     for name in ("U_tr_m_s", "gamma"):
-        # Warmer oil: a higher transition speed and less viscous friction.
+        # Higher oil temperature: a higher transition speed and less viscous friction.
         if name in by_name:
             columns.append((name, "1", [j[:, by_name[name]] for j in solution.jacobian]))
     columns.append(("gain", "1", problem.predict(solution.values)))
@@ -136,7 +136,7 @@ def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[
 
 
 def _within_runs(samples: Samples, solution: Solution, column: list[Array]) -> Array:
-    """Innovations of all runs less the estimated deviation of each, N."""
+    """Innovations of all runs minus the estimated deviation of each run, N."""
     innovations = []
     columns = [c[:, None] for c in column]
     for i in range(len(samples.runs)):

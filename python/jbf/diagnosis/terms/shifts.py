@@ -47,9 +47,9 @@ class Shifted:
     problem, solution
         The fit.
     late_s
-        Delay of each run that was corrected, in the middle of the run, s.
+        Corrected delay of each run, at mid-run, s.
     drift
-        Relative drift of the force clock that was corrected.
+        Corrected relative drift of the force clock.
     """
 
     problem: Problem
@@ -64,10 +64,10 @@ class Shifted:
 
 
 def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
-    """Whether delays and drift are within the possible range of a logger's clocks.
+    """Whether delays and drift are within the possible range of the clocks of a logger.
 
-    Larger estimates are artefacts: of noise, where the slopes of the force do not follow the
-    motion, or of the error of a wrong model.
+    Larger estimates are artefacts of noise, if the force hardly depends on the motion, or of the
+    lack of fit of a wrong model.
     """
     settings = problem.campaign.settings.delays
     return abs(drift) <= settings.max_drift and all(
@@ -77,7 +77,7 @@ def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
 
 
 def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
-    """The campaign with each run's force shifted to earlier times."""
+    """Return the campaign with the force of each run shifted to earlier times."""
     prepared = problem.campaign.prepared
     return _settled(
         problem, [p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)]
@@ -119,18 +119,18 @@ def refitted(
 def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
     """Estimate the delay of each run jointly with the model.
 
-    Returns `start` where the fit does not improve, or where a delay is not plausible.
+    Returns `start` if the fit does not improve, or if a delay is not plausible.
 
     Parameters
     ----------
     first
-        The runs relative to which shifts are measured.
+        Model of the unshifted runs.
     start
-        The runs shifted by the known delays.
+        Model of the runs shifted by the known delays.
     """
     settings = first.campaign.settings.delays
     linear_s = settings.linear_s
-    # The error of a delayed force is smooth and would be taken for coloured noise.
+    # The error due to a delay is autocorrelated and would be attributed to coloured noise.
     now = replace(start, solution=replace(start.solution, noise=WHITE))
     white = True
     for _ in range(STEPS):
@@ -150,7 +150,7 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
         if apart_s > settings.search_ranges_s[0][0] or not possible_clocks(
             first, late_s, start.drift
         ):
-            # Another deviation of one run (a mass) may appear as a delay of any size.
+            # Another deviation of one run, such as a mass, may appear as a delay of any size.
             return start
         campaign = moved(first, late_s, start.drift)
         effects = without_delay(now.problem.effects)
@@ -162,9 +162,9 @@ def fit_delays_by_run(first: Problem, start: Shifted) -> Shifted:
 
 
 def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
-    """Estimate the drift of a clock that starts with each run, jointly with the model.
+    """Estimate the drift of a clock that is reset at the start of each run, jointly with the model.
 
-    Returns `start` where the fit does not improve, or where the drift is not plausible.
+    Returns `start` if the fit does not improve, or if the drift is not plausible.
     """
     lasts_s = np.array([p.run.duration_s for p in first.campaign.prepared])
     most = first.campaign.settings.delays.linear_s / float(np.max(lasts_s))
@@ -214,7 +214,7 @@ def _coloured(shifted: Shifted) -> Shifted:
 def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
     """Shift the runs repeatedly to the delays with the smallest sums of squares (`scan_delays`).
 
-    None if the delays do not differ, do not drift, and are not negative.
+    None if no delay is corrected.
     """
     campaign = problem.campaign
     old, first = campaign, problem
@@ -242,9 +242,9 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
 def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
     """Estimate the additional delay common to all runs.
 
-    A law can take a common delay for its own memory. The delays of the runs therefore determine
-    their differences well, but not their mean. The mean is fitted together with the law, on runs
-    shifted by less than the estimate, so that no force is early.
+    A law with memory can compensate for a common delay. The differences between the delays of the
+    runs are therefore well determined, but not their mean. The mean is fitted jointly with the law
+    to runs shifted by less than the estimate, so that the remaining delay is positive.
     """
     steps = [p.step_s for p in problem.campaign.prepared]
     ahead_s = max(problem.campaign.settings.delays.reserve_s, float(np.median(steps)))

@@ -23,24 +23,24 @@ Names = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Confirmation:
-    """Effect of a candidate on the held-out errors, relative to the model with the present effects.
+    """Held-out errors with a candidate, compared with those of the present effects alone.
 
     Attributes
     ----------
     before_n, after_n
         Held-out RMS without and with the candidate, N.
     better
-        Share of the runs that are predicted better.
+        Fraction of the runs with a smaller held-out RMS.
     density
         Gain in twice the held-out log predictive density, divided by the gain in twice the log
         likelihood of the fit.
     halved
-        Runs that alone determine a parameter: their halves were held out in turn, in both fits.
+        Runs that alone determine a parameter; their halves were held out in turn, in both fits.
     units
-        Number of independent units: runs, or strokes where there are few runs.
+        Number of independent units: runs, or strokes if the number of runs is small.
     chance
-        Probability of so large a mean improvement of the units by chance: one-sided t-test of the
-        logarithms of the ratios of their mean squares. It is 1 where there are too few units.
+        p-value of the mean improvement of the units: one-sided t-test of the logarithms of the
+        ratios of their mean squares; 1 with too few units.
     """
 
     before_n: float
@@ -70,9 +70,9 @@ class Confirmation:
         held_out, richer_held_out
             Held-out predictions of the two models.
         halved
-            Names of the runs of which halves were held out.
+            Names of the runs with held-out halves.
         prepared
-            The runs, whose strokes are the units where there are too few runs.
+            The prepared runs; their strokes are the units if there are too few runs.
         """
         settings = simpler.samples.settings.held_out
         # Compare on common samples: a model may exclude those next to its jumps.
@@ -102,7 +102,13 @@ class Confirmation:
         )
 
     def units_confirm(self, chance: float) -> bool:
-        """Whether enough units are predicted significantly better."""
+        """Whether the held-out errors decrease significantly over the independent units.
+
+        Parameters
+        ----------
+        chance
+            Significance level.
+        """
         return self.chance < chance and self.after_n < self.before_n
 
     def confirms(self, evidence: float, gained: float, policy: Policy) -> bool:
@@ -138,7 +144,7 @@ def _unit_ratios(
     counted: Sequence[npt.NDArray[np.bool_]],
     settings: HeldOutSettings,
 ) -> Array:
-    """Log ratios of the mean squares without and with a candidate, one per unit."""
+    """Log ratios of the mean squares without and with a candidate, shape (units,)."""
     units = independent_units({i: counted[i] for i in before}, prepared, settings)
     squares = np.array(
         [(np.mean(before[i][rows] ** 2), np.mean(after[i][rows] ** 2)) for i, rows in units]
@@ -149,7 +155,7 @@ def _unit_ratios(
 
 
 def _chance(ratios: Array, min_units: int) -> float:
-    """Probability of so large a mean by chance (Student's t, one-sided)."""
+    """p-value of the mean (Student's t, one-sided)."""
     if len(ratios) < min_units:
         return 1.0
     error = float(np.std(ratios, ddof=1)) / np.sqrt(len(ratios))
@@ -196,9 +202,9 @@ def held_out_runs_confirm(
 ) -> bool:
     """Whether held-out runs confirm the gain of a candidate in the fit.
 
-    Where the evidence is weak, the held-out predictive density must confirm it. Errors alone carry
-    little information where the other runs cannot determine a parameter, for example where one run
-    dominates the estimate of the law's own parameters. Where the evidence is strong, any gain in
+    Weak evidence must be confirmed by the held-out predictive density. The errors alone are not
+    informative where the other runs cannot determine a parameter, for example where one run
+    dominates the estimate of the parameters of the law. Where the evidence is strong, any gain in
     mean square suffices, or a better prediction of most of the runs. A candidate that increases the
     held-out RMS by more than `policy.held_out.max_rms_ratio` is never confirmed.
 
@@ -209,9 +215,9 @@ def held_out_runs_confirm(
     gained_share
         Gain in mean square on held-out runs, as a share of the gain in the fit.
     better
-        Share of the runs that are predicted better.
+        Fraction of the runs with a smaller held-out RMS.
     times
-        Held-out RMS divided by the held-out RMS without the candidate.
+        Ratio of the held-out RMS with the candidate to that without it.
     """
     if times > policy.held_out.max_rms_ratio:
         return False

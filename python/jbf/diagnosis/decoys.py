@@ -1,9 +1,9 @@
-"""Decoy candidates: signatures at random times, which the true friction cannot contain.
+"""Decoy candidates: circularly shifted signatures that the true friction cannot contain.
 
 The signature of a candidate is shifted circularly by a random lag along each run. It keeps its
-spectrum and loses its phase, so its gain on the residual of these runs is due to chance, whatever
-recording artefacts they contain. The share of draws in which any candidate would have been named is
-the false-name rate on the user's own data (target-decoy search: Elias & Gygi 2007; surrogates:
+spectrum but not its phase. Its gain on the residual is therefore due to chance, even if the runs
+contain recording artefacts. The fraction of draws in which any candidate would have been named is
+the false-name rate on the data of the user (target-decoy search: Elias & Gygi 2007; surrogates:
 Theiler et al. 1992).
 """
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 DRAWS = 200
-"""Number of decoy campaigns. It enters no verdict."""
+"""Number of decoy campaigns; not used in a verdict."""
 SURE = 0.95
-"""Confidence level of the reported upper limit of the rate. It enters no verdict."""
+"""Confidence level of the reported upper limit of the rate; not used in a verdict."""
 
 
 def decoy_gains(directions: Sequence[Directions]) -> list[Array]:
-    """Gains of each candidate's decoys in twice the log likelihood, each of shape (`DRAWS`,)."""
+    """Gains of the decoys in twice the log likelihood, shape (`DRAWS`,) for each candidate."""
     random = np.random.default_rng(DRAWS)
     return [_gains(one, random) for one in directions]
 
@@ -41,7 +41,7 @@ def _gains(one: Directions, random: np.random.Generator) -> Array:
         n = len(noise)
         if n == 0:
             continue
-        # All shifts at once: a circular correlation is a product in the frequency domain.
+        # Compute all shifts together: a circular correlation is a product in the frequency domain.
         products = fft.rfft(noise)[:, None] * np.conj(fft.rfft(way, axis=0))
         by_shift = fft.irfft(products, n, axis=0)
         scores += by_shift[random.integers(0, n, DRAWS)]
@@ -50,5 +50,5 @@ def _gains(one: Directions, random: np.random.Generator) -> Array:
 
 
 def rate_below(named: int, draws: int) -> float:
-    """Upper confidence limit of a rate, given `named` of `draws` (Clopper & Pearson 1934)."""
+    """Upper confidence limit of the rate `named / draws` (Clopper & Pearson 1934)."""
     return float(special.betaincinv(named + 1, draws - named, SURE)) if named < draws else 1.0

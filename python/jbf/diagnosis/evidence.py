@@ -21,7 +21,7 @@ from jbf.estimation.solution import Solution
 
 
 def price_of(candidates: Candidates, parameters: int) -> float:
-    """Threshold for the gain of a number of parameters in a campaign."""
+    """Threshold for the gain of a model with this number of additional parameters."""
     return candidates.level.price(parameters, candidates.campaign.samples.count)
 
 
@@ -30,13 +30,14 @@ def evidence(
 ) -> float:
     """Evidence for the richer of two models.
 
-    Where even the richer model leaves a smooth error, the effective number of samples is smaller.
-    An effect that the fit left at its null has zero evidence: any gain is due to the search.
+    The effective number of samples is smaller where the residual of the richer model is correlated.
+    An effect with its parameters at the null has no positive evidence: its gain is due to the
+    search.
 
     Parameters
     ----------
     anywhere
-        Whether an intermittent gain also counts: it is evidence of structure, not of this effect.
+        Include an intermittent gain, which is evidence of structure but not of this effect.
     """
     gain = likelihood_gain(richer, simpler)
     if gain > 0.0 and _within_steps(candidates.campaign, richer, simpler):
@@ -47,7 +48,7 @@ def evidence(
         gain = min(gain, 0.0)
     price = price_of(candidates, richer.free - simpler.free)
     if gain > price:
-        # A gain that is due to a few samples may only reflect errors of these samples.
+        # A gain from a few samples may be due to outliers.
         robust = robust_gain(richer, simpler)
         gain = gain if robust > price else max(robust, 0.0)
     if _filters_motion(candidates, richer, simpler):
@@ -56,9 +57,9 @@ def evidence(
 
 
 def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
-    """Gain of the richer model with all samples independent, less the threshold.
+    """Log-likelihood gain of the richer model, less the threshold, if all samples are independent.
 
-    Used for a model that is confirmed by independent units.
+    It is in twice the log likelihood and is used for a model that independent units confirm.
     """
     if set(candidates.idle(richer)) - set(simpler.effects):
         return 0.0
@@ -71,9 +72,9 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
 
 
 def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
-    """Whether the richer model adds a filter that explains no more than the motion's errors.
+    """Whether the added effects include a filter that explains no more than the motion's errors.
 
-    Such an effect filters a force or a motion.
+    A filter is an effect that smooths a force or a motion.
     """
     if not SMOOTHS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
@@ -111,16 +112,16 @@ def evidence_on_common_samples(
 def swap_cost(
     candidates: Candidates, effects: tuple[str, ...], current: Solution, near: Solution
 ) -> float:
-    """Evidence lost when these effects replace those of `current`.
+    """Decrease of the evidence if these effects replace those of `current`.
 
     Parameters
     ----------
     current
-        Solution of the complete model.
+        Solution of the present model.
     near
-        Solution of the model without the effect that is exchanged.
+        Solution of the present model without the replaced effect.
     """
-    # As for evidence: where even `current` leaves a smooth error, samples count for less.
+    # Fewer samples are independent where the residual of `current` is correlated.
     share = effective_share(current)
 
     def cost(solution: Solution) -> float:
@@ -130,12 +131,12 @@ def swap_cost(
     policy = candidates.policy
     score = candidates.score_test(effects, near)
     shows = policy.search.min_score_share * price_of(candidates, 1)
-    # Subtract the step that the law itself would still make; it is not due to the effect.
+    # Subtract the gain of the next step without the effect.
     least = policy.search.min_swap_share * likelihood_gain(current, near)
     if score <= shows or score - next_step_gain(near) <= least:
         return cost(near)
     if not many_peaks(effects):
-        # With many peaks, a step from one peak does not predict another.
+        # With many peaks, a step from one peak does not predict the height of another.
         looked = candidates.look(effects, near)
         could_gain = policy.search.linear_gain_factor * looked.promised - likelihood_gain(
             looked.current_solution(), near
@@ -147,8 +148,8 @@ def swap_cost(
         return first
     solution = candidates.converge(effects, near)
     if solution.rms > policy.selection.max_rms_ratio * current.rms:
-        # Where the model is wrong, the whitest residual is not the smallest one.
+        # For a wrong model, the residual with the highest likelihood may have a larger RMS.
         return float("inf")
-    # An effect without evidence of its own replaces nothing: its fit may be better only because it
-    # uses fewer samples.
+    # An effect without evidence replaces no other: its fit may be better only because it uses
+    # fewer samples.
     return cost(solution if evidence_on_common_samples(candidates, solution, near) > 0.0 else near)

@@ -1,19 +1,19 @@
-"""Level of the tests: the gain that an effect needs, controlled for false alarms.
+"""Significance level of the tests: threshold for the gain of an effect.
 
-One level holds for a campaign: the false-alarm rate is the share of campaigns without a missing
-effect in which any candidate may be named. Shared among the candidates (Bonferroni), it gives the
-significance level of a single gain. Where the campaign's own residual gives large gains more often,
-this level is reduced until the rate holds. The signs of the residual are reversed block by block
-(wild bootstrap: Wu 1986; of blocks: Shao 2010). This keeps its size, tails and memory and removes
-the trace of any effect.
+The false-alarm rate is the fraction of campaigns without a missing effect in which any candidate
+may be named. The Bonferroni correction for the number of candidates gives the significance level of
+a single gain. If the residual of the campaign gives large gains more often, this level is reduced
+until the rate is attained. For this purpose the signs of the residual are reversed block by block
+(wild bootstrap: Wu 1986; of blocks: Shao 2010). The reversal preserves the variance, tails and
+autocorrelation of the residual and removes the contribution of any effect.
 
 Recordings have artefacts that no finding reports. The gain of an effect must therefore exceed the
 larger of two limits. The first is the gain in white noise plus an artefact margin from simulated
-recordings without missing effects. The second is the gain in the campaign's own residual, which
-already contains its artefacts.
+recordings without missing effects. The second is the gain in the residual of the campaign, which
+contains its artefacts.
 
-An effect below the minimum effect size is not named, however significant it is: with enough samples
-any model of a machine is wrong.
+A significant effect below the minimum effect size is not named, since with enough samples any model
+is rejected.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ from jbf.estimation.variance import Places, blocks_of, significant_inflation
 Array = npt.NDArray[np.float64]
 
 DRAWS = 4000
-"""Number of sign draws of the bootstrap; forty of them exceed a level of one per cent.
+"""Number of bootstrap draws; forty of them exceed a level of one per cent.
 
-It is a numerical resolution.
+It determines the numerical resolution of the level.
 """
 
 
@@ -54,7 +54,7 @@ class Level:
     Attributes
     ----------
     false_alarm_rate
-        False-alarm rate: share of campaigns without a missing effect in which noise may name one.
+        Fraction of campaigns without a missing effect in which noise may name one.
     candidates
         Number of candidate effects.
     chance
@@ -62,12 +62,11 @@ class Level:
     blocks
         Number of blocks of the residual whose signs were reversed; zero before calibration.
     artefact_margin
-        Artefact margin: gain that recording artefacts may add to the gain in white noise.
+        Gain that recording artefacts may add to the gain in white noise.
     min_gain
         Gain of an effect of the minimum effect size.
     decoys, decoys_named
-        Number of decoy campaigns (`decoys`), and number of those in which a decoy would have been
-        named.
+        Number of decoy campaigns, and number of those in which a decoy would have been named.
     """
 
     false_alarm_rate: float
@@ -88,7 +87,7 @@ class Level:
         noise_rms: float,
         least_share: float = 0.0,
     ) -> Level:
-        """The level shared among candidates, for white noise.
+        """Return the level in white noise with a Bonferroni correction for the candidates.
 
         Parameters
         ----------
@@ -97,7 +96,7 @@ class Level:
         noise_rms
             RMS of the residual, N.
         least_share
-            Smallest share of the mean square that an effect must explain.
+            Minimum share of the mean square that an effect must explain.
         """
         least = max(policy.min_effect_share, policy.min_effect / max(noise_rms, 1e-300))
         chance = policy.false_alarm_rate / max(candidates, 1)
@@ -111,14 +110,14 @@ class Level:
 
     @property
     def white_noise_threshold(self) -> float:
-        """Gain of one parameter in white noise at the rate shared among the candidates."""
+        """Critical gain of one parameter in white noise, with the Bonferroni correction."""
         return _gain_from_noise(self.false_alarm_rate / max(self.candidates, 1))
 
     @property
     def significant(self) -> float:
-        """Gain of one parameter that neither noise nor recording artefacts produce.
+        """Threshold for the gain of one parameter, including the artefact margin.
 
-        It is the larger of `critical` and `white` plus the artefact margin.
+        It is the larger of `critical` and `white_noise_threshold` plus the artefact margin.
         """
         return max(self.critical, self.white_noise_threshold + self.artefact_margin)
 
@@ -147,20 +146,21 @@ def _gain_from_noise(chance: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Directions:
-    """Directions of the innovations in which the parameters of an effect show.
+    """Score directions of the parameters of an effect in the space of the innovations.
 
     Attributes
     ----------
     ways
-        Orthonormal columns, orthogonal to the derivatives of the model without the effect, (n, k).
+        Orthonormal columns, orthogonal to the derivatives of the model without the effect, shape
+        (n, k).
     innovations
-        Innovations of that model, of unit variance, shape (n,).
+        Innovations of the model without the effect, scaled to unit variance, shape (n,).
     counted
         Factors on the squared scores relative to white noise, shape (k,).
     blocks
-        First rows of the blocks.
+        First row of each block.
     ends
-        Rows at which the next run begins.
+        First row of each run but the first.
     """
 
     ways: Array
@@ -180,11 +180,12 @@ class Directions:
         innovations
             Innovations of the model without the effect, shape (n,).
         effect, law
-            Derivatives with respect to the effect's parameters, (n, k), and to those of that model.
+            Derivatives with respect to the parameters of the effect, shape (n, k), and to those of
+            the model without it.
         samples
-            The samples of the rows.
+            Samples to which the rows belong.
         share
-            Number of independent samples per sample.
+            Ratio of the effective number of samples to the number of samples.
         """
         size = np.linalg.norm(law, axis=0)
         law = law[:, size > 0.0] / size[size > 0.0]
@@ -204,17 +205,17 @@ class Directions:
         return cls(ways, unit, counted, blocks_of(samples, share), ends)
 
     def by_block(self, innovations: Array, blocks: Places) -> Array:
-        """Scores of noise, block by block, shape (blocks, k).
+        """Scores of noise by block, shape (blocks, k).
 
-        The noise is the residual without any part that a candidate could explain. Scores have unit
-        variance in noise of the assumed memory.
+        The noise is the residual without the part that candidates could explain. Scores have unit
+        variance in noise with the assumed autocorrelation.
         """
         scores: Array = np.add.reduceat(self.ways * innovations[:, None], blocks, axis=0)
         return scores * np.sqrt(self.counted)
 
 
 def _ends(samples: Samples) -> Places:
-    """First rows of each run but the first, among the samples with weight."""
+    """First row of each run but the first, among the samples with nonzero weight."""
     counts = [int(np.count_nonzero(w > 0.0)) for w in samples.weight]
     return np.asarray(np.cumsum(counts)[:-1], dtype=np.intp)
 
@@ -223,7 +224,7 @@ _stacked_rows: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDiction
 
 
 def _rows(near: Solution) -> tuple[Array, Array]:
-    """Innovations of a solution and their derivatives, cached while every candidate is tested."""
+    """Innovations of a solution and their derivatives, cached for the tests of all candidates."""
     if near not in _stacked_rows:
         _stacked_rows[near] = near.stacked()
     return _stacked_rows[near]
@@ -232,21 +233,21 @@ def _rows(near: Solution) -> tuple[Array, Array]:
 def score_test(
     problem: Problem, starts: Sequence[Array], near: Solution, added: Collection[str]
 ) -> tuple[float, Directions, Array]:
-    """Score test at the best of several starts, each equivalent to a smaller model.
+    """Score test at several starting values equivalent to a smaller model; the largest gain.
 
-    Long records are thinned for the derivatives.
+    Derivatives are computed from thinned records if the records are long.
 
     Returns
     -------
     tuple
         The predicted gain (`score_gain`), the directions of the added effects, and the values after
-        one step from the best start.
+        one step from the starting values with the largest gain.
     """
     thinned = problem.thinned
-    # Samples that a smaller model excludes next to its jumps would support any effect.
+    # Samples next to jumps, which the smaller model excludes, would favour any effect.
     samples = near.samples if thinned is problem else thinned.campaign.samples
     is_added = np.array([thinned.names[i].split(".")[0] in added for i in thinned.open], dtype=bool)
-    # At the null the rest of the model is unchanged, and so are its derivatives.
+    # At the null, the derivatives with respect to the other parameters are unchanged.
     reuse_rows = thinned is problem and near.free == np.count_nonzero(~is_added)
     best: tuple[float, Array, Array, Array] | None = None
     for start in starts:
@@ -273,7 +274,7 @@ def score_test(
 
 
 def _explained(ways: Array, target: Array) -> Array:
-    """Part of a target that unit columns explain; the columns may be collinear."""
+    """Projection of `target` on the span of unit columns, which may be collinear."""
     size, axes = np.linalg.eigh(ways.T @ ways)
     resolved = size > 1e-12 * size[-1]
     step = axes[:, resolved] @ ((axes[:, resolved].T @ (ways.T @ target)) / size[resolved])
@@ -282,9 +283,9 @@ def _explained(ways: Array, target: Array) -> Array:
 
 
 def _largest_common_group(directions: list[Directions]) -> list[Directions]:
-    """Directions of the largest group with the same number of samples.
+    """Largest group of directions with an equal number of samples.
 
-    A candidate that excludes samples cannot be tested against the residual of the others.
+    A candidate that excludes samples cannot be tested on the residual of the others.
     """
     counts = Counter(len(d.ways) for d in directions)
     usual = max(counts, key=lambda count: (counts[count], count), default=0)
@@ -292,12 +293,12 @@ def _largest_common_group(directions: list[Directions]) -> list[Directions]:
 
 
 def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
-    """Reduce the level until sign-reversed residuals give no more names than it allows.
+    """Reduce the significance level to the false-alarm rate in sign-reversed residuals.
 
-    The part of the residual that any candidate could explain is removed first, because that part is
-    under test. Some candidates have no direction, for example an effect that moves the instants of
-    jumps, which changes nothing at its null. These, and candidates on other samples, keep their
-    share of the level.
+    The part of the residual that candidates could explain is removed first, because it is under
+    test. Some candidates have no score direction, for example an effect that moves the instants of
+    jumps, whose derivative at the null is zero. For these, and for candidates with other samples,
+    the Bonferroni correction is used.
     """
     tested = _largest_common_group([d for d in directions if d.ways.size])
     if not tested:
@@ -305,12 +306,12 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
     every = np.column_stack([d.ways for d in tested])
     noise = tested[0].innovations - _explained(every, tested[0].innovations)
     noise /= np.sqrt(max(float(np.mean(noise**2)), 1e-300))
-    # Scores may refer to models whose residuals have different memory; use the fewest blocks.
+    # The models may have residuals of different autocorrelation: use the fewest blocks.
     blocks = min((d.blocks for d in tested), key=len)
     random = np.random.default_rng(len(blocks))
     signs = random.integers(0, 2, (DRAWS, len(blocks)), dtype=np.int8).astype(np.float32)
     signs = 2.0 * signs - np.float32(1.0)
-    # One matrix product for all candidates: the signs are read from memory once.
+    # Use one matrix product for all candidates, which reads the signs from memory once.
     columns = np.column_stack([one.by_block(noise, blocks) for one in tested])
     scores = (signs @ columns.astype(np.float32)).astype(np.float64)
     ends = np.cumsum([one.ways.shape[1] for one in tested])
@@ -319,7 +320,7 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
         least = np.minimum(least, special.chdtrc(squares.shape[1], np.sum(squares, axis=1)))
     least.sort()
     untested = max(level.candidates - len(tested), 0)
-    # Count the draws with a name; untested candidates may add theirs.
+    # Add the Bonferroni bound of the untested candidates to the rate of the tested ones.
     false = np.arange(1, DRAWS + 1) / DRAWS + untested * least
     allowed = np.flatnonzero(false <= level.false_alarm_rate)
     calibrated_chance = float(least[allowed[-1]]) if len(allowed) else float(0.5 * least[0])
@@ -327,7 +328,7 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
 
 
 def with_decoys(level: Level, directions: Sequence[Directions], samples: int) -> Level:
-    """Add to the level the number of decoy campaigns in which a decoy exceeds its threshold."""
+    """Return the level with the number of decoy campaigns that exceed the threshold."""
     tested = [d for d in directions if d.ways.size]
     if not tested:
         return level

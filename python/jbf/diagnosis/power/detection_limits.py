@@ -174,7 +174,10 @@ class _Detectable:
         return cls(model, parameters, price, tuple(times), Change.of(runs, model, at), size)
 
     def change_at(self, runs: PresentRuns, factor: float) -> Change:
-        """Change at a multiple of the first strength, or of the usual one where none is enough."""
+        """Friction change at `factor` times the smallest detectable strength.
+
+        The usual strength is used if no strength within the bounds is detectable.
+        """
         return Change.of(runs, self.model, factor * _finite_or_one(self.times[0]))
 
     def parameter_value(self, times: float) -> float | None:

@@ -55,7 +55,7 @@ class Strength:
     sizes: tuple[int, ...]
 
     def values(self, times: float) -> Array:
-        """Parameter values at a multiple of the usual strength, within bounds."""
+        """Parameter values at `times` the usual strength, clipped to their bounds."""
         values, pages = self.usual.copy(), list(self.problem.parameters.values())
         for i in self.sizes:
             null, page = pages[i].null, pages[i]
@@ -164,9 +164,10 @@ class PresentRuns:
         return float(np.clip(remaining / max(gain, 1e-300), 0.02, 1.0))
 
     def discounts(self, change: Array) -> tuple[float, ...]:
-        """Possible discount factors of a gain in this direction in white noise.
+        """Discount factors of a gain along `change`, one per white-noise draw.
 
-        The long-run variance is itself an estimate, limited below by that of white noise.
+        They vary in white noise because the long-run variance is estimated, with the variance of
+        white noise as its lower limit.
         """
         counts = [int(np.count_nonzero(w > 0.0)) for w in self.samples.weight]
         ends = np.cumsum(counts)[:-1]

@@ -2,7 +2,7 @@
 
 Each set of effects passes through several states. Its score is tested, it is ranked by a few steps
 of a fit, it converges, and further peaks of a multimodal likelihood are searched. Each state is
-computed once and shared by all later uses.
+computed once and cached.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ Progress = Callable[[str, int, int], None]
 Array = npt.NDArray[np.float64]
 
 RANKING_EVALUATIONS = 6
-"""Number of steps after which candidates are ranked.
+"""Number of evaluations of a fit before candidates are ranked.
 
-Only competitive candidates are fitted further. It limits the effort only.
+Only competitive candidates are fitted further. It limits the computing time only.
 """
 
 
 def many_peaks(effects: Iterable[str]) -> bool:
-    """True where the likelihood of one of these effects has many peaks."""
+    """Whether the likelihood of one of these effects has many local maxima."""
     return any(find_effect(name).peaks for name in effects)
 
 
@@ -74,7 +74,7 @@ class Candidates:
         self._levels: dict[frozenset[str], Level] = {}
 
     def of(self, campaign: Campaign) -> Candidates:
-        """Create the candidates of another campaign of the same runs, with these fits as starts."""
+        """Return the candidates of another campaign of the same runs; fits start from these."""
         self.before = None
         again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
         # Valid until the level is calibrated for a model of the new campaign.
@@ -85,13 +85,13 @@ class Candidates:
 
     @cached_property
     def names(self) -> list[str]:
-        """Effects that are compatible with the law and that these records could show."""
+        """Effects that are compatible with the law and testable in these records."""
         pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
         return [e.name for e in pages if self.campaign.missing_requirement(e) is None]
 
     @cached_property
     def not_tried(self) -> dict[str, str]:
-        """Effects that fit the law but are not testable in these records, with the reason."""
+        """Effects that are compatible with the law but not testable in these records, by name."""
         pages = [e for e in catalogue().values() if reason_not_applicable(e, self.law) is None]
         reasons = {e.name: self.campaign.missing_requirement(e) for e in pages}
         return {name: reason for name, reason in reasons.items() if reason is not None}
@@ -105,7 +105,7 @@ class Candidates:
         return self._fitted[key]
 
     def values_of(self, effects: Iterable[str]) -> dict[str, float] | None:
-        """Parameter values by name for a set of effects; None where it was not fitted."""
+        """Parameter values by name for a set of effects; None if it has not been fitted."""
         fitted = self._fitted.get(frozenset(effects))
         if fitted is None or fitted.state in ("posed", "looked"):
             return None
@@ -137,9 +137,9 @@ class Candidates:
         -------
         float
             Gain in twice the log likelihood that one Gauss-Newton step predicts from the null of
-            the added effects, with the parameters of the law free; the largest of all starts.
-            Infinite where the null cannot be reached by a step, or where an effect moves or spreads
-            jumps or has a free initial state.
+            the added effects, with the parameters of the law free; the maximum over all starting
+            values. Infinite where the null cannot be reached by a step, or where an effect moves or
+            spreads jumps or has a free initial state.
         """
         fitted = self.fitted(effects)
         if fitted.score is None:
@@ -151,7 +151,8 @@ class Candidates:
             }
             nulls = {n: p.null for n, p in pages.items() if p.null is not None}
             reach = bool(nulls) and all(np.isfinite(null) for null in nulls.values())
-            # A jump that moves by less than a sample changes no sample: the null predicts nothing.
+            # A jump that moves by less than a sample changes no sample: the score at the null is
+            # zero.
             if not reach or any(find_effect(name).moves_jumps for name in added):
                 fitted.score = np.inf
             else:
@@ -160,9 +161,9 @@ class Candidates:
                 fitted.score, fitted.directions, fitted.stepped = score_test(
                     fitted.problem, starts, near, added
                 )
-                # Likewise where jumps are spread: the samples next to them may be the most
-                # informative. Likewise for a free initial state: most of its gain lies far from the
-                # null.
+                # The score is also uninformative where jumps are spread, since the samples next to
+                # them may be the most informative, and for a free initial state, whose gain is
+                # obtained far from the null.
                 if spreads_jumps(added) or has_unknown_start(added):
                     fitted.score = np.inf
         return fitted.score
@@ -170,13 +171,13 @@ class Candidates:
     # ---- the level of the tests -------------------------------------------------------------
     @property
     def level(self) -> Level:
-        """Acceptance level of the tests; that of the bare law until it is calibrated."""
+        """Significance level of the tests; that of the bare law until it is calibrated."""
         if self._level is None:
             self._level = self._level_given(())
         return self._level
 
     def calibrate(self, present: Sequence[str]) -> None:
-        """Calibrate the level by how often the residual of a model gives a large gain by chance."""
+        """Calibrate the level by the frequency of large chance gains in the residual of a model."""
         key = frozenset(present)
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
@@ -195,7 +196,7 @@ class Candidates:
         return Level.shared(self.policy, len(self.names), samples, base.rms, least)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
-        """Fit these effects well enough for ranking, starting from a smaller model's solution."""
+        """Fit these effects approximately, for ranking, from the solution of a smaller model."""
         fitted = self.fitted(effects)
         if fitted.state in ("posed", "looked"):
             way = fitted.approach or self._approach(fitted, effects, near)
@@ -204,7 +205,7 @@ class Candidates:
         return fitted.current_solution()
 
     def look(self, effects: Sequence[str], near: Solution) -> Fitted:
-        """Fit these effects by a few steps only, starting from the solution of a smaller model."""
+        """Fit these effects by a few steps, from the solution of a smaller model."""
         fitted = self.fitted(effects)
         if fitted.state == "posed":
             fitted.approach = self._approach(fitted, effects, near)
@@ -218,8 +219,9 @@ class Candidates:
         seeds: list[Mapping[str, float]] = [{}]
         if near is not None:
             near_values = self._values_of(near)
-            # The law may be a poor start, since it compensated for a missing effect. For effects
-            # with many peaks, the peak found without the new effect is not a useful start.
+            # The fitted law parameters may be poor starting values, since they compensated for a
+            # missing effect. For effects with many peaks, neither is the peak without the new
+            # effect a useful start.
             anew = many_peaks(near.effects)
             kept = {} if anew else {n: v for n, v in near_values.items() if "." in n}
             seeds = [near_values, kept]
@@ -269,10 +271,9 @@ class Candidates:
         return fitted.current_solution()
 
     def search_peaks(self, effects: Sequence[str]) -> Solution:
-        """Search for a higher peak of the likelihood of a set of effects.
+        """Search for a higher maximum of the likelihood of a set of effects.
 
-        The search for fewer effects may have led to another peak. The search is made once for each
-        set.
+        The fit of fewer effects may have converged to another maximum. Each set is searched once.
         """
         near, fitted = self.converge(effects), self.fitted(effects)
         if fitted.peaks_searched:
@@ -291,7 +292,8 @@ class Candidates:
     def refit_from(self, effects: Sequence[str], richer: Sequence[str]) -> Solution:
         """Refit a smaller set of effects from the parameter values of a richer model.
 
-        The richer model may have passed a local minimum in which the smaller one remained.
+        The fit of the smaller model may have converged to a local minimum that the richer one
+        avoided.
         """
         near, fitted = self.converge(effects), self.fitted(effects)
         self.converge(richer)
@@ -300,21 +302,21 @@ class Candidates:
         samples = problem.samples_at(start)
         refit = problem.solution(start, samples, near.noise, False)
         refit = settle(problem, refit, samples)
-        # With run-specific parameters a wrong law can be more likely and yet have a far larger RMS.
+        # With run-specific parameters, a wrong law can have a higher likelihood but a larger RMS.
         too_large = refit.rms > self.policy.selection.max_rms_ratio * near.rms
         if likelihood_gain(refit, near) > 0.0 and not too_large:
             fitted.improve(refit)
         return fitted.current_solution()
 
     def idle(self, solution: Solution) -> tuple[str, ...]:
-        """The effects whose parameters a solution left at their null."""
+        """Effects whose parameters have their null values in a solution."""
         problem = self.fitted(solution.effects).problem
         return idle_effects(problem.effects, problem.parameters, solution.values.tolist())
 
     def confirmation(self, present: Sequence[str], name: str) -> Confirmation:
         """Held-out confirmation of one added effect.
 
-        For a run that alone determines a parameter, halves are held out in turn, in both fits.
+        For a run that alone determines a parameter, its halves are held out in turn, in both fits.
         """
         richer = (*present, name)
         before, after = self.converge(present), self.converge(richer)
@@ -337,9 +339,9 @@ class Candidates:
         effects
             Effects of the model.
         halved
-            Runs of which two parts, not the whole, are held out in turn.
+            Indices of runs of which two parts are held out in turn instead of the complete run.
         alternate
-            Whether these parts are alternate parts; halves by default.
+            Use alternate sections as parts in place of halves.
         """
         solution, fitted = self.converge(effects), self.fitted(effects)
         if not fitted.held_out:
@@ -354,7 +356,7 @@ class Candidates:
 
     @cached_property
     def beyond(self) -> list[ExtrapolatedRun]:
-        """The runs that exceed the range of all others; empty for a single run."""
+        """Runs that exceed the range of all others; empty for a single run."""
         return extrapolated_runs(self.campaign)
 
     def held_out_rms(self, effects: Sequence[str]) -> float:
@@ -372,7 +374,7 @@ class Candidates:
         return dict(zip(names, near.values.tolist(), strict=True))
 
     def _required_square(self, near: Solution | None) -> float:
-        """Sum of squares that a larger model must fall below to show a gain."""
+        """Sum of squares below which a larger model has a relevant gain, N^2."""
         if near is None:
             return np.inf
         every = self.campaign.samples

@@ -1,7 +1,7 @@
 """Simulation study of the diagnosis on the user's rig: complete diagnoses of similar campaigns.
 
-The fitted model records the same motions again (`estimation.bootstrap`): a number of campaigns
-with the effects that were found, and the same number with no missing effect. Each is diagnosed like
+The fitted model simulates records of the same motions (`estimation.bootstrap`): a number of
+campaigns with the effects of the model, and the same number without them. Each is diagnosed like
 the measured campaign.
 """
 
@@ -26,7 +26,7 @@ Names = tuple[str, ...]
 Progress = Callable[[str, int, int], None]
 
 SURE = 0.95
-"""Confidence level of the interval of a rate (Clopper & Pearson 1934). It enters no verdict."""
+"""Confidence level of the interval of a rate (Clopper & Pearson 1934), not used in a verdict."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Answer:
     draw
         Index of the random draw.
     verdict, effects
-        Those of the diagnosis, including the terms of its machine; the verdict is `failed` where it
-        ended with an error.
+        Verdict and effects of the diagnosis, including the machine terms; the verdict is `failed`
+        if the diagnosis raised an error.
     alternatives
         Effects with which each named effect is confounded.
     """
@@ -54,12 +54,12 @@ class Answer:
 
     @property
     def right(self) -> bool:
-        """True where all hidden effects were named and no other."""
+        """Whether exactly the hidden effects were named."""
         return set(self.effects) == set(self.hidden) and self.verdict != "failed"
 
     @property
     def false(self) -> bool:
-        """True where a named effect was not hidden and neither was any of its alternatives."""
+        """Whether a named effect was not hidden and neither was any of its alternatives."""
         groups = [{name, *self.alternatives.get(name, ())} for name in self.effects]
         return any(not names & set(self.hidden) for names in groups)
 
@@ -75,7 +75,7 @@ class Answer:
 
 
 def answer_of(table: Mapping[str, Any]) -> Answer:
-    """Restore the result from the output of `Answer.to_dict`."""
+    """Create an `Answer` from the output of `Answer.to_dict`."""
     others = {k: tuple(v) for k, v in table["alternatives"].items()}
     hidden, effects = tuple(table["hidden"]), tuple(table["effects"])
     return Answer(hidden, int(table["draw"]), table["verdict"], effects, others)
@@ -193,9 +193,9 @@ def check(
     done: Sequence[Answer] = (),
     keep: Callable[[Answer], None] | None = None,
 ) -> Check:
-    """Diagnose campaigns like the present one, with and without the effects that were found.
+    """Diagnose simulated campaigns like the present one, with and without the model's effects.
 
-    The duration is that of `campaigns` diagnoses, and twice that where the model has effects.
+    It takes `campaigns` diagnoses, or twice that number if the model has effects.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ def check(
 
 
 def identity(model: Model, runs: Iterable[Run], policy: Policy = DEFAULT) -> str:
-    """Hash of a model, its runs and the policy; results of another identity are not comparable."""
+    """Hash of a model, its runs and the policy; results with other hashes are not comparable."""
     digest = hashlib.sha256(model.to_toml().encode())
     digest.update(repr(policy).encode())
     for run in runs:

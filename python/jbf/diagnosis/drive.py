@@ -1,8 +1,8 @@
-"""Drives: terms of the machine, and errors of the motion.
+"""Drives: machine terms and errors of the motion.
 
-A motor accelerates its load and carries its weight whatever the friction is. Inertia or mass,
-weight and offset belong to the model from which the diagnosis of a drive starts; they are not
-missing effects. The errors of the recorded motion are part of the likelihood.
+A motor accelerates its load and carries its weight, independently of friction. Inertia or mass,
+weight and offset are part of the initial model of the diagnosis of a drive; they are not missing
+effects. The errors of the recorded motion are part of the likelihood.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ TERMS = (OFFSET, "inertia", "gravity")
 
 
 def machine_of(candidates: Candidates, present: Iterable[str]) -> Names:
-    """The effects of a model that are terms of its machine; empty for a rig without a drive."""
+    """Machine terms among the effects of a model; empty for a rig without a drive."""
     if candidates.campaign.rig.drive is None:
         return ()
     return tuple(name for name in present if name in TERMS)
@@ -31,13 +31,13 @@ def machine_of(candidates: Candidates, present: Iterable[str]) -> Names:
 def with_errors_of_motion(candidates: Candidates, base: Names) -> Campaign | None:
     """Return the campaign of a drive with the errors of its motion in the likelihood.
 
-    Its force is corrected by a time delay common to all runs. Returns None for a rig without a
-    drive, or where these errors are negligible.
+    The force is corrected by a time delay common to all runs. Returns None for a rig without a
+    drive, or if these errors are negligible.
 
     Parameters
     ----------
     base
-        Terms of the drive's machine in the model that estimates the errors.
+        Machine terms of the model with which the errors are estimated.
     """
     if candidates.campaign.rig.drive is None:
         return None

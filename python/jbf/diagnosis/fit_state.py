@@ -34,18 +34,17 @@ class Fitted:
         `posed`, `looked` (a few steps), `ranked` (enough steps for ranking) or `converged`.
     score
         Gain predicted by its score test relative to the first smaller model, in twice the log
-        likelihood; infinite where the null cannot be reached by a step.
+        likelihood; infinite if the null cannot be reached by a step.
     directions
-        Score directions of its test, kept until the level of the tests has been calibrated with
-        them.
+        Score directions of its test, kept until the level of the tests has been calibrated.
     stepped
-        Values after one step from the null: the start for a weak effect.
+        Parameter values after one step from the null, the starting values for a weak effect.
     approach, least
-        An unfinished search, and the sum of squares that it must fall below to be continued.
+        An unfinished search, and the sum of squares below which it is continued, N^2.
     promised
-        Possible gain by the linear model, in twice the log likelihood; infinite once it was ranked.
+        Gain predicted by the linear model, in twice the log likelihood; infinite after ranking.
     peaks_searched
-        True once its other peaks were searched.
+        Whether the other maxima of the likelihood have been searched.
     held_out
         Held-out predictions of the runs; empty until they are required.
     halves
@@ -66,7 +65,7 @@ class Fitted:
     halves: dict[tuple[int, bool], list[HeldOutPart]] = field(default_factory=dict)
 
     def current_solution(self) -> Solution:
-        """The present solution."""
+        """Return the present solution."""
         assert self.solution is not None
         return self.solution
 
@@ -89,19 +88,19 @@ class Fitted:
 
 @dataclass
 class Reached:
-    """The model from which the last round began, the result of an interrupted diagnosis.
+    """Model at the start of the last round, which is the result of an interrupted diagnosis.
 
     Attributes
     ----------
     candidates, present
-        The candidates that include its fit, and its effects; None before the law alone was fitted.
+        Candidates that include the fit, and effects of the model; None before the first fit.
     """
 
     candidates: Candidates | None = None
     present: tuple[str, ...] = ()
 
     def fit(self) -> Fit | None:
-        """That model with its standard errors; None where no model has been fitted yet."""
+        """Return the fit of the model with standard errors; None if no model has been fitted."""
         if self.candidates is None:
             return None
         # The remaining work is small and final: lift the limit on computing steps.

@@ -1,4 +1,4 @@
-"""Ledger of a diagnosis: the steps, the candidates tried at each, and the residual structure."""
+"""Ledger of a diagnosis: steps, candidates tried in each step, and residual structure."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class Trial:
         parameters; above zero the model with the candidate is better.
     outcome
         `added`, `ties`, `rejected`, `negligible`, `no gain`, `confounder` or `replaced`.
-        `negligible`: significant, but below the minimum effect size. `no gain`: no more than
+        `negligible`: significant, but below the minimum effect size. `no gain`: not larger than
         expected by chance. `confounder`: added, but the runs disagree on its parameters.
-        `replaced`: added, and removed when a later effect was better in its place.
+        `replaced`: added, and later replaced by another effect.
     reason
         Reason for the outcome.
     """
@@ -51,14 +51,14 @@ class Trial:
 
 @dataclass(frozen=True)
 class Extrapolation:
-    """A run that exceeds the range of all others, predicted by a fit to those alone.
+    """Prediction error of a run that exceeds the range of all others, from a fit to the others.
 
     Attributes
     ----------
     run
-        Its name.
+        Name of the run.
     rms
-        RMS of the error of that prediction, N; not included in the held-out error.
+        RMS of the prediction error, N; not included in the held-out error.
     where
         Description of the range that it exceeds.
     """
@@ -74,22 +74,23 @@ class Extrapolation:
 
 @dataclass(frozen=True)
 class Step:
-    """The model after one addition; the first step is the bare law.
+    """Model after one addition; the first step is the bare law.
 
     Attributes
     ----------
     effects
         Effects of the model.
     rms
-        RMS over the runs that it was fitted to, N.
+        RMS of the residual, N.
     held_out_rms
-        RMS over runs, or parts of runs, each held out of the fit that predicts it, N.
+        RMS of the held-out prediction errors, over runs or parts of runs, N.
     noise_rms
-        Noise floor, N; zero where it is not known.
+        Noise floor, N; zero if unknown.
     trials
-        The candidates that competed for the next place.
+        Candidates for the next addition.
     extrapolations
-        Errors of runs that exceed the range of all others; parts of them count in `held_out_rms`.
+        Errors of runs that exceed the range of all others; `held_out_rms` includes parts of these
+        runs.
     """
 
     effects: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Manual round: a model with effects that the user chose, and the gain of each other effect.
+"""Manual round: a model with the effects chosen by the user, and the gain of each other effect.
 
 `diagnose` decides automatically; this function leaves the choice to the user.
 """
@@ -34,11 +34,12 @@ class ManualRound:
     fit
         The fit of the model.
     step
-        Its step of the ledger, with the candidates tried.
+        Step of the ledger for this model, with the candidates tried.
     comparison
         Comparison of the model with the records.
     power
-        Strength from which each candidate is detectable in these runs when added to this model.
+        Smallest strength at which each candidate is detectable in these runs, in addition to the
+        model.
     """
 
     fit: Fit
@@ -59,7 +60,7 @@ def manual_round(
     progress: Progress | None = None,
     fitted_as: Callable[[Fit, Comparison], None] | None = None,
 ) -> ManualRound:
-    """Fit a law with named effects, and try every other effect in addition to them.
+    """Fit a law with the given effects, and test each other effect in addition to them.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ def manual_round(
     law, clock
         The base law and its clock.
     policy
-        Numbers by which a candidate is judged.
+        Thresholds and settings of the tests.
     progress
         Called with a message, the number of tried candidates and the total number.
     fitted_as
@@ -79,13 +80,13 @@ def manual_round(
     Raises
     ------
     InputError
-        An unknown name, a missing column, or runs in which nothing moves.
+        An unknown name, a missing column, or runs without motion.
     Stopped
         The computation was interrupted; the exception holds the fit, or the best solution so far.
     """
     if progress is not None:
         progress("fitting", 0, 0)
-    # The model is exactly that of `fit`, so that the step can be reproduced by hand.
+    # Use the model of `fit`, so that the user can reproduce the step.
     fitted = fit(rig, runs, effects, law=law, clock=clock)
     chosen, campaign = fitted.model.effects, Campaign.prepare(rig, runs, policy.estimation)
     comparison = compare_prepared(fitted.model, campaign)

@@ -1,4 +1,4 @@
-"""Diagnosis of many rigs: each campaign separately, on any executor."""
+"""Diagnosis of many campaigns, each separately, with any executor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jbf.records.rig import Rig
 from jbf.records.run import PathLike, Run
 
 Given = tuple[Rig, Sequence[Run]] | PathLike
-"""A rig with its runs, or a folder that holds `rig.toml` and the runs as CSV."""
+"""A rig with its runs, or a folder that contains `rig.toml` and the runs as CSV."""
 
 OPTIONS = ("law", "clock", "limits", "policy")
 """Options of `diagnose` that may be given for all campaigns."""
@@ -36,8 +36,8 @@ def diagnose_many(
     Parameters
     ----------
     campaigns
-        Name to a rig with its runs, or to a folder that holds `rig.toml` and CSV files. The process
-        that makes the diagnosis reads the folder.
+        Mapping of names to a rig with its runs, or to a folder that contains `rig.toml` and CSV
+        files. The worker process reads the folder.
     executor
         Any `concurrent.futures` executor: processes, a Dask client's `get_executor()`, and so on;
         not shut down. Without one, campaigns are processed sequentially.
@@ -49,12 +49,12 @@ def diagnose_many(
     Returns
     -------
     dict
-        In the order given: each campaign's diagnosis, or the error that it ended with.
+        Diagnosis of each campaign, or the error that it raised, in the given order.
 
     Raises
     ------
     InputError
-        An option is wrong for all campaigns.
+        An option is invalid.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def diagnose_many(
         for future in as_completed(running):
             try:
                 keep(running[future], future.result())
-            except Exception as error:  # a worker that died: record the error as the result
+            except Exception as error:  # a failed worker process: record the error as the result
                 keep(running[future], _lost(error))
     return {name: results[name] for name in campaigns}
 

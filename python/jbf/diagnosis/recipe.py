@@ -58,7 +58,7 @@ def diagnose(
     policy: Policy = DEFAULT,
     progress: Progress | None = None,
 ) -> Diagnosis:
-    """Find the effects of the catalogue that a law lacks to explain the runs.
+    """Find the effects of the catalogue that are missing from a law.
 
     The effect with the largest evidence is added to the model, and the search is repeated.
 
@@ -72,7 +72,7 @@ def diagnose(
         Base law and its clock. `auto` selects, among the laws that the rig allows, the one with the
         smallest held-out error without effects.
     limits
-        Limits of the rig in the next experiment; taken from the runs by default.
+        Limits of the rig for the next experiment; by default those of the runs.
     policy
         Numbers that determine the verdict.
     progress
@@ -86,11 +86,11 @@ def diagnose(
     Raises
     ------
     InputError
-        A run lacks friction, or nothing moves in it.
+        A run has no friction record, or no motion.
     Stopped
-        The diagnosis was interrupted; the exception holds the model of the last round's start.
+        The diagnosis was interrupted; the exception holds the model at the start of the last round.
     Unfinished
-        The diagnosis would take too long; the exception holds the same model.
+        The computing budget was exceeded; the exception holds the same model.
 
     Notes
     -----
@@ -132,7 +132,7 @@ def _diagnose(
     progress: Progress | None,
     reached: Reached,
 ) -> Diagnosis:
-    """Implementation of `diagnose` that records its progress."""
+    """Implement `diagnose`; `reached` is updated after each round."""
     begun = time.monotonic()
     if law != AUTO:
         check_rig(rig, law)
@@ -184,7 +184,7 @@ def _diagnose(
 
 
 def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
-    """The selected law, preceded by the best law without memory if the selected one is elastic."""
+    """Laws to diagnose: the selected law, after the best memoryless law if it is elastic."""
     first = laws[0].law
     if not find_law(first).has_bristle:
         return (first,)
@@ -193,7 +193,7 @@ def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
 
 
 def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:
-    """Whether an elastic law without effects predicts better than another law with its effects."""
+    """Whether a law without effects predicts better than another law with its effects."""
     alone = {t.law: t.held_out_rms for t in laws}
     first, last = best.steps[0], best.steps[-1]
     improved = last.held_out_rms / max(first.held_out_rms, 1e-300)
@@ -203,7 +203,7 @@ def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], mar
 def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
     """Held-out RMS of final models on common samples, in the unit of the force.
 
-    Each is the RMS of the fit on these samples, times the ratio of held-out RMS and fit RMS.
+    It is computed as the fit RMS on these samples, times the ratio of held-out RMS to fit RMS.
     """
     compared = [compare_prepared(answer.model, recorded) for answer in answers]
     samples = recorded.samples
@@ -232,7 +232,7 @@ def _with_law(
     Parameters
     ----------
     given
-        Whether the user chose the law; if so, a simpler law is also searched.
+        Whether the user chose the law; if so, a simpler law is also sought.
     """
     begun = time.monotonic()
     campaign = without_transients(recorded, law, clock)
@@ -251,7 +251,7 @@ def _with_law(
     machine = machine_of(candidates, present)
     named = tuple(name for name in present if name not in doubted)
     if doubted and not remainder_of(candidates, named):
-        # No structure remains without the confounders: remove them.
+        # The model without the confounders has no residual structure: remove them.
         present, remains = named, refused
     missing = tuple(name for name in named if name not in machine)
     kept = best_predicting(candidates, present, named)
@@ -310,13 +310,13 @@ def _values(fit: Fit) -> dict[str, float]:
 
 
 def _before(candidates: Candidates) -> Comparison:
-    """Compare the law, together with the terms of its machine, with the records."""
+    """Compare the law, including the machine terms, with the records."""
     base = start_model(candidates)
     bare = finish(candidates.fitted(base).problem, candidates.converge(base))
     return compare_prepared(bare.model, candidates.campaign)
 
 
 def _rivals(present: Names, name: str, others: Names) -> list[Names]:
-    """The models that fit equally well: with this effect, or with one of its alternatives."""
+    """Models that fit equally well: with this effect, or with one of its alternatives."""
     rest = tuple(e for e in present if e != name)
     return [present, *((*rest, other) for other in others)]

@@ -30,12 +30,12 @@ class Diagnosis(Result):
     verdict
         `adequate`, `missing`, `ambiguous` or `unexplained`.
     limitations
-        Conclusions that the motions of these runs do not allow, in words.
+        Conclusions that the motions of these runs do not support, one sentence each.
     machine
-        Terms of a drive's own machine that the runs need: inertia or mass, weight, offset. They are
-        part of the model from the start and are not missing effects.
+        Machine terms of a drive: inertia or mass, weight, offset. They are part of the initial
+        model and are not missing effects.
     effects
-        Added effects with sufficient evidence of their own, in the order of acceptance.
+        Added effects with sufficient evidence, in the order of acceptance.
     alternatives
         For each added effect, those with which it is confounded, the most likely first.
     weights
@@ -44,27 +44,27 @@ class Diagnosis(Result):
     steps
         The ledger, beginning with the bare law.
     failures
-        Lack of fit of the bare law, strongest first.
+        Lack of fit of the bare law, by decreasing size.
     residual_structure
         Residual structure that no effect explains.
     next_experiment
-        One sentence, where another run would settle the question.
+        Description of a further run that would reduce the ambiguity; None if none is proposed.
     fit
         The final fit; `model` is its model.
     before, after
         Comparison of the bare law and of the final model with the runs.
     not_tried
-        Effects that are compatible with the law but not testable in these runs, with the reason.
+        Effects that are compatible with the law but not testable in these runs, with reasons.
     not_detectable
         Effects that are not detectable in these runs at a usual strength.
     level
-        Threshold for the gain of an effect, and how often noise exceeds it.
+        Threshold for the gain of an effect, and its false-alarm rate.
     power
-        Strength from which each effect that is not in the model would be detected in these runs;
-        empty where residual structure remains.
+        Smallest detectable strength of each effect that is not in the model; empty if there is
+        residual structure.
     experiment
-        The motion of the next run, where a run would discriminate rivals or show undetectable
-        effects.
+        Motion of the next run, if a run can discriminate between alternatives or reveal
+        undetectable effects.
     policy
         Numbers that determined the verdict.
     findings
@@ -73,11 +73,11 @@ class Diagnosis(Result):
         Effects in the model that improve its held-out predictions but are not named, because the
         runs disagree on their parameters.
     laws
-        Laws that the rig allows, the selected one first, where the law was selected from the data.
+        Laws that the rig allows, the selected one first, if the law was selected from the data.
     simpler_law
         Another law whose held-out error and number of parameters do not exceed those of the final
-        model. It has only effects that are not friction (offset, mass, weight). None where no such
-        law was found or a search was not necessary.
+        model, with no effects other than offset, mass and weight. None if no such law was found or
+        no search was necessary.
 
     Examples
     --------
@@ -120,7 +120,8 @@ class Diagnosis(Result):
     def negligible(self) -> tuple[str, ...]:
         """Effects that are significant but below the minimum effect size.
 
-        They are tested in addition to the final model, with the minimum effect size of the policy.
+        They are tested in addition to the final model, against the minimum effect size of the
+        policy.
         """
         trials = next((s.trials for s in reversed(self.steps) if s.trials), ())
         return tuple(t.effect for t in trials if t.outcome == "negligible")
@@ -172,5 +173,5 @@ class Diagnosis(Result):
         }
 
     def report(self, path: PathLike) -> None:
-        """Write the HTML report; the same as `save_html`."""
+        """Write the HTML report; equivalent to `save_html`."""
         self.save_html(path)

@@ -38,9 +38,9 @@ class Selected:
     Attributes
     ----------
     candidates
-        The fits to the campaign with the accepted terms of the observation model.
+        Fits to the campaign with the accepted terms of the observation model.
     present
-        The effects that were accepted.
+        Accepted effects.
     steps
         The ledger, one step per round.
     refused
@@ -59,9 +59,9 @@ NOT_FINISHED = "computing time limit reached: not all further effects were teste
 def select(candidates: Candidates) -> Selected:
     """Add effects and terms of the observation model, the largest evidence first.
 
-    The selection ends when no further one is accepted. The start model is the law with the machine
-    of a drive. If no effect is accepted and the residual has structure, all candidates are fitted
-    once, and then pairs of them. The score of a strong effect at its null may be small.
+    The selection ends when no further one is accepted. It starts with the law and the machine terms
+    of a drive. If no effect is accepted and the residual has structure, all candidates and then
+    pairs of them are fitted, since the score of a strong effect at its null may be small.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def select(candidates: Candidates) -> Selected:
 
 
 def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
-    """Select, and append the result of each completed round."""
+    """Select effects and terms, and append the result of each round to `completed`."""
     policy = candidates.policy
     present, steps = start_model(candidates), []
     follow: Follow = "promising"
@@ -135,7 +135,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
 
 
 def _evidence_of_leader(candidates: Candidates, present: Names, trial_round: Round) -> float:
-    """Evidence for the leading effect; its full gain if independent units confirmed it."""
+    """Evidence for the leading effect, or its full gain if independent units confirmed it."""
     leader = next(t for t in trial_round.trials if t.effect == trial_round.leader)
     if leader.evidence > 0.0:
         return leader.evidence
@@ -144,7 +144,7 @@ def _evidence_of_leader(candidates: Candidates, present: Names, trial_round: Rou
 
 
 def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    """Structure in the residual of a model."""
+    """Residual structure of a model."""
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
     return find_residual_structure(problem, solution, candidates.policy)
 
@@ -171,10 +171,10 @@ def _grown(candidates: Candidates, present: Names, trial_round: Round) -> Names:
 
 
 def _pair(candidates: Candidates, present: Names, trial_round: Round) -> Names:
-    """Add the pair of effects that explains most, if it is needed.
+    """Add the pair of effects with the largest gain, if it has evidence.
 
-    Where two effects are missing, neither may have evidence alone, because the residual remains
-    smooth.
+    If two effects are missing, the residual with either one remains correlated, and neither may
+    have evidence alone.
     """
     policy = candidates.policy
     if len(present) + 2 > policy.selection.max_effects:
@@ -210,7 +210,7 @@ def _pair(candidates: Candidates, present: Names, trial_round: Round) -> Names:
 
 
 def _promising(candidates: Candidates, present: Names) -> list[str]:
-    """The candidates with the largest scores relative to a model."""
+    """Candidates with the largest scores relative to a model."""
     near = candidates.converge(present)
     names = [n for n in candidates.names if n not in present and can_be_added(n, present)]
     candidates.score_all([(*present, name) for name in names], near)
@@ -220,7 +220,7 @@ def _promising(candidates: Candidates, present: Names) -> list[str]:
 
 
 def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -> Remainder:
-    """Report as residual structure that the maximum number of effects was reached with a leader."""
+    """Residual structure that reports the effect limit and the leading candidate beyond it."""
     base, richer = candidates.converge(present), candidates.converge((*present, leader))
     unit = candidates.campaign.rig.quantities.force
     where = (
@@ -240,7 +240,7 @@ def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> S
 
 
 def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolation, ...]:
-    """Errors of the runs that exceed the range of all others, predicted by a fit to the others."""
+    """Prediction errors of runs that exceed the range of all others, from a fit to the others."""
     if not candidates.beyond:
         return ()
     unit, names = candidates.campaign.rig.quantities, candidates.campaign.samples.runs
@@ -258,14 +258,14 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
 
 
 def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    """Report a candidate that fits better, overall or in parts, but does not predict better.
+    """Report a candidate with a better fit, overall or in parts, but no better held-out prediction.
 
-    Improvements next to the instants at which friction jumps are not counted. They can be due to a
-    clock error of less than a sample that differs between runs.
+    Samples next to friction jumps are excluded, since a run-specific clock error of less than a
+    sample can affect them.
     """
     policy, fitted = candidates.policy, candidates.fitted_extensions(present)
     base = candidates.converge(present)
-    # Exclude the samples that a delay would move, as in the fit of the delay itself.
+    # Exclude the samples next to jumps, as in the fit of a delay.
     delay = fitted.get(DELAY)
     away = base.samples if delay is None else delay.current_solution().samples
     refused = []

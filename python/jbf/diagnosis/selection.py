@@ -1,9 +1,9 @@
 """Stepwise selection: rounds that add an effect with evidence and review the effects present.
 
-In a round every candidate is tried in addition to the present effects, in order of cost: a score
-test, a ranking, a converged fit. The leader is added if held-out runs confirm it. The other effects
-are then reviewed: an unnecessary effect is removed, and an effect is exchanged where another one
-has more evidence in its place.
+In a round every candidate is tested in addition to the present effects, in order of computing cost:
+a score test, an approximate fit, a converged fit. The candidate with the largest evidence is added
+if held-out runs confirm it. The other effects are then reviewed: an unnecessary effect is removed,
+and an effect is replaced by another one that has more evidence.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
 
 LESS = 0.95
-"""Ratio of two RMS values below which a reader of the ledger regards one as smaller.
+"""Ratio of RMS values below which the ledger reports a better fit.
 
-It concerns the text only.
+It affects the text only.
 """
 CHANCE = "no significant gain"
 SLIGHT = "significant, but within the margin for recording artefacts"
@@ -50,13 +50,13 @@ class Ranked:
     Attributes
     ----------
     evidence
-        Evidence of the candidate.
+        Evidence for the candidate.
     effect
-        Its name.
+        Name of the candidate.
     solution
         The solution with this evidence.
     most
-        Largest evidence that it could reach, where its fit was not continued; infinite otherwise.
+        Upper limit of the evidence if the fit was not continued; infinite otherwise.
     """
 
     evidence: float
@@ -76,7 +76,7 @@ class Round:
     leader
         The effect to add; None where none is accepted.
     unconfirmed
-        Candidates with more evidence than the leader that held-out runs did not confirm.
+        Candidates with more evidence than the leader, but not confirmed by held-out runs.
     """
 
     trials: tuple[Trial, ...]
@@ -90,9 +90,9 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
     Parameters
     ----------
     follow
-        The candidates to fit: those that could lead after a few steps (`promising`), those with a
-        sufficient score (`shown`), or all. For a strong effect, the score at its null may be
-        uninformative.
+        Candidates to fit: those that may have the largest evidence after a few steps (`promising`),
+        those with a sufficient score (`shown`), or all. For a strong effect, the score at its null
+        may be uninformative.
     """
     base, policy = candidates.converge(present), candidates.policy
     unit = candidates.campaign.rig.quantities.force
@@ -152,10 +152,10 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
 def _by_units(
     candidates: Candidates, present: Names, ranked: Sequence[Ranked], trials: list[Trial]
 ) -> tuple[str | None, list[Trial]]:
-    """The candidate with the largest likelihood gain that independent units confirm.
+    """Candidate with the largest likelihood gain that independent units confirm.
 
-    Where the residual is smooth, few of its samples are independent, and a slow or constant effect
-    has little evidence. Runs or strokes are independent in any case.
+    In a correlated residual few samples are independent, and a slow or constant effect has little
+    evidence. Runs or strokes are independent even then.
     """
     base = candidates.converge(present)
     gains = {
@@ -183,7 +183,7 @@ def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
 
 
 def needed(candidates: Candidates, current: Names, name: str, simpler: Solution) -> bool:
-    """Whether an effect of a model has evidence, or is confirmed by independent units."""
+    """Whether an effect of a model has evidence or is confirmed by independent units."""
     full = candidates.converge(current)
     if evidence(candidates, full, simpler) >= 0.0:
         return True
@@ -195,23 +195,24 @@ def needed(candidates: Candidates, current: Names, name: str, simpler: Solution)
 def _gain_is_from_local_minimum(
     candidates: Candidates, present: Names, name: str, base: Solution
 ) -> bool:
-    """Whether the model without an effect improves when refitted from the fit with the effect.
+    """Whether the gain of an effect is due to a local minimum of the fit without it.
 
-    If so, the gain came from leaving a local minimum and not from the effect.
+    The model without the effect is refitted from the parameter values of the fit with the effect.
+    If its likelihood increases, the gain is not due to the effect.
     """
     better = candidates.refit_from(present, (*present, name))
     return likelihood_gain(better, base) > candidates.policy.search.rank_margin
 
 
 def _has_larger_rms(candidate: Ranked, least_n: float, policy: Policy) -> bool:
-    """Whether a candidate has a much larger RMS than another one that also has evidence."""
+    """Whether a candidate has a much larger RMS than the best candidate with evidence."""
     return candidate.solution.rms > policy.selection.max_rms_ratio * least_n
 
 
 def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow) -> list[Ranked]:
-    """Evaluate every candidate in addition to the present effects, the largest evidence first.
+    """Evaluate the candidates in addition to the present effects, sorted by decreasing evidence.
 
-    Candidates that could lead are converged.
+    The fits of competitive candidates are converged.
     """
     policy = candidates.policy
     rivals = [n for n in candidates.names if n not in present and can_be_added(n, present)]
@@ -220,7 +221,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
     scores = {name: candidates.score_test((*present, name), base) for name in rivals}
     candidates.calibrate(present)
     least = policy.search.min_score_share * price_of(candidates, 1)
-    # In a smooth residual a sample carries less information, and any candidate gains a little.
+    # In a correlated residual a sample is less informative, and any candidate has a small gain.
     shown = [name for name in rivals if follow == "all" or scores[name] * share > least]
     first = dict.fromkeys(rivals, -np.inf)
     behind = _cannot_reach_leader(candidates, present, shown, base) if follow == "promising" else {}
@@ -246,19 +247,20 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
             )
             if first[name] > line and promised > 0.0:
                 solution = candidates.converge(effects)
-        # At its null an effect does not change the model: evidence has this lower bound.
+        # At the null an effect does not change the model, which gives a lower bound of the
+        # evidence.
         more = len(candidates.fitted(effects).problem.open) - base.free
         gain = max(evidence(candidates, solution, base), -price_of(candidates, more))
         ranked.append(Ranked(gain, name, solution, behind.get(name, np.inf)))
     ranked.sort(key=lambda r: -r.evidence)
-    # Search the other peaks of candidates that might lead from a higher one.
+    # Search other maxima of the likelihood for competitive candidates.
     for i, r in enumerate(ranked):
         effects = (*present, r.effect)
         likely = max(policy.search.min_peaks_fraction * ranked[0].evidence, 0.0)
         if many_peaks(effects) and r.evidence > likely and r.effect not in behind:
             solution = candidates.search_peaks(effects)
             ranked[i] = Ranked(evidence(candidates, solution, base), r.effect, solution)
-    # Of two indistinguishable effects, prefer the one closer to the recording: it assumes less.
+    # Of two indistinguishable effects, prefer the later stage of the measuring chain.
     order = {name: i for i, name in enumerate(rivals)}
     return sorted(ranked, key=lambda r: (-round(r.evidence, 1), -order[r.effect]))
 
@@ -266,7 +268,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
 def _cannot_reach_leader(
     candidates: Candidates, present: Names, shown: Sequence[str], base: Solution
 ) -> dict[str, float]:
-    """Candidates that could not reach the leader after a few steps, with their largest evidence."""
+    """Candidates that cannot have the largest evidence, with upper limits of their evidence."""
     policy = candidates.policy
     candidates.look_all([(*present, name) for name in shown], base)
     looked = {name: candidates.look((*present, name), base) for name in shown}
@@ -283,7 +285,7 @@ def _cannot_reach_leader(
 
 
 def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
-    """The effects that still have evidence after the sample weights or the campaign changed."""
+    """Effects that still have evidence after a change of the sample weights or the campaign."""
     current = tuple(effects)
     for name in effects:
         if not can_be_removed(name, current):
@@ -296,11 +298,12 @@ def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
 
 
 def start_model(candidates: Candidates) -> Names:
-    """The terms of a drive's machine that these runs need, estimated together with the law.
+    """Machine terms of a drive that the runs require, estimated jointly with the law.
 
-    Each term starts from the fit without it: a search from the starting values of all terms may end
-    at a weight of zero. A term without evidence is kept if the held-out error is larger without it.
-    Where another effect is missing, the residual may be too smooth for any term to have evidence.
+    The fit with each term starts from the fit without it, since a search from the starting values
+    of all terms may end at a weight of zero. A term without evidence is kept if the held-out error
+    is larger without it: if another effect is missing, the residual may be so correlated that no
+    term has evidence.
     """
     present: Names = ()
     policy = candidates.policy
@@ -323,15 +326,15 @@ def start_model(candidates: Candidates) -> Names:
 def reconsider(
     candidates: Candidates, present: Names, unconfirmed: frozenset[str] = frozenset()
 ) -> Names:
-    """Remove unnecessary effects and exchange those that another effect replaces better.
+    """Remove unnecessary effects, and replace an effect if another one has more evidence.
 
-    The review is repeated until nothing changes, since an exchange may make further effects
-    unnecessary.
+    The review is repeated until the model no longer changes, since a replacement may make further
+    effects unnecessary.
 
     Parameters
     ----------
     unconfirmed
-        Effects that held-out runs have just rejected; they are not used as replacements.
+        Effects that held-out runs did not confirm in this round; not used as replacements.
     """
     seen = [present]
     while (current := _questioned(candidates, seen[-1], unconfirmed)) not in seen:
@@ -340,7 +343,7 @@ def reconsider(
 
 
 def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
-    """Review each of the effects once."""
+    """Review each effect once."""
     current = present
     for name in present:
         if len(current) < 2 or name not in current or not can_be_removed(name, current):

@@ -1,10 +1,10 @@
-"""Verdict of a diagnosis: its rules, the effects that are named, and the limits of its conclusions.
+"""Verdict of a diagnosis: rules, named effects and limitations of the conclusions.
 
-`verdict` and `name_is_supported` are pure functions of numbers. An effect is judged by its own
-evidence. Bursts, tones or a nonlinear force sensor do not affect its name, unless its evidence is
-weak and they are larger. The parameters of a confounder differ between runs, because the mechanism
-that it replaces differs. A confounder is not named, but it stays in the model where it improves the
-predictions.
+`verdict` and `name_is_supported` are pure functions of numbers. Each effect is judged by its own
+evidence. Other residual structure, such as bursts or tones, does not prevent an effect from being
+named, unless the evidence is weak and the structure is larger. A confounder imitates another
+mechanism and therefore has parameters that differ between runs. It is not named, but it is kept in
+the model if it improves the predictions.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Names = tuple[str, ...]
 Verdict = Literal["adequate", "missing", "ambiguous", "unexplained"]
 
 LEVEL, STIFFNESS = "F_c", "sigma_0"
-"""Parameters of a bristle whose ratio is the presliding displacement."""
+"""Parameters of a bristle law; their ratio is the presliding displacement."""
 
 
 def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
@@ -40,11 +40,11 @@ def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
     Parameters
     ----------
     effects
-        Number of effects that were added.
+        Number of added effects.
     alternatives
         Number of those that are confounded with another effect.
     remains
-        Whether residual structure remains that no effect explains.
+        Whether there is residual structure that no effect explains.
     """
     if remains:
         return "unexplained"
@@ -54,7 +54,7 @@ def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
 
 
 def name_is_supported(gain: float, disagreement: float | None, policy: Policy) -> bool:
-    """Whether an effect is named although structure remains.
+    """Whether an effect is named in the presence of residual structure.
 
     An effect is judged by its own evidence, independently of other structure. A confounder,
     however, requires different parameters in each run.
@@ -65,18 +65,17 @@ def name_is_supported(gain: float, disagreement: float | None, policy: Policy) -
         Gain of the effect in addition to the others, in twice the log likelihood of independent
         samples.
     disagreement
-        Gain of run-specific parameters of the effect beyond chance, in the same unit; None where
+        Gain of run-specific parameters of the effect in excess of chance, in the same unit; None if
         the runs agree.
     """
     return disagreement is None or gain > policy.selection.confounder_ratio * disagreement
 
 
 def confounders(candidates: Candidates, present: Names, remains: Sequence[Remainder] = ()) -> Names:
-    """Find the effects that are not named because they may imitate something else.
+    """Find the effects that are not named because they may imitate another mechanism.
 
-    The first kind are effects on whose parameters the runs disagree. The second kind are effects of
-    weak evidence that explain less than the largest residual structure; they may imitate a part of
-    it.
+    These are effects whose parameters differ between runs, and effects of weak evidence that
+    explain less than the largest residual structure and may imitate a part of it.
 
     Parameters
     ----------
@@ -105,10 +104,9 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
 def effects_without_estimate(
     parameters: Mapping[str, ParameterValue], effects: Names, policy: Policy
 ) -> Names:
-    """Find the effects none of whose parameters is estimated: held, or not different from its null.
+    """Find the effects whose parameters are all held or not significantly different from the null.
 
-    A parameter whose null is infinite, or that has none, must be larger than its standard error by
-    the same factor.
+    A parameter with an infinite null, or without one, is compared with zero.
     """
 
     def estimated(name: str, page: Parameter) -> bool:
@@ -127,7 +125,7 @@ def effects_without_estimate(
 
 
 def best_predicting(candidates: Candidates, present: Names, named: Names) -> Names:
-    """The model with or without the confounders, whichever has the smaller held-out error."""
+    """Effects with or without the confounders, whichever have the smaller held-out error."""
     if named == present:
         return present
     error, error_named = (candidates.held_out_rms(names) for names in (present, named))
@@ -137,12 +135,12 @@ def best_predicting(candidates: Candidates, present: Names, named: Names) -> Nam
 def limitations(
     campaign: Campaign, parameters: Mapping[str, float], policy: Policy
 ) -> tuple[str, ...]:
-    """Describe each conclusion that the motions do not support, whatever model is fitted.
+    """Describe each conclusion that the motions do not support, independently of the model.
 
     Parameters
     ----------
     parameters
-        Fitted values by name; those of a bristle give the presliding displacement.
+        Fitted values by name; those of a bristle law give the presliding displacement.
     """
     quantities = campaign.rig.quantities
     speed = campaign.samples.flat([p.motion.velocity for p in campaign.prepared])

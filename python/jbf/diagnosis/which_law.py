@@ -1,9 +1,9 @@
-"""Selection of the base law: every law that a rig allows, compared by its held-out error.
+"""Selection of the base law by the held-out errors of all laws that a rig allows.
 
-Each law is fitted together with the nuisance terms of a machine: offset, moved mass and weight.
-These are not friction, and a law must not have to compensate for them. The held-out error penalises
-superfluous parameters. Laws whose errors differ by no more than the scatter between sections of the
-records are tied. The tied law with the fewest parameters is selected.
+Each law is fitted together with the machine terms offset, moved mass and weight, so that it does
+not compensate for them. The held-out error penalises superfluous parameters. Laws whose errors
+differ by no more than the scatter between sections of the records are tied. The tied law with the
+fewest parameters is selected.
 """
 
 from __future__ import annotations
@@ -36,25 +36,25 @@ Mask = npt.NDArray[np.bool_]
 SIMPLEST = "coulomb"
 """The law with the fewest parameters."""
 ON_REQUEST = frozenset({"rate_and_state"})
-"""Laws that are used only if they are named.
+"""Laws that are not part of the automatic selection.
 
-On records without velocity steps of several slip distances the parameters of `rate_and_state` are
+On records without velocity steps of several slip distances, the parameters of `rate_and_state` are
 not identifiable, and it predicts no better than `stribeck`.
 """
 
 
 @dataclass(frozen=True)
 class LawTried:
-    """Predictive performance of a law together with the terms that are not friction.
+    """Predictive performance of a law together with the machine terms.
 
     Attributes
     ----------
     law, parameters
-        Its name and its number of parameters.
+        Name and number of parameters of the law.
     held_out_rms
-        Held-out RMS, N, at the samples that count for every law.
+        Held-out RMS on the samples common to all laws, N.
     tied
-        True where its error is not significantly larger than that of the best law.
+        Whether the error is not significantly larger than that of the best law.
     """
 
     law: str
@@ -81,7 +81,7 @@ class HeldOut:
     errors
         Record minus prediction, N, one array per run; NaN at samples that do not count.
     white
-        Errors whitened for the errors of the motion, where these are known.
+        Errors whitened with the covariance of the motion errors, if it is known.
     """
 
     errors: list[Array]
@@ -89,7 +89,7 @@ class HeldOut:
 
 
 def allowed(rig: Rig) -> list[str]:
-    """Laws to compare: those whose requirements a rig satisfies."""
+    """Laws whose requirements a rig satisfies."""
     allowed_laws = []
     for name in laws():
         if name in ON_REQUEST:
@@ -105,8 +105,8 @@ def allowed(rig: Rig) -> list[str]:
 def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str]]:
     """Allowed laws that the records can resolve, and the reasons for excluding the others.
 
-    A law is excluded where its film is too fast for the records, or where steady states do not show
-    its memory.
+    A law is excluded if its film is too fast for the records, or if it has memory and the records
+    contain steady states only.
     """
     resolved, refused = [], {}
     for name in allowed(campaign.rig):
@@ -123,7 +123,10 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
 
 
 def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
-    """Return the campaign with motion errors estimated by the simplest law, for comparing laws."""
+    """Return the campaign with motion errors estimated under the simplest law.
+
+    All laws are then compared with the same motion errors.
+    """
     if campaign.rig.drive is None:
         return campaign
     separate = replace(campaign, work=campaign.work.part(1.0))
@@ -170,16 +173,16 @@ def _compared(
     policy: Policy,
     campaign: Campaign,
 ) -> list[LawTried]:
-    """Apply `compared` with the motion errors of a campaign."""
+    """Rank laws by held-out errors, with the minimum difference that motion errors require."""
     errors, white = [h.errors for h in held_out], [h.white for h in held_out]
     share = policy.least_share(campaign.motion_share)
     return compared(names, parameters, errors, policy, white=white, least_share=share)
 
 
 def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldOut | None:
-    """Held-out errors of a law with the terms that are not friction.
+    """Held-out errors of a law with the machine terms.
 
-    None where its share of the computing budget is not sufficient.
+    None if its share of the computing budget is exceeded.
     """
     limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
     try:
@@ -191,10 +194,10 @@ def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldO
 
 
 def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
-    """Errors of prediction of every run by a fit to the others.
+    """Prediction errors of each run from a fit to the others.
 
-    For a law with a bristle they include the samples of the initial-state transient. Another law
-    predicts these samples, and a user of the law does not know the initial state.
+    For a bristle law they include the samples of the initial-state transient: other laws predict
+    these samples, and in an application the initial state is unknown.
     """
     solution, problem = candidates.converge(effects), candidates.fitted(effects).problem
     samples = solution.samples
@@ -238,10 +241,10 @@ def compared(
     errors
         Held-out errors of each model, N, one array per run; NaN at samples that do not count.
     white
-        `errors` whitened for the errors of the motion, where these are known. They decide, since an
-        elastic law would smooth the errors of the acceleration next to a reversal.
+        `errors` whitened with the covariance of the motion errors, if it is known. They determine
+        the ranking, since an elastic law would smooth acceleration errors next to a reversal.
     least_share
-        Share of the mean square by which models must differ.
+        Minimum relative difference of the mean squares of models that are not tied.
     """
     plain, decisive = (
         np.array([np.concatenate(rows) ** 2 for rows in kind])
@@ -266,10 +269,9 @@ def compared(
 
 
 def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) -> LawTried | None:
-    """Find another law that predicts no worse than a model with effects and has no more parameters.
+    """Find a law that predicts no worse than a model with effects and has no more parameters.
 
-    One law may replace several effects. Effects that are not friction are kept. None where no such
-    law exists.
+    One law may replace several effects. The machine terms are kept. None if no such law exists.
     """
     policy, campaign = candidates.policy, candidates.campaign
     kept = tuple(effect for effect in effects if effect in TERMS)
@@ -281,7 +283,7 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
         count = len(other.fitted(kept).problem.open)
         if name == candidates.law or count > most:
             continue
-        # A law with a much larger fit error is not a better predictor.
+        # A law with a much larger fit RMS does not predict better.
         max_rms = policy.selection.max_rms_ratio * candidates.converge(effects).rms
         try:
             errors = held_out_errors(other, kept) if other.converge(kept).rms < max_rms else None
@@ -294,6 +296,6 @@ def simpler_law(candidates: Candidates, effects: tuple[str, ...], clock: Clock) 
     tried = _compared(names, counts, held_out, policy, campaign)
     present = next(t for t in tried if t.law == "")
     others = [t for t in tried if t.law and t.tied]
-    # Of equivalent laws prefer the one with the fewest parameters, whichever is ahead by chance.
+    # Of tied laws prefer the one with the fewest parameters: their order is due to chance.
     better = [t for t in others if t.parameters < most or t.held_out_rms <= present.held_out_rms]
     return min(better, key=lambda t: t.parameters, default=None)

@@ -174,7 +174,7 @@ def _is_a_tone(
 def _significant_pitch(
     travels: Sequence[Array], innovations: Sequence[Array], samples: Samples, policy: Policy
 ) -> float | None:
-    """The pitch whose lines, summed over the runs, are significant; None without such a pitch."""
+    """Return the pitch (m) of a significant line in the summed periodograms; None without one."""
     ripples, spans = policy.ripples, np.array([float(np.ptp(w)) for w in travels])
     longest = float(np.max(spans))
     steps = np.concatenate([np.abs(np.diff(w)) for w in travels])

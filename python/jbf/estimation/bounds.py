@@ -69,7 +69,7 @@ def bounded_page(page: Parameter, low: float, high: float) -> Parameter:
 
 
 def bounded_pages(pages: Mapping[str, Parameter], bounds: Bounds) -> dict[str, Parameter]:
-    """Return parameters by name, those with bounds within them."""
+    """Return the parameters by name, with the bounds imposed by the user."""
     return {
         name: bounded_page(page, *bounds[name]) if name in bounds else page
         for name, page in pages.items()

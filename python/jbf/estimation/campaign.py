@@ -252,7 +252,7 @@ class Campaign:
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
 
     def steps_rms(self, residual_rms: float) -> float:
-        """RMS of the quantisation error of mean readings that no model removes, N.
+        """RMS of the quantisation bias of the mean readings that cannot be corrected, N.
 
         It is zero without a quantisation step. The noise smooths the quantisation error and is
         estimated from the readings. The given residual RMS also contains lack of fit, and is
@@ -304,8 +304,8 @@ def _each(
 ) -> tuple[dict[int, Prepared], list[Finding]]:
     """Prepare all runs; return those with motion, and a finding for each of the others.
 
-    A run is prepared again where the other runs give information on the logger. This is its
-    sampling rate of the force, or other starting values for the errors of the motion's readings.
+    Runs are prepared again if the other runs provide the sampling rate of the force, or further
+    starting values for the errors of the motion readings.
     """
     prepared: dict[int, Prepared] = {}
     refused: list[NoMotion] = []

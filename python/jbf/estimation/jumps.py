@@ -103,7 +103,7 @@ def samples_near_jumps(
 def _without_jumps(
     p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
-    """Samples without those in or next to a jump, and weights for half of its change."""
+    """Mask without the samples next to a jump, and weights for an error of half its size."""
     change = jumps(prediction, settings)
     kept = counted & (change == 0.0)
     return kept, weight * _share(0.5 * change, _residual_rms(p, kept, prediction))

@@ -111,10 +111,10 @@ def standard_errors(problem: Problem, solution: Solution) -> StandardErrors:
 
 
 def _inflation(solution: Solution, covariance: Array, sensitive: Mask) -> Array:
-    """Ratio of each standard deviation to that from the curvature.
+    """Ratio of each robust standard error to that from the curvature, shape (k,).
 
-    A parameter follows a weighted sum of the innovations, whose variance is estimated from them
-    (Newey & West 1987).
+    The variance of the score is estimated from the innovations within runs (Newey & West 1987) and
+    between runs; the larger one is used.
     """
     samples, settings = solution.samples, solution.samples.settings.variance
     parts = [

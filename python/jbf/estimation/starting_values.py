@@ -133,9 +133,10 @@ def stroke(campaign: Campaign) -> tuple[float, float]:
 
 
 def _stiffness(s: Scales) -> Starts:
-    """Breakaway force over a tenth of a stroke, the shortest resolved distance, and their mean.
+    """Starting values of the stiffness: breakaway force divided by a displacement.
 
-    The mean of the two distances is geometric.
+    The displacements are a tenth of a stroke, the smallest resolved distance and their geometric
+    mean.
     """
     long, short = 0.1 * s.stroke_m, s.resolved_m
     distances = (long, float(np.sqrt(long * short)), short)

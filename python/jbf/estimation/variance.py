@@ -28,7 +28,7 @@ Places = npt.NDArray[np.intp]
 
 
 def robust_size(values: Array) -> float:
-    """Standard deviation estimated from the median; zero without values, as for an excluded run."""
+    """Standard deviation from the median absolute value; zero for an empty array."""
     if not len(values):
         return 0.0
     return float(np.median(np.abs(values))) / 0.6745

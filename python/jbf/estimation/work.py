@@ -26,7 +26,7 @@ It limits the effort only.
 
 @dataclass
 class Work:
-    """Inner steps that are permitted, and that were taken."""
+    """Budget of inner steps, and the number of steps taken."""
 
     most: float = math.inf
     taken: float = 0.0

@@ -13,8 +13,12 @@ from jbf.control.task import Task
 def gains(task: Task, bench: Bench) -> tuple[float, float]:
     """Return the gains of the control law.
 
-    They are those of the thesis; on a different drive, those with the same poles. k1 (V/rad) and
-    k2 (V s/rad) in position control, g and C (V s/rad) in velocity control.
+    The closed-loop poles are those of the thesis.
+
+    Returns
+    -------
+    tuple
+        k1 (V/rad) and k2 (V s/rad) in position control; g and C (V s/rad) in velocity control.
     """
     return _core.control_gains(task.is_position, bench.damping_1_s, bench.input_rad_s2_v)
 

@@ -331,7 +331,7 @@ class _Problem:
         return found
 
     def _drift_error(self, at: tuple[float, float]) -> tuple[float, float]:
-        """Return the standard error of the drift, and the effective number of windows for it."""
+        """Return the standard error of the drift, and the effective number of windows."""
         covariance = self._covariance(at, with_drift=True)
         effective = self._effective_windows()
         error = float(np.sqrt(max(covariance[1, 1], 0.0)))

@@ -67,7 +67,7 @@ def _is_used(guess: Guess, source: SideBySide, file: Path) -> bool:
 
 
 def _decided(guess: Guess) -> Map:
-    """Return the map without lines whose whole value is open."""
+    """Return the map without the columns whose value is still to be specified."""
     mapping = guess.map()
     columns = {key: text for key, text in mapping.columns.items() if text != OPEN}
     return replace(mapping, columns=columns)

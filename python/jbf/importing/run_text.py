@@ -28,7 +28,7 @@ def run_columns(recording: Recording) -> list[str]:
 
 
 def _written(stream: Stream) -> list[int]:
-    """Return the stream columns that a run contains, without cutting columns and empty columns."""
+    """Return indices of the stream columns to write: not empty and not for cutting only."""
     of_cutting = [at for at, key in enumerate(stream.columns) if key in OF_CUTTING]
     return [at for at in range(len(stream.columns)) if at not in (*of_cutting, *stream.empty)]
 

@@ -31,7 +31,7 @@ class Driven:
 
 
 class DrivenChain:
-    """A chain of the core, or one with user-defined effects, along driven motions."""
+    """Measuring chain of the core, or with user-defined effects, evaluated along driven motions."""
 
     def __init__(self, core: _core.Chain | UserChain) -> None:
         self.core = core

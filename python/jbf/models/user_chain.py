@@ -168,9 +168,9 @@ class UserChain:
         return self._along(parameters, motion, self._borne(parameters, motion) + added, slope)
 
     def _read(self, parameters: Array, motion: _core.Motion, force: Array) -> tuple[Read, Read]:
-        """Instrument readings of a force added to that of the bearing, and of the latter alone.
+        """Instrument readings of the bearing force with and without an additional force.
 
-        The force of the bearing is taken as zero if the instrument is linear.
+        The bearing force is set to zero if the instrument is linear.
         """
         borne = self._borne(parameters, motion)
         return (
@@ -212,10 +212,9 @@ class UserChain:
     def _bent(
         self, parameters: Array, motion: _core.Motion, which: Sequence[int]
     ) -> dict[int, Array]:
-        """Change of the derivatives by the parameters of the core due to the user-defined force.
+        """Change of the derivatives with respect to core parameters due to the user-defined force.
 
-        It is the nonlinear interaction of both forces in the instrument, and empty if that is
-        linear.
+        The change is due to a nonlinear instrument; empty for a linear one.
         """
         if self.bare is None:
             return {}

@@ -33,7 +33,7 @@ class Scheme(Protocol):
 
 
 class Unguarded:
-    """Scheme that only a jump of the counter stops, as in the thesis."""
+    """Scheme without a guard: only a jump of the counter stops it, as in the thesis."""
 
     def guard(self, bench: Bench) -> Settings | None:
         """Return no guard; see `Scheme`."""

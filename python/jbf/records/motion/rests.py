@@ -207,9 +207,10 @@ def uncertain_near_rest(rest: Mask, path: Array, velocity: Array, least: float) 
 
 
 def without_swings(rest: Mask, velocity: Array, sign_known: Mask) -> None:
-    """Set reversed speeds next to a rest to zero in `velocity_m_s`, up to the first sure sign.
+    """Set reversed velocities next to a rest to zero, in place.
 
-    A shaft does not move backwards before it starts.
+    The samples between a rest and the nearest sample with a known sign are changed, since a shaft
+    does not reverse directly before or after a rest.
     """
     edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):

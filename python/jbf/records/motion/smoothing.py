@@ -253,7 +253,7 @@ def _start(readings: Readings) -> ReadingErrors:
 
 
 def _of_likeliest_order(readings: Readings) -> ReadingErrors:
-    """Starting errors of the estimation, with the likelier of the two orders."""
+    """Initial reading errors, with the noise process (`JERK` or `SNAP`) of higher likelihood."""
     start, _ = _likeliest_stamps(readings)
     # The zero velocities assigned at rest are not readings.
     read = np.where(readings.velocity_shape > AT_REST, readings.velocity, np.nan)

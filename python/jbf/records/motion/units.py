@@ -50,7 +50,7 @@ def wrong_unit(
     """Detect a path and a speed that differ by a factor.
 
     The speed is assumed to be wrong if the factor corresponds to one of its units, otherwise the
-    path. Both have the shape of the motion, whatever their scale.
+    path. The factor is determined from the shape of both signals.
     """
     called = quantities.speed_column
     ratio = factor_between(time, position.path_m, speed)

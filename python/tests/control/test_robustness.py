@@ -103,7 +103,9 @@ def test_robustness_cases_with_a_wrong_constant_differ_by_the_factor_they_name()
 
 
 @pytest.mark.extended
-def test_robustness_cases_exclude_model_effects_and_viscosity_without_a_film() -> None:
+def test_robustness_cases_exclude_effects_of_the_model_and_viscosity_if_the_law_has_no_film() -> (
+    None
+):
     names = {case.name for case in cases(Model(Rig.thesis(), "coulomb", ["running_in"]))}
     assert "hidden running_in" not in names
     assert "hidden coulomb_drag" not in names  # already contained in the law

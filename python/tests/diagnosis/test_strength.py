@@ -82,7 +82,7 @@ def test_change_by_a_linear_effect_is_strength_times_its_column(
     assert at_hand.shares(offset, 1.0) is None
 
 
-def test_part_of_a_change_beyond_the_law_is_a_regression_residual(
+def test_unexplained_part_of_a_change_is_its_residual_in_a_regression_on_the_law(
     candidates: Candidates, at_hand: PresentRuns
 ) -> None:
     changes = [np.sin(3.0 * np.arange(len(f))) + 0.3 * np.sign(f) + 0.02 * f for f in at_hand.now]

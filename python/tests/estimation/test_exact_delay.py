@@ -229,7 +229,9 @@ def test_delayed_force_jumps_within_one_sample_at_reversals(tau_s: float) -> Non
 
 
 @pytest.mark.parametrize("begins_s", [2.004, 2.0101, 2.0163])
-def test_delayed_start_between_samples_follows_from_the_acceleration(begins_s: float) -> None:
+def test_force_of_a_motion_that_starts_between_samples_is_delayed_within_two_percent(
+    begins_s: float,
+) -> None:
     tau_s = 0.033
     run = Run.from_arrays(TIME, 0.02 * np.maximum(TIME - begins_s, 0.0))
     late = friction(0.02 * np.maximum(TIME - tau_s - begins_s, 0.0))

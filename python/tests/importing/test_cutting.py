@@ -181,7 +181,9 @@ def test_invalid_cut_file_is_refused_and_writes_no_output(text: str, tmp_path: P
     assert not (tmp_path / "out").exists()
 
 
-def test_import_has_plot_repr_and_html_page_of_its_pieces(tmp_path: Path) -> None:
+def test_plot_and_repr_of_an_import_cut_at_rests_show_all_pieces_and_html_is_written(
+    tmp_path: Path,
+) -> None:
     result = imported(tmp_path, 'by = "rests"', LONG.columns)
     axes = result.plot()
     assert len(axes) == 3
@@ -228,7 +230,7 @@ def test_noise_at_standstill_is_not_cut_into_cycles(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("cut", "count"), [('by = "parts"', 10), ("parts = 2", 2)])
-def test_recording_is_cut_into_parts_of_equal_duration(
+def test_recording_is_cut_into_the_given_or_default_number_of_equal_parts(
     cut: str, count: int, tmp_path: Path
 ) -> None:
     result = imported(tmp_path, cut, to_and_fro())

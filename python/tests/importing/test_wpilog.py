@@ -147,7 +147,7 @@ def test_wpilog_written_by_wpilib_is_read(tmp_path: Path) -> None:
     np.testing.assert_array_equal(head["time"], np.arange(N) / 50.0)
 
 
-def test_wpilog_entry_number_that_is_used_again_is_another_entry(tmp_path: Path) -> None:
+def test_wpilog_entry_number_reused_after_its_end_starts_a_new_entry(tmp_path: Path) -> None:
     path = tmp_path / "a.wpilog"
     write(path, {"first_n": ("double", TIME_US[:10], FORCE[:10].tolist(), "")})
     finish = record(0, US, b"\x01" + struct.pack("<I", 1))

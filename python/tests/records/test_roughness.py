@@ -69,7 +69,7 @@ def test_no_quantisation_step_is_estimated_from_noise_two_levels_or_exact_ramps(
 
 
 @pytest.mark.parametrize("power", [0, 1, 2])
-def test_noise_at_uneven_instants_does_not_depend_on_a_parabola(power: int) -> None:
+def test_noise_at_uneven_instants_is_unaffected_by_a_polynomial_trend(power: int) -> None:
     random = np.random.default_rng(4)
     time_s = np.cumsum(random.uniform(0.2, 1.8, 4000))
     signal = white(4000, 6, 0.3) + 5.0 * time_s**power

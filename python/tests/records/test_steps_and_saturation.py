@@ -111,7 +111,7 @@ def test_plateau_of_a_force_quantised_above_its_noise_is_not_saturation() -> Non
 
 
 @pytest.mark.parametrize("force", [WAVE, np.sign(WAVE), np.clip(WAVE, -8.0, 8.0)])
-def test_noise_free_force_with_or_without_a_plateau_has_no_saturation(force: Array) -> None:
+def test_noise_free_force_is_not_saturated_even_if_it_has_a_plateau(force: Array) -> None:
     assert saturated(force)[1] == []
 
 

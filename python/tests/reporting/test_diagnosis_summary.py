@@ -79,7 +79,7 @@ def test_summary_of_a_large_diagnosis_is_truncated_to_30_lines() -> None:
     assert any("more steps" in line for line in lines)
 
 
-def test_machine_parameters_precede_those_of_the_law() -> None:
+def test_summary_lists_parameters_of_the_machine_before_those_of_the_law() -> None:
     parameters = {
         "F_c": ParameterValue(5.0, 0.1),
         "inertia.m_e": ParameterValue(2.0, 0.1),

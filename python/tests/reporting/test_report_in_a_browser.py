@@ -47,7 +47,9 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.extended
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_report_fits_screen_without_external_files(browser: Any, report: Path, scheme: str) -> None:
+def test_report_fits_the_screen_width_and_loads_no_external_files(
+    browser: Any, report: Path, scheme: str
+) -> None:
     assert report.stat().st_size < MOST_BYTES
     page = browser.new_page(viewport=SCREEN, color_scheme=scheme)
     messages: list[str] = []

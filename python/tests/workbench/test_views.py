@@ -145,7 +145,7 @@ def test_selection_by_a_mark_is_refused_without_a_model(loaded: Session) -> None
         views.brushed(loaded, None, {"mark": 0}, ["stopgo"], SIZE)
 
 
-def test_series_and_plane_contain_only_records_without_a_model(loaded: Session) -> None:
+def test_series_and_plane_contain_only_the_records_if_no_model_is_given(loaded: Session) -> None:
     result = views.series(loaded, None, "stopgo", (None, None), 1000)
     assert "model_n" not in result
     run = loaded.on_bench().run("stopgo")

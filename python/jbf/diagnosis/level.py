@@ -293,7 +293,7 @@ def _largest_common_group(directions: list[Directions]) -> list[Directions]:
 
 
 def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
-    """Reduce the significance level to the false-alarm rate in sign-reversed residuals.
+    """Reduce the significance level until sign-reversed residuals meet the false-alarm rate.
 
     The part of the residual that candidates could explain is removed first, because it is under
     test. Some candidates have no score direction, for example an effect that moves the instants of

@@ -252,7 +252,7 @@ class Campaign:
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
 
     def steps_rms(self, residual_rms: float) -> float:
-        """RMS of the quantisation bias of the mean readings that cannot be corrected, N.
+        """RMS of the uncorrected quantisation bias of the mean readings, N.
 
         It is zero without a quantisation step. The noise smooths the quantisation error and is
         estimated from the readings. The given residual RMS also contains lack of fit, and is

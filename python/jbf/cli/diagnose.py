@@ -106,6 +106,14 @@ def run(options: DiagnoseOptions) -> int:
                     file=name, problem="applies to a single rig", mend="leave out --many"
                 )
         return diagnose_many.run(options, options.many)
+    if options.rig is not None and not os.path.exists(options.rig):
+        raise InputError(file=options.rig, problem="does not exist", mend="name the rig file")
+    if options.rig is not None and options.rig.lower().endswith(".csv"):
+        raise InputError(
+            file=options.rig,
+            problem="is a CSV file where RIG should be",
+            mend=f"name a rig file first, or import it: jbf import {options.rig} --folder FOLDER",
+        )
     alone = options.rig is not None and os.path.isdir(options.rig)
     if options.rig is None or not (options.runs or alone):
         raise InputError(

@@ -53,7 +53,7 @@ def add(commands: Commands) -> None:
         default="",
         help="effects to fit in addition to the law (jbf effects lists them)",
     )
-    add_law(parser, also="; default journal")
+    add_law(parser, also="; default: journal for a bearing, coulomb for a drive")
     parser.add_argument(
         "--fix",
         metavar="NAME=VALUE",
@@ -82,17 +82,18 @@ def add(commands: Commands) -> None:
 
 def run(options: FitOptions) -> int:
     """Run the command."""
-    wanted, law = {"--out": options.out}, options.law.law or "journal"
+    wanted = {"--out": options.out}
     if not options.runs and not os.path.isdir(options.rig):
         raise InputError(
             file="jbf fit", problem="RUN is missing", mend="name the runs after the rig"
         )
     outputs.check(wanted, outputs.inputs_in(options.rig, options.runs, options.effects_from))
     effects = in_chain_order(name.strip() for name in options.effects.split(",") if name.strip())
+    rig, runs = inputs.campaign(options.rig, options.runs, options.law.law)
+    law = inputs.law_of_fit(rig, options.law.law)
     check_applies(law, effects)
     fixed = _values("--fix", options.fix, law, effects)
     start = _values("--start", options.start, law, effects)
-    rig, runs = inputs.campaign(options.rig, options.runs, law)
     outputs.check(wanted, [run.path for run in runs if run.path])
     runs, held = hold_out.split(runs, options.hold_out)
 

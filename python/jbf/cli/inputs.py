@@ -34,6 +34,11 @@ def law_for(on: Rig, asked: str | None) -> str:
     return asked or ("journal" if on.drive is None else AUTO)
 
 
+def law_of_fit(on: Rig, requested: str | None) -> str:
+    """Return the requested law, or the default of a fit: `journal`; for a drive `coulomb`."""
+    return requested or ("journal" if on.drive is None else "coulomb")
+
+
 def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Rig, list[Run]]:
     """Read rig and runs.
 

@@ -49,7 +49,7 @@ def add(commands: Commands) -> None:
     add_noise(parser)
     level.add(parser)
     add_json(parser)
-    add_law(parser, also="; default journal")
+    add_law(parser, also="; default: journal for a bearing, coulomb for a drive")
     add_effects_from(parser)
 
 
@@ -114,7 +114,7 @@ def model_of(path: str, law_options: LawOptions) -> Model:
                 mend="leave it out",
             )
         return inputs.model(path)
-    law = law_options.law or "journal"
-    rig = inputs.rig(path, law)
+    rig = inputs.rig(path, law_options.law)
+    law = inputs.law_of_fit(rig, law_options.law)
     values = {name: page.starts[0] for name, page in parameters_of(law, ()).items()}
     return Model(rig, law, (), values, law_options.clock)

@@ -55,13 +55,13 @@ def _friction_level_n(model: Model) -> float:
     rate, top_m_s = 0.6, 0.005
     velocity = top_m_s * np.sin(rate * time_s)
     way = top_m_s / rate * (1.0 - np.cos(rate * time_s))
-    linear = model.rig.bearing is None
+    turns = model.rig.bearing is not None or model.rig.quantities.motion == "rotary"
     run = Run(
         "slow motion",
         time_s,
         velocity,
-        angle_rad=None if linear else way / radius_m,
-        position_m=way if linear else None,
+        angle_rad=way / radius_m if turns else None,
+        position_m=None if turns else way,
     )
     return float(np.max(np.abs(model.predict(run))))
 

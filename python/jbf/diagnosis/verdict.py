@@ -104,9 +104,10 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
 def effects_without_estimate(
     parameters: Mapping[str, ParameterValue], effects: Names, policy: Policy
 ) -> Names:
-    """Find the effects whose parameters are all held or not significantly different from the null.
+    """Find the effects whose strength is held, or not significantly different from its null.
 
-    A parameter with an infinite null, or without one, is compared with zero.
+    The strengths are the parameters with a null (amplitudes, stiffnesses), not those without
+    (periods, phases). A parameter with an infinite null is compared with zero.
     """
 
     def estimated(name: str, page: Parameter) -> bool:
@@ -116,7 +117,10 @@ def effects_without_estimate(
         null = 0.0 if page.null is None or not math.isfinite(page.null) else page.null
         return abs(value.value - null) > policy.selection.min_estimate_sigma * value.stderr
 
-    pages = {name: find_effect(name).parameters for name in effects}
+    pages = {
+        name: [page for page in find_effect(name).parameters if page.null is not None]
+        for name in effects
+    }
     return tuple(
         name
         for name, parts in pages.items()

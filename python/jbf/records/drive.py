@@ -37,7 +37,7 @@ _SENSORS = {
     "force": "the force sensor",
     "torque": "the torque sensor",
     "current": "the current sensor",
-    "percent": "the drive's own reading of its load",
+    "percent": "the torque reading of the drive",
     "voltage": "the motor's voltage",
     "none": "the deceleration",
 }

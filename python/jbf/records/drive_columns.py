@@ -202,7 +202,7 @@ def _unwrapped(angle: Array) -> Array:
 
 def _conversion(name: str, target: str, column: str, size: float, si: str) -> Finding:
     one = next(unit for end, unit in _ENDS.items() if column.endswith(end))
-    words = f"{column} was converted to {si}: {one} corresponds to {size:.5g} {si} of the drive"
+    words = f"{column} was converted: {one} = {size:.5g} {si}"
     return Finding("converted", target, name, size, si, "converted on reading", words)
 
 

@@ -115,7 +115,8 @@ def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
     paragraphs = []
     next_experiment = diagnosis.next_experiment or ""
     if next_experiment:
-        paragraphs.append(_paragraph("Next experiment: ", next_experiment, 4))
+        lead = "Next experiment: " if diagnosis.experiment else "Note: "
+        paragraphs.append(_paragraph(lead, next_experiment, 4))
     elif diagnosis.residual_structure:
         worst = max(diagnosis.residual_structure, key=lambda remainder: remainder.share)
         paragraphs.append(_paragraph("Next: ", advice_on(worst.axis).to_do, 2))

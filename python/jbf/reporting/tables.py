@@ -43,7 +43,9 @@ def parameter_rows(
     for name, p in parameters.items():
         value, error = value_and_error(p)
         note = p.note or ("" if error else "no error known")
-        rows.append((name, value, error, percent(p), units.get(name, ""), note))
+        # A ratio to the value is meaningless for an angle, whose zero is arbitrary.
+        share = "" if name.endswith("_rad") else percent(p)
+        rows.append((name, value, error, share, units.get(name, ""), note))
     return rows
 
 

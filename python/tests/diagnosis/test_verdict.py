@@ -184,6 +184,8 @@ VALUE = ParameterValue
         ({"coulomb_drag.F_d": VALUE(1.0)}, False),
         # One of several parameters is sufficient.
         ({"cogging.A": VALUE(1.0, 0.1), "cogging.pitch": VALUE(0.1, held=True)}, True),
+        # A pitch is not a strength.
+        ({"cogging.A": VALUE(1.0, held=True), "cogging.pitch": VALUE(0.1, 0.001)}, False),
         # The null of a stiffness is infinite.
         ({"presliding.sigma": VALUE(2e5, 1e4)}, True),
         ({"presliding.sigma": VALUE(2e5, 3e5)}, False),

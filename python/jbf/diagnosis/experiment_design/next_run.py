@@ -267,8 +267,8 @@ def propose_detection_run(
     clear = {name: e for name, e in evidence.items() if e > 2.0 * settings.min_evidence}
     if best is None or not clear:
         return (
-            f"{listed}: not detectable in these runs, nor in any motion within the "
-            "limits, at a typical strength"
+            f"{listed}: not detectable at a typical strength, neither in these runs nor in another "
+            "motion within the limits of speed and acceleration"
         )
     _, excitation, run, _ = best
     which = "them" if len(clear) == len(hidden) else ", ".join(clear)

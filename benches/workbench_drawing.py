@@ -21,7 +21,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python" / "tests"))
 
-from workbench_walk import looked_at, served, why_not
+from workbench_walk import examine_runs, served, why_not
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -109,7 +109,7 @@ def main() -> int:
     print(f"{asked.samples} samples, {asked.times} times: least, median and worst, ms", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         recording(Path(folder), asked.samples)
-        with served(Path(folder)) as address, looked_at(address) as (page, said):
+        with served(Path(folder)) as address, examine_runs(address) as (page, said):
             page.click('[data-key="open-rig.toml"]')
             page.wait_for_selector("[data-drawn] canvas", timeout=600_000)
             found = measured(page, asked.times)

@@ -15,7 +15,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "python" / "tests"))
 
 from PIL import Image  # noqa: E402
-from workbench_walk import looked_at, served, why_not  # noqa: E402
+from workbench_walk import examine_runs, served, why_not  # noqa: E402
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -42,7 +42,7 @@ def main() -> int:
     with (
         tempfile.TemporaryDirectory() as folder,
         served(Path(folder), "--demo") as address,
-        looked_at(address) as (page, _),
+        examine_runs(address) as (page, _),
     ):
         page.wait_for_selector("[data-drawn] canvas")
         page.click("[data-key='run-two_way_0.25']")

@@ -92,7 +92,7 @@ def test_clean_recording_option_removes_the_artefact_margin(slide: Path, tmp_pat
 def test_effect_below_the_minimum_effect_size_is_not_reported(slide: Path, tmp_path: Path) -> None:
     result = diagnosed(slide, tmp_path / "d.json", "--min-effect", "0.2")
     assert result["effects"] == []
-    assert result["level"]["worth"] > result["level"]["critical"]
+    assert result["level"]["min_gain"] > result["level"]["critical"]
 
 
 def detectable_kg(slide: Path, out: Path, noise_rms: float, *options: str) -> float:

@@ -98,12 +98,12 @@ def work(task: Task, with_rivals: bool) -> Row:
             foreign=foreign,
             unseen=found.not_detectable,
         ),
-        "unseen": list(found.not_detectable),
+        "not_detectable": list(found.not_detectable),
         "held_out_over_noise": held_out(found.model, others)["rms"] / (truth["noise_n"] * colour),
         "effect_over_noise": max(truth["effect_to_noise"].values(), default=0.0) / colour,
-        "unexplained": [str(r.where) for r in found.residual_structure],
+        "residual_structure": [str(r.where) for r in found.residual_structure],
         "rms_over_floor": found.steps[-1].rms / found.steps[-1].noise_rms,
-        "holdout_over_rms": found.steps[-1].held_out_rms / found.steps[-1].rms,
+        "held_out_over_rms": found.steps[-1].held_out_rms / found.steps[-1].rms,
         "seconds": seconds,
     }
     if row["judged"] == "right" and not foreign:

@@ -80,7 +80,7 @@ class Rivals:
         return chosen
 
     def sparse_regression(self) -> list[str]:
-        """Select effects by sequentially thresholded least squares (pysindy) of the bare law's
+        """Select effects by sequentially thresholded least squares (pysindy) of the base law's
         residual. The library is the same: the change caused by each effect at its usual strength.
         The threshold is the one with the best prediction of other runs.
         """

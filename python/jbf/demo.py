@@ -39,7 +39,7 @@ class Demo:
     without_effects
         Diagnosis of the same rig without hidden effects.
     before, after
-        Comparison of the bare law and of the final model with a run that the diagnosis did not use.
+        Comparison of the base law and of the final model with a run that the diagnosis did not use.
     truth
         Parameters of the hidden effects, by effect and symbol.
     """

@@ -26,7 +26,7 @@ fn position_settles_after_a_step_of_ten_radians() {
                 last = last.max((bench.shaft.angle_rad - 10.0).abs());
             }
         }
-        // Friction alone causes 0.43 rad error with the bare law (its stuck observer gives 1.88
+        // Friction alone causes 0.43 rad error with the base law (its stuck observer gives 1.88
         // V/rad).
         let bound = if name == "none" { 0.6 } else { 0.3 };
         assert!(last < bound, "{name}: {last} rad off");

@@ -1,4 +1,4 @@
-//! Friction of a bare law resists the motion.
+//! Friction of a base law resists the motion.
 //!
 //! The jump is not negative, the rest has the sign of the motion, and the force of a bristle does
 //! not exceed the level towards which it deflects.

@@ -1,7 +1,7 @@
 """Robustness of a compensator against errors of its model.
 
 Every effect of the catalogue is hidden in the plant, one at a time, while the compensator carries
-the bare law. An effect of the instrument does not act on the shaft; it is hidden in the records to
+the base law. An effect of the instrument does not act on the shaft; it is hidden in the records to
 which the law is fitted. Further cases are a wrong load, viscosity, friction and motor, and more
 noise.
 """

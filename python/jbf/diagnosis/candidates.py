@@ -171,7 +171,7 @@ class Candidates:
     # ---- the level of the tests -------------------------------------------------------------
     @property
     def level(self) -> Level:
-        """Significance level of the tests; that of the bare law until it is calibrated."""
+        """Significance level of the tests; that of the base law until it is calibrated."""
         if self._level is None:
             self._level = self._level_given(())
         return self._level

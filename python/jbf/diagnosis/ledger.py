@@ -74,7 +74,7 @@ class Extrapolation:
 
 @dataclass(frozen=True)
 class Step:
-    """Model after one addition; the first step is the bare law.
+    """Model after one addition; the first step is the base law.
 
     Attributes
     ----------

@@ -42,9 +42,9 @@ class Diagnosis(Result):
         For each added effect, its posterior weight and those of its alternatives, at equal prior
         odds.
     steps
-        The ledger, beginning with the bare law.
+        The ledger, beginning with the base law.
     failures
-        Lack of fit of the bare law, by decreasing size.
+        Lack of fit of the base law, by decreasing size.
     residual_structure
         Residual structure that no effect explains.
     next_experiment
@@ -52,7 +52,7 @@ class Diagnosis(Result):
     fit
         The final fit; `model` is its model.
     before, after
-        Comparison of the bare law and of the final model with the runs.
+        Comparison of the base law and of the final model with the runs.
     not_tried
         Effects that are compatible with the law but not testable in these runs, with reasons.
     not_detectable

@@ -1,4 +1,4 @@
-"""Fit of the bare law along known motions, to a tolerance, with exact derivatives.
+"""Fit of the base law along known motions, to a tolerance, with exact derivatives.
 
 It applies to motions that are known exactly (a sine of the drive), not only as recorded samples.
 The solver takes as few steps as the tolerance permits, whatever the sampling. For records with
@@ -39,7 +39,7 @@ It enters no verdict.
 
 @dataclass(frozen=True, repr=False)
 class TrajectoryFit(Estimates):
-    """Fitted parameters of the bare law.
+    """Fitted parameters of the base law.
 
     Attributes
     ----------

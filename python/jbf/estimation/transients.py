@@ -132,7 +132,7 @@ def _through(p: Prepared, gaps: npt.NDArray[np.intp], *, at_end: bool) -> Driven
 
 
 def without_transients(campaign: Campaign, law: str, clock: Clock) -> Campaign:
-    """Return the campaign without the initial-state transients, estimated with the bare law.
+    """Return the campaign without the initial-state transients, estimated with the base law.
 
     Raises
     ------

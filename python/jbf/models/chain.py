@@ -42,7 +42,7 @@ MAX_STEP_S = 0.02
 """Longest inner step of a prediction, s.
 
 The core ends a step at every reversal and takes shorter steps if the law or an effect requires
-them. At 0.02 s the error of the bare law is about 1e-5 of its peak.
+them. At 0.02 s the error of the base law is about 1e-5 of its peak.
 """
 
 

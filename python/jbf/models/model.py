@@ -190,7 +190,7 @@ class Model(Shown):
         require_record(self.rig, run, self.effects)
 
     def steady_friction(self, velocity: npt.ArrayLike) -> Array:
-        """Steady friction force of the bare law (the Stribeck curve), N.
+        """Steady friction force of the base law (the Stribeck curve), N.
 
         The speeds (m/s) have shape (n,), none of them zero. The load is that of the rig if the law
         needs one.

@@ -54,7 +54,7 @@ def percent(value: ParameterValue) -> str:
 
 
 def step_words(models: Sequence[Sequence[str]], index: int) -> str:
-    """Describe model `index` by the effects that it adds or removes, or as the bare law."""
+    """Describe model `index` by the effects that it adds or removes, or as the base law."""
     effects = models[index]
     if index == 0:
         return f"{BARE} + {', '.join(effects)}" if effects else BARE

@@ -1,4 +1,4 @@
-"""Trajectories to a tolerance: the bare law, reduced or with inertia, along a motion.
+"""Trajectories to a tolerance: the base law, reduced or with inertia, along a motion.
 
 For the prediction of a complete rig with its effects use :class:`jbf.Model`. This module is for the
 analysis of the law itself, with a specified error.

@@ -42,7 +42,7 @@ def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> A
     Parameters
     ----------
     step
-        Index into `diagnosis.steps`. Default: the step of the bare law.
+        Index into `diagnosis.steps`. Default: the step of the base law.
 
     Raises
     ------

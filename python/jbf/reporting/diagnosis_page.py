@@ -196,7 +196,7 @@ def _ledger(diagnosis: Diagnosis) -> Markup:
 
 
 def _before(diagnosis: Diagnosis) -> Markup | str:
-    """Plot the bare law and the final model.
+    """Plot the base law and the final model.
 
     Left: the run in which they differ most. Right: the residual along the axis of the worst
     failure. Without added effects the result is an empty string.
@@ -232,7 +232,7 @@ def _last(diagnosis: Diagnosis) -> Markup:
 def _friction(diagnosis: Diagnosis) -> Markup:
     """Plot the friction loops of one run, and the mean friction of all runs.
 
-    The run is the one in which the bare law and the final model differ most.
+    The run is the one in which the base law and the final model differ most.
     """
     left, right = axes_or_new(None, 1, 2, (WIDTH, 4.0))
     index = largest_error_run(diagnosis.before, diagnosis.after)

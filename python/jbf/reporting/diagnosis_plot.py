@@ -51,7 +51,7 @@ def before_and_after(
 ) -> None:
     """Plot bin means of the residual along the axis of a pattern, before and after.
 
-    The final model is drawn only if it differs from the bare law.
+    The final model is drawn only if it differs from the base law.
     """
     said = diagnosis.model.rig.quantities
     noise_band(ax, diagnosis.before.noise_rms, unit=said.force)

@@ -77,7 +77,7 @@ def diagnosis_text(diagnosis: Diagnosis, full: bool = False) -> str:
 def diagnosis_report(diagnosis: Diagnosis) -> str:
     """Format the complete report of a diagnosis.
 
-    The order is verdict, measurement, misfit of the bare law, candidates, error per step, and
+    The order is verdict, measurement, misfit of the base law, candidates, error per step, and
     parameters.
     """
     campaign, bare = diagnosis.before.campaign, diagnosis.steps[0]

@@ -67,7 +67,7 @@ class Card:
 
 
 def failure_cards(diagnosis: Diagnosis) -> list[Card]:
-    """Return one card per failure of the bare law, with the residual before and after."""
+    """Return one card per failure of the base law, with the residual before and after."""
     if not diagnosis.failures:
         return []
     try:

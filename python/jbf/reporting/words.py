@@ -227,7 +227,7 @@ def _it(effects: tuple[str, ...]) -> str:
 
 
 def step_name(diagnosis: Diagnosis, index: int) -> str:
-    """Name what step `index` of the ledger added: the bare law, or `+ effect`."""
+    """Name what step `index` of the ledger added: the base law, or `+ effect`."""
     return step_words([step.effects for step in diagnosis.steps], index)
 
 

@@ -140,7 +140,7 @@ macro_rules! signal_chain {
         }
 
         impl<T: Real> Effects<T> {
-            /// No effects: the bare law.
+            /// No effects: the base law.
             pub const NONE: Self = Self { $($stage: Shelf::EMPTY,)* };
 
             /// Stages that have an effect.

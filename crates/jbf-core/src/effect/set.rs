@@ -175,7 +175,7 @@ pub trait EffectSet<T: Real>: Copy + Debug {
     }
 }
 
-/// No effects: the bare law.
+/// No effects: the base law.
 impl<T: Real> EffectSet<T> for () {
     type State = ();
     #[inline(always)]

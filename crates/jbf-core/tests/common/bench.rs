@@ -102,7 +102,7 @@ pub fn settings(control: Control) -> Settings {
     }
 }
 
-/// The observed compensator with a bare law.
+/// The observed compensator with a base law.
 pub fn observed<T: Real>(control: Control) -> Observed<T, Bare<T, Journal<T>>> {
     let model = Bare::new(law(Clock::Journal), 0.0127, DRIVE.volts_per_n, LOAD_N);
     Observed::new(model, &settings(control)).expect("settings")

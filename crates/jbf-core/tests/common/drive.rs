@@ -1,4 +1,4 @@
-//! Drives a bare law along a speed with any stepper.
+//! Drives a base law along a speed with any stepper.
 
 use jbf_core::law::journal::{Journal, State};
 use jbf_core::stepper::Stepper;

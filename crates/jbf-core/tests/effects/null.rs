@@ -1,4 +1,4 @@
-//! At its null an effect is absent: the run equals that of the bare law to the bit.
+//! At its null an effect is absent: the run equals that of the base law to the bit.
 
 use crate::common::motion::Sines;
 use crate::common::random::Random;

@@ -143,7 +143,7 @@ impl Bound {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Parameter {
-    /// Symbol and unit as one name (`sigma_1_m`), as used in files and options.
+    /// Name in files and options: the symbol (`sigma`), with the unit if no rig changes it (`tau_s`).
     pub name: &'static str,
     /// Unit in conventional notation (`1/m`).
     pub unit: &'static str,

@@ -300,14 +300,14 @@ def test_effect_is_idle_if_all_its_parameters_with_a_null_are_at_it() -> None:
         "one.F_d": DRAG,
         "one.v_s": SCALE,
         "two.F_d": DRAG,
-        "two.b_n": SIGNED,
-        "three.sigma_1_m": STIFF,
+        "two.b": SIGNED,
+        "three.sigma": STIFF,
         "four.v_s": SCALE,
     }
     effects = ("one", "two", "three", "four")
     values = [0.0, 0.0, 5.0, 0.0, 0.0, 1e12, 1e-7]
     assert idle_effects(effects, pages, values) == ("one", "three")
-    assert idle_effects(effects, pages, values, fixed=("two.b_n",)) == ("one", "two", "three")
+    assert idle_effects(effects, pages, values, fixed=("two.b",)) == ("one", "two", "three")
     values[1] = 1e-9
     assert idle_effects(effects, pages, values) == ("three",)
     assert idle_effects(effects, pages, values, {"one.F_d": 0.1}) == ("one", "three")

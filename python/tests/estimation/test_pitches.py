@@ -216,9 +216,9 @@ def test_ends_of_the_stroke_are_taken_from_the_runs_and_not_fitted() -> None:
     assert found[f"{STROKE}.a_1"].stderr is not None
     campaign = Campaign.prepare(Rig(), runs)
     # Only the six coefficients are fitted; the ends are given.
-    given = Problem(campaign, "coulomb", "journal", (STROKE,), {f"{STROKE}.x_0_m": 0.25})
+    given = Problem(campaign, "coulomb", "journal", (STROKE,), {f"{STROKE}.x_0": 0.25})
     assert len(given.open) - len(Problem(campaign, "coulomb", "journal", ()).open) == 6
-    assert given.fixed[f"{STROKE}.x_0_m"] == 0.25
+    assert given.fixed[f"{STROKE}.x_0"] == 0.25
 
 
 @pytest.mark.extended

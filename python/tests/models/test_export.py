@@ -74,8 +74,15 @@ where
 {
     let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, celsius] = c;
     let temperature_c = (!celsius[0].is_nan()).then_some(celsius.as_slice());
-    let record =
-        Record { time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c };
+    let record = Record {
+        time_s,
+        velocity_m_s,
+        acceleration_m_s2,
+        angle_rad,
+        load_n,
+        temperature_c,
+        weight_offset_rad: None,
+    };
     let mut predicted = vec![0.0; time_s.len()];
     predict(&model, &record, MAX_STEP_S, |i, f| predicted[i] = f);
     let (f64s, f32s) = (step(&model, c, 0.01), step(&small, c, 0.01));
@@ -119,7 +126,8 @@ int main(int argc, char **argv) {
   for (size_t i = 0; i < n; i++) {
     jbf_motion_f64 m = {column[0][i], column[1][i], column[2][i],
                         column[3][i], column[4][i], column[5][i]};
-    jbf_motion_f32 s = {(float)m.time_s, (float)m.velocity, (float)m.acceleration,
+    jbf_motion_f32 s = {(float)m.time_s, (float)m.velocity_m_s,
+                        (float)m.acceleration_m_s2,
                         (float)m.angle_rad, (float)m.load_n, (float)m.temperature_c};
     double f = i ? model_f64_step(&model, &state, &m, 0.01) : model_f64_start(&model, &state, &m);
     float g = i ? model_f32_step(&small, &small_state, &s, (float)0.01)

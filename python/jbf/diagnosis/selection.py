@@ -114,7 +114,8 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
             reason = f"significant, but reduces the error by only {1.0 - rms / bare:.1%}"
         if np.isfinite(candidate.most):
             outcome = "rejected"
-            reason = f"skipped: its evidence is at most {max(candidate.most, 0.0):.0f}"
+            limit = max(candidate.most, 0.0)
+            reason = f"skipped: its largest possible evidence is {limit:.0f}, too little to lead"
         elif gain > 0 and leader is None:
             confirmation = candidates.confirmation(present, name)
             alone = evidence_on_common_samples(candidates, candidate.solution, base)

@@ -25,7 +25,7 @@ export class SeeSection {
     const common = { brushed, zoomed, mode: () => this.drag, sync: "see" };
     this.force = new Chart(force, { ...common, unit: `${units.noun} (${units.force})`, height: 200, curves: [
       curve("friction_n", "measured", "measured"), curve("model_n", "model", "model", { width: 1.6 }),
-      curve("compared_n", "beside", "beside", { dash: [6, 4], width: 1.4 })] });
+      curve("compared_n", "other model", "beside", { dash: [6, 4], width: 1.4 })] });
     this.rest = new Chart(rest, { ...common, unit: units.force, height: 140, legend: false, curves: [
       curve("compared_residual_n", "other model", "beside", { width: 0.8 }), curve("residual_n", "record minus model", "measured")] });
     this.plane = new Plane(plane, { brushed: (box) => this.select(box && { box }), height: 360 });

@@ -36,9 +36,9 @@ export function showModels(page, place) {
           node.words, h("br"), h("small", {}, `${number(node.rms)} ${page.units.force}${outside}`)),
         h("label", { title: "draw together with the current model" },
           h("input", { type: "checkbox", checked: node.id === compared, disabled: node.id === current, "data-key": `beside-${node.id}`,
-            "aria-label": `draw ${node.words} beside`,
+            "aria-label": `compare with ${node.words}`,
             onchange: (event) => page.do("compare_with", { model: event.target.checked ? node.id : null }) }),
-          h("small", {}, "beside")));
+          h("small", {}, "compare")));
       item.style.marginLeft = `${12 * Math.min(depth, 5)}px`;
       rows.push(item);
       walk(node.id, depth + 1);

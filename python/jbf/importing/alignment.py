@@ -31,7 +31,7 @@ from jbf.importing.spool import Stream
 from jbf.units.unit import ONE
 
 ReadSignal = Callable[[Channel], Stream]
-"""Function that spools a channel with its times."""
+"""Function that stores a channel with its times in a temporary file and returns the stream."""
 QUESTION = (
     "these files have separate clocks: write a common signal (`drive/pos ~ force/pos`) "
     "or the offset in seconds; 0 if they started together"
@@ -53,7 +53,7 @@ class Alignment:
     offset_s
         Time added to the times of the file, s. With a drift, it applies at the time `pivot_s`.
     drift_ppm
-        Rate by which the clock of the file is slow, ppm; 0 if no drift is significant.
+        Relative rate error of the clock of the file (positive if slow), ppm; 0 if not significant.
     dates_s
         Part of `offset_s` that follows from the dates, s.
     signal, offset_std_s, correlation

@@ -25,7 +25,7 @@ Report = Callable[[str, int, int], None]
 
 
 def check_folder(path: Path, *, replace: bool, holding: Sequence[str] = ()) -> None:
-    """Raise an error if a folder cannot be written or contains anything other than an import.
+    """Raise an error if a folder is not writable or contains files other than those of an import.
 
     Parameters
     ----------

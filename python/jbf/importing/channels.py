@@ -15,9 +15,7 @@ from jbf.importing.targets import wanted_unit
 from jbf.units.unit import ONE, Unit
 
 CUT_COLUMN, KEPT_COLUMN = "cut", "kept"
-"""Columns that hold the set point or run number, and whether a row is kept, until the recording is
-cut.
-"""
+"""Auxiliary columns for cutting: set point or run number, and whether a row is kept."""
 SIGNAL_COLUMN = "signal"
 """Column of a signal that files with separate clocks have in common."""
 RATE = "rate"

@@ -26,14 +26,15 @@ Array = npt.NDArray[np.float64]
 MOST_DRIFT = 3e-4
 """Largest drift in the search; several times the drift between two quartz clocks."""
 SIGNIFICANT = 5.0
-"""Least ratio of a drift to its standard error for the drift to be significant."""
+"""Minimum ratio of a drift to its standard error for the drift to be significant."""
 LEAST_WINDOWS = 5.0
-"""Least effective number of windows for the estimate of a drift."""
+"""Minimum effective number of windows for the estimate of a drift."""
 SMALLEST = 0.02
-"""Least effect of a drift over the record, in steps of the slower record."""
+"""Minimum effect of a drift over the record, in steps of the slower record."""
 WITHIN = 0.5
-"""Least absolute correlation within windows. Whole records that change slowly may correlate by
-chance.
+"""Minimum absolute correlation within windows.
+
+Slow changes of unrelated records may be correlated by chance.
 """
 WINDOWS, MOST_SLOW, MOST_FAST = 24, 2_000, 200_000
 """Number of windows, and the largest number of samples of the slow and the fast record in each."""
@@ -102,7 +103,7 @@ def refine(main: Stream, other: Stream, coarse: Offset) -> ClockFit:
     Raises
     ------
     InputError
-        If the records agree only in their slow changes, as unrelated records may by chance.
+        If the records are correlated only in their slow changes, which may be due to chance.
     """
     return _Problem(main, other, coarse).solved()
 
@@ -346,7 +347,7 @@ class _Problem:
         return float(sum(weights) ** 2 / total) if total > 0.0 else 0.0
 
     def _sampling_error(self, windows: float) -> float:
-        """Return the standard error due to edges that are known only to within a sample, s."""
+        """Return the standard error due to the sampling interval at edges of the signal, s."""
         if self.coarse.lobe_s >= 2.0 * self.step:
             return 0.0
         return float(self.step / np.sqrt(12.0 * max(windows, 1.0)))

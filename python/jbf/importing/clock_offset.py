@@ -21,19 +21,20 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 WEAKEST = 0.8
-"""Least absolute correlation that is accepted."""
+"""Minimum absolute correlation that is accepted."""
 RIVAL = 1.5
-"""Another offset is a rival if its share of unexplained variance is less than this factor times the
-share of the best offset.
+"""Largest ratio of unexplained variances for a second offset to count as equally plausible.
+
+The ratio is that of the second offset to the best offset.
 """
 FLOOR = 0.01
 """Share of unexplained variance below which offsets count as equally good."""
 OVERLAP = 0.25
-"""Least overlap in the search, as a share of the largest overlap."""
+"""Minimum overlap in the search, as a share of the largest overlap."""
 LEAST_SAMPLES = 20
-"""Least number of common samples in an overlap."""
+"""Minimum number of common samples in an overlap."""
 VARYING = 0.02
-"""Least variance within an overlap, as a share of the variance of the whole record."""
+"""Minimum variance within an overlap, as a share of the variance of the whole record."""
 POINTS = 1 << 20
 """Largest number of grid points of a record."""
 PIECE_S = 600.0
@@ -54,7 +55,7 @@ class Offset:
     lobe_s
         Largest distance of the true offset from `offset_s`, s.
     pivot_s
-        Time of the other record at which the offset holds, s.
+        Time of the other record to which the offset refers, s.
     correlation
         Correlation coefficient at this offset.
     """

@@ -1,8 +1,8 @@
 """Recognise the quantity and the unit of a column from its header.
 
-A name is split into words. Each known word indicates a quantity, and some indicate its origin (a
-motor, a set point). If words fit several quantities, the unit in the header decides (speed in rpm
-or in m/s). Words never decide against the unit.
+A name is split into words. Each known word indicates a quantity, and some words indicate its origin
+(a motor, a set point). If the words indicate several quantities, the unit in the header selects one
+(speed in rpm or in m/s). The unit takes precedence over the words.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ _SETPOINT = _words(
 _MODELLED = _words(
     "gravity model modelled feedforward estimated estimate predicted simulated compensation"
 )
-"""Words for values that a controller or a person computed, not read from a sensor or a drive."""
+"""Words for computed values, which were not measured by a sensor or a drive."""
 _ALSO = {"effort": "torque"}
 """Second meaning of a word: a force in French, a torque in robot logs. The unit decides."""
 _ACTUAL = {"ist", "istwert", "actual", "act", "measured", "meas", "mess", "réel", "reel"}
@@ -145,7 +145,7 @@ class Header:
         Whether a whole word, and not only a symbol, indicates the quantity.
     motor, setpoint, modelled, turning
         Whether the value belongs to the motor; is a set point and not a measurement; was computed;
-        is named by a word for something that turns.
+        has a name that indicates a rotation.
     """
 
     name: str

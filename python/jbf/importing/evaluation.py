@@ -19,7 +19,7 @@ Value = Array | float
 
 _RAD = BASES.index("rad")
 _SAME = 1e-6
-"""Relative difference below which a number equals a unit's own factor."""
+"""Relative difference below which a number equals the conversion factor of a unit."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Quantity:
     Attributes
     ----------
     loose
-        Whether the value contains a factor without a unit, which may have unstated dimensions.
+        Whether the value contains a factor without a unit, so that its dimensions are uncertain.
     """
 
     value: Value

@@ -307,7 +307,7 @@ def _key(kind: str, header: Header) -> str:
 
 
 def _one(rivals: list[Candidate], key: str) -> bool:
-    """Return whether one candidate is unambiguous."""
+    """Return whether the choice among the candidates is unambiguous."""
     own = [c for c in rivals if c.column.name == key]
     return len(own) == 1 or (len(rivals) == 1 and rivals[0].sure)
 
@@ -317,7 +317,7 @@ def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Q
     sure = [c for c in rivals if c.sure]
     named = [c for c in rivals if c.why != "by unit"]
     if named and len(named) < len(rivals):
-        # A candidate known by its unit only does not compete with one known by its name.
+        # A candidate identified by its name takes precedence over those identified by unit only.
         entry, rest, asked = _chosen(key, named)
         return entry, [*rest, *(c.called for c in rivals if c not in named)], asked
     own = [c for c in rivals if c.column.name == key]
@@ -339,7 +339,7 @@ def _is_used(column: Column, entries: Mapping[str, Entry]) -> bool:
 
 
 def _missing(entries: Mapping[str, Entry], source: Source, lone_motion: bool) -> list[Question]:
-    """Return questions for the friction and the motion; a motion alone is a coast-down."""
+    """Return questions for a missing friction or motion; a motion alone is a coast-down."""
     names = [c.name for t in source.tables for c in t.columns]
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
     found = []

@@ -69,7 +69,7 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
 
 
 def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
-    """Rename entries for the machine: if a slide moves, a recorded torque belongs to its motor."""
+    """Rename entries by machine type: on a slide, a recorded torque is that of the motor."""
     found = dict(entries)
     places = [key for key in ("position_m", "velocity_m_s") if key in found]
     of_torque = found.keys() & {"torque_n_m", "current_a", "torque_percent", "voltage_v"}

@@ -19,7 +19,7 @@ from jbf.units.unit import parse_unit
 _FROM_S, _TO_S = 9.5e8, 4.1e9
 """Seconds since 1970 of the years 2000 and 2100."""
 FORWARD, FEW = 0.9, 4
-"""Least share of increasing steps of a clock, and number of rows below which it is not tested."""
+"""Minimum share of increasing steps of a clock, and number of rows below which it is not tested."""
 SHORTEST_S = 1e-6
 """Smallest plausible sampling interval of a friction recording, s."""
 Found = tuple[Entry | None, list[Question]]
@@ -66,8 +66,8 @@ def time_by_motion(
     """Determine an open unit of time by the agreement of speed and change of position.
 
     Return the entry if exactly one unit fits, else None. Position and speed without units are
-    assumed to be in units that belong together, such as rad and rad/s. Other pairs do not differ by
-    the factor of 1000 between units of time.
+    assumed to be in corresponding units, such as rad and rad/s. The ratio of other pairs of units
+    is not 1000, the factor between units of time.
     """
     time = entries.get("time_s")
     if time is None or time.sure or not time.expression.endswith(f"[{OPEN}]"):

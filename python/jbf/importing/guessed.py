@@ -71,7 +71,7 @@ class Guess:
     questions
         Questions that must be answered before the import.
     clocks
-        Columns with a time of their own.
+        Columns with a separate time column.
     beside
         Further files of the recording, with separate clocks.
     align, align_notes

@@ -57,7 +57,7 @@ class OpenQuestions(InputError):
 
 
 def look(path: PathLike, joint: str | None = None, beside: Sequence[PathLike] = ()) -> Guess:
-    """Propose a map for a file, as far as its contents permit.
+    """Propose a map for a file from its contents.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 """The map, `map.toml`: the file columns that provide the columns of a run, and the rig.
 
-[file]      how the file is read, as far as it does not state this; files recorded with it
+[file]      options for reading the file, if not detected; further files of the recording
 [columns]   column of a run = "expression over the file's columns"
-[clocks]    column of a run = "its own time", if that is not time_s
+[clocks]    column of a run = "expression of its time", if the time is not time_s
 [align]     further file = "common signal" or seconds
-[cut]       how one recording becomes runs
+[cut]       settings for cutting a recording into runs
 [drive] or [bearing], [lubricant], [load]   as in rig.toml
 """
 

@@ -1,4 +1,4 @@
-"""Reduce a recording to the minimum and maximum in each of some hundred or more intervals."""
+"""Reduce a recording to the minimum and maximum in each of a few hundred intervals."""
 
 from __future__ import annotations
 

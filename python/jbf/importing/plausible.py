@@ -15,7 +15,7 @@ from jbf.importing.names import column_names, column_units
 from jbf.importing.targets import wanted_unit
 
 _ALIKE = 0.9
-"""Least correlation of speed and change of position for a meaningful ratio."""
+"""Minimum correlation of speed and change of position for a meaningful ratio."""
 OFF = 1.25
 """Factor by which a ratio may exceed or fall below 1 without indicating a wrong unit."""
 PAIRS = (

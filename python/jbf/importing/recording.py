@@ -1,4 +1,4 @@
-"""Read a file through a map onto the disk: converted columns, each with its original clock."""
+"""Read a file with a map: store converted columns, each with its original clock, on the disk."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ STEADY = "none: steady states"
 def read_recording(
     source: Source, mapping: Map, folder: Path, report: Report | None = None
 ) -> Recording:
-    """Read a source through a map and spool it into a folder.
+    """Read a source with a map, and store the columns in temporary files in a folder.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def aligned(
     Parameters
     ----------
     folder
-        Folder in which signals are spooled.
+        Folder for temporary files of the signals.
     clocks
         Clock of each file, corrected in place; by default new clocks.
 

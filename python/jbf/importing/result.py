@@ -54,7 +54,7 @@ class Import(Result):
 
     @property
     def runs(self) -> list[Run]:
-        """The runs, read again at each access."""
+        """Runs, read again at each access."""
         names = [piece.name for piece in self.pieces if piece.keep]
         return read_runs([self.folder / f"{name}.csv" for name in names], self.rig)
 

@@ -103,7 +103,7 @@ class _Part:
 
 
 def _lines(block: Array) -> str:
-    # repr of a float is the shortest text that reads back to the same bits.
+    # repr of a float is the shortest text that is parsed to the same float.
     columns = []
     for column in block.T:
         cells = list(map(repr, column.tolist()))

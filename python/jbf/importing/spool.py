@@ -55,8 +55,8 @@ class Stream:
     def needed(self) -> list[int]:
         """Columns whose few gaps are missing values.
 
-        A column with more gaps has a clock of its own, and its empty cells remain. Reading of
-        runs applies the same rule.
+        A column with more gaps is a channel with a separate clock, and its empty cells remain. The
+        same rule applies when runs are read.
         """
         if self.missing is None:
             return []
@@ -84,7 +84,7 @@ class Stream:
         self.rows += len(block)
 
     def read(self, first: int, end: int) -> Array:
-        """Return the rows from `first` to before `end`, shape (n, columns)."""
+        """Return the rows from `first` to `end`, exclusive, shape (n, columns)."""
         width = len(self.columns)
         first, end = max(first, 0), min(end, self.rows)
         count = max(end - first, 0)
@@ -92,7 +92,7 @@ class Stream:
         return values.reshape(count, width)
 
     def blocks(self, first: int = 0, end: int | None = None, size: int = BLOCK) -> Iterator[Array]:
-        """Yield the rows from `first` to before `end` in blocks."""
+        """Yield the rows from `first` to `end`, exclusive, in blocks."""
         last = self.rows if end is None else min(end, self.rows)
         for begin in range(first, last, size):
             yield self.read(begin, min(begin + size, last))
@@ -100,9 +100,10 @@ class Stream:
     def overlapping(
         self, first: int, end: int, margin: int, size: int = BLOCK
     ) -> Iterator[tuple[int, int, Array]]:
-        """Yield blocks with up to `margin` additional rows on both sides, where they exist.
+        """Yield blocks with up to `margin` additional rows on both sides, if available.
 
-        Each item is the first row of the block proper, its index in the rows, and the rows.
+        Each item consists of the first row of the block without its margin, the index of this row
+        in the array, and the array, shape (rows, columns).
         """
         for begin in range(first, end, size):
             low = max(begin - margin, first)
@@ -145,7 +146,7 @@ class Stream:
 
 @dataclass
 class Dropped:
-    """Rows that were left out, and why, with the file if it is not the main file."""
+    """Omitted rows and the reason, with the file if it is not the main file."""
 
     rows: int
     why: str
@@ -155,7 +156,7 @@ class Dropped:
 
 @dataclass
 class Recording:
-    """Contents of one file: its streams, and remarks on how it was read.
+    """Contents of one file: its streams, and remarks on the reading.
 
     Attributes
     ----------

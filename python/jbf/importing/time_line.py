@@ -18,7 +18,7 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 _BEGINNING = 0.05
-"""Share of the elapsed time of a segment; time that falls back below it counts as a restart."""
+"""Share of the elapsed time of a segment; a decrease to less than this share is a restart."""
 _MANY = 0.1
 """Share of rows with repeated times above which a clock is too coarse."""
 
@@ -104,7 +104,7 @@ class TimeLine:
         return list(zip(self._starts, [*self._starts[1:], rows], strict=True))
 
     def dropped(self) -> list[Dropped]:
-        """Return the rows that were left out, and why."""
+        """Return the omitted rows and the reasons."""
         found = []
         if self._repeats:
             found.append(Dropped(self._repeats, "time repeats", self._first_repeat))

@@ -17,7 +17,7 @@ _TURN = 2.0 * math.pi
 
 
 def unwrapped(stream: Stream) -> list[str]:
-    """Unwrap each angle that jumps within one turn; return notes on what was done."""
+    """Unwrap each angle that is limited to one turn; return notes on the changes."""
     notes = []
     for key in _ANGLES:
         if key not in stream.columns:

@@ -1,7 +1,7 @@
 """Type checks of the arguments of the public functions, with one-line errors.
 
-Only types are checked here. The contents that a run or a rig must have for a given purpose are
-checked where they are used.
+This module checks types only. Functions that require certain contents of a run or a rig check
+these contents themselves.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Array = npt.NDArray[np.float64]
 
 
 def described(value: object) -> str:
-    """Describe a value for an error message: `a list`, `None`, or the text itself in quotes."""
+    """Describe a value for an error message: its type (`a list`), `None`, or a string in quotes."""
     if value is None:
         return "None"
     if isinstance(value, str):
@@ -147,7 +147,7 @@ def check_callable(value: object, what: str) -> None:
 
 
 def one_of(value: object, known: Iterable[Word], what: str) -> Word:
-    """Return the value if it is one of the known words; an InputError suggests the nearest one."""
+    """Return the value if it is a known word; otherwise raise an InputError with a suggestion."""
     words = list(known)
     for word in words:
         if isinstance(value, str) and value == word:

@@ -1,9 +1,9 @@
 """Channels sampled by separate clocks, merged on the union of their time stamps.
 
-At an instant at which a channel was not sampled, its array holds the linear interpolation between
-its readings, so that every array is numeric. `Run.read` marks the values that were sampled. The
-motion is estimated from sampled values only, and a model is compared with the force at the instants
-of the force readings only.
+At an instant at which a channel was not sampled, the array of the channel holds a value that is
+interpolated linearly between adjacent readings, so that every array is numeric. `Run.read` marks
+the values that were sampled. The motion is estimated from sampled values only, and a model is
+compared with the force at the instants of the force readings only.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ Mask = npt.NDArray[np.bool_]
 Channels = Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]
 
 OWN_CLOCK = 0.05
-"""Smallest share of empty cells for a column to be treated as a channel with its own clock.
+"""Smallest share of empty cells for a column to be treated as a channel with a separate clock.
 
 Fewer empty cells are gaps in the file, which the user has to repair.
 """
 ALONE = ("friction_n", *MOTION)
-"""Columns that need as many readings as a run needs samples."""
+"""Columns with at least as many readings as the minimum number of samples of a run."""
 
 
 def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[str, Mask]]:
-    """Merge channels on the union of their time stamps, within the period that the motion covers.
+    """Merge channels on the union of their time stamps, within the time range of the motion.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[
 
 
 def recorded_samples(time_s: Array, values: Array) -> tuple[Array, Array]:
-    """Return the instants and readings of a column, without missing values if it has its own clock.
+    """Return instants and readings of a column, without missing values if its clock is separate.
 
     A small number of missing values is kept, so that the later checks reject them.
     """

@@ -35,13 +35,13 @@ UNITS = {
 }
 """Units of the columns that do not depend on the rig."""
 ATTRIBUTES = {"velocity_m_s": "velocity", "friction_n": "friction"}
-"""Attributes of `Run` without a unit, by column: their unit is that of the rig."""
+"""Attributes of `Run`, by column, for quantities whose unit depends on the rig."""
 POINT = "point"
 """Column that replaces `time_s`: the number of a steady state, as in a Stribeck curve."""
 POINT_S = 60.0
 """Nominal spacing of steady states on the time axis of a run, s."""
 SLOW = "temperature_c"
-"""Column that may have gaps."""
+"""Column that may have missing values."""
 LARGEST = 1e12
 """Largest plausible absolute value of a known column in SI units.
 
@@ -51,7 +51,7 @@ powers stay finite up to this limit.
 SHORTEST_S = 1e-12
 """Shortest plausible time step between samples, s."""
 MOTION = ("velocity_m_s", "position_m", "angle_rad")
-"""Columns each of which is sufficient to determine the motion."""
+"""Columns that define the motion; one of them is sufficient."""
 
 
 def attribute(column: str) -> str:

@@ -1,7 +1,7 @@
 """Reading a run from CSV.
 
-Each column is first converted to numbers as a whole, and an invalid cell is located only if that
-fails. A valid file is therefore read in milliseconds, and an error still names row and column.
+Each column is first converted to numbers as a whole. Only if this conversion fails, the invalid
+cell is located, so that the error names row and column. A valid file is read in milliseconds.
 """
 
 from __future__ import annotations
@@ -204,10 +204,10 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     The header names the columns. ``time_s``, ``friction_n`` and a motion (``velocity_m_s``, or
     ``position_m``, or ``angle_rad`` and a rig with a bearing) are required; the other `COLUMNS` are
     optional. Any further column whose cells are all finite numbers is kept in `Run.extra`; any
-    other column is ignored. If a column has many empty cells, they are instants at which it was not
-    sampled: it has its own clock. ``point`` in place of ``time_s`` numbers steady states, as in a
-    Stribeck curve. Cells are separated by commas, semicolons or tabs. Blank lines, and lines before
-    the header that start with ``#``, are skipped.
+    other column is ignored. A column with many empty cells is a channel with a separate clock; its
+    empty cells are instants at which the channel was not sampled. The column ``point`` in place of
+    ``time_s`` numbers steady states, as in a Stribeck curve. Cells are separated by commas,
+    semicolons or tabs. Blank lines, and lines before the header that start with ``#``, are skipped.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
     Returns
     -------
     Run
-        The checked columns, named for the file.
+        The checked columns; the name of the run is the stem of the file name.
 
     Raises
     ------
@@ -302,7 +302,8 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
 def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:
     """Sort steady states by speed and give them a time axis.
 
-    Differences between neighbours are then noise, in whatever order the states were measured.
+    The differences between adjacent samples are then mostly noise, regardless of the order in which
+    the states were measured.
     """
     order = np.argsort(columns[speed], kind="stable")
     found = {name: frozen(values[order]) for name, values in columns.items()}
@@ -312,10 +313,11 @@ def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:
 def _separately_clocked(
     cells: Sequence[str], others: Sequence[Sequence[str]]
 ) -> tuple[Array, Mask] | None:
-    """Return the readings of a channel with its own clock, and the mask of its non-empty cells.
+    """Return the readings of a channel with a separate clock, and the mask of its non-empty cells.
 
-    None if a cell is not a number, or if the empty cells are too few to be more than gaps. A fast
-    channel has few empty cells: then every row that lacks it must belong to a slow channel.
+    None if a cell is not a number, or if the share of empty cells is below `OWN_CLOCK`. A fast
+    channel may have a smaller share; every row without a value of it must then have a value of a
+    slower channel.
     """
     there = _filled_cells(cells)
     if not there.any():

@@ -1,4 +1,4 @@
-"""Columns as CSV text that reads back to the same bits."""
+"""Conversion of columns to CSV text without loss of precision."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def csv_of_columns(
         Column name to a mask of the instants at which the column was sampled; its other cells are
         empty. None for a column that was sampled at every instant.
     """
-    # repr of a float is the shortest text that reads back to the same bits.
+    # repr of a float is the shortest text that is parsed to the same float.
     cells = {name: list(map(repr, values.tolist())) for name, values in columns.items()}
     for name, mask in read.items():
         for i in np.flatnonzero(~mask).tolist() if mask is not None else ():

@@ -1,4 +1,4 @@
-"""Columns of a run that are computed from recorded ones: a sparse temperature, a missing speed."""
+"""Columns of a run that are computed from recorded columns: temperature in gaps, and speed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Fi
 
 
 def derived_speed_column(columns: Mapping[str, Array]) -> Array:
-    """Speed from the position, m/s; nan if only an angle is known, whose radius is in the rig."""
+    """Speed as the derivative of the position, m/s; nan if only an angle was recorded."""
     if "position_m" in columns:
         return frozen(np.gradient(columns["position_m"], columns["time_s"]))
     return frozen(np.full(len(columns["time_s"]), np.nan))

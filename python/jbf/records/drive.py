@@ -1,4 +1,4 @@
-"""A drive, slide or joint as a section of `rig.toml`: its motion and its friction measurement."""
+"""Drive, slide or joint: section `[drive]` of `rig.toml`, with motion and friction measurement."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ class Drive:
     pitch_m : float, optional
         Travel of a linear drive per turn of its screw (lead), or of its pinion or pulley, m.
     inertia_kg_m2, mass_kg : float, optional
-        Known moved inertia or mass. It is reported next to the estimate of `inertia`. It is
-        required for `friction = "none"`, where it converts the deceleration into a force.
+        Known moved inertia or mass, reported together with the estimate of `inertia`. Required for
+        `friction = "none"`, in order to convert the deceleration into a force.
 
     Raises
     ------

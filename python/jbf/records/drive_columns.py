@@ -58,15 +58,15 @@ _ENDS = {
     "_rad_s": "1 rad/s",
     "_rad": "1 rad",
 }
-"""Text for one unit of a column, by the end of its name."""
+"""Name of one unit of a column, by the suffix of the column name."""
 _TURNED = ("angle_rad", "motor_angle_rad")
 
 
 @dataclass(frozen=True)
 class DriveColumns:
-    """Columns that a drive may have recorded.
+    """Possible columns of the file of a drive.
 
-    For each quantity: its columns, and the size of one unit of each at the driven part.
+    For each quantity: the column names, each with its conversion factor to the driven part.
     """
 
     drive: Drive
@@ -137,14 +137,14 @@ class DriveColumns:
         return kept, tuple(found)
 
     def called(self, columns: Mapping[str, Array]) -> dict[str, str]:
-        """Return the name in a run of each column that is read."""
+        """Return the mapping from each file column that is read to its name in a run."""
         read = (
             (next((c for c in sizes if c in columns), ""), t) for t, sizes, _ in self._targets()
         )
         return {column: target for column, target in read if column}
 
     def _targets(self) -> tuple[tuple[str, Mapping[str, float], str], ...]:
-        """Column name in a run, columns of the file for it with their unit sizes, and the unit."""
+        """Column name in a run, file columns with their conversion factors, and the unit."""
         unit = self.drive.quantities
         place = "angle_rad" if self.drive.motion == "rotary" else "position_m"
         return (
@@ -171,7 +171,7 @@ def _friction(drive: Drive) -> dict[str, float]:
 
 
 def _foreign_columns(columns: DriveColumns) -> dict[str, str]:
-    """Columns that this drive cannot have, and what to do about each."""
+    """Columns that this drive cannot have, each with a remedy."""
     first = next(iter(columns.friction), None)
     found = {}
     if first not in ("friction_n", None):

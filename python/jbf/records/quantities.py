@@ -1,8 +1,8 @@
 """Units and words for the friction and motion of a rig.
 
-Every law in newtons and metres holds for any pair of a force and its displacement: a force over
-metres, or a torque over radians, that is, at a radius of one. The numbers are the same; this module
-holds their units and names.
+Every law in newtons and metres is also valid for a torque and an angle, which are equivalent to a
+force and a displacement at a radius of one metre. The numerical values are equal; this module
+defines their units and names.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The recorded load: a force, or a pressure that represents one."""
+"""Recorded load: a normal force, a pressure, or a transmitted torque."""
 
 from __future__ import annotations
 

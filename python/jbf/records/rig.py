@@ -1,4 +1,4 @@
-"""A rig (bearing, lubricant and load, or a drive) as a TOML file and as frozen dataclasses."""
+"""Rig (bearing, lubricant and load, or a drive) as a TOML file and as frozen dataclasses."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class Lubricant:
     viscosity_pa_s : float
         Dynamic viscosity, Pa s.
     temperature_c : float, optional
-        Temperature at which the viscosity holds, degrees Celsius. In a model with
+        Temperature to which the viscosity refers, degrees Celsius. In a model with
         `vogel_viscosity`, the parameters of the law refer to this temperature.
 
     Raises

@@ -1,4 +1,4 @@
-"""A recorded run: its columns as checked arrays."""
+"""Recorded run, with checked columns as arrays."""
 
 from __future__ import annotations
 
@@ -67,15 +67,15 @@ class Run(Shown):
     path : Path or None
         The file that the run was read from.
     speed_recorded : bool
-        False if the speed is only a difference of the position, or is left to the angle.
+        False if the speed is only a difference of the position, or follows from the angle.
     quantities : Quantities
         Units and words; those of a rotary drive have N m in place of N and rad in place of m.
     reading : tuple of Finding
         Conversions that were made when the run was read.
     read : dict of str to ndarray
-        Mask of the instants at which a channel with its own clock was sampled, bool, shape (N,).
-        Between them its array is linearly interpolated. A column without a mask was sampled at
-        every instant.
+        Mask of the instants at which a channel with a separate clock was sampled, bool, shape (N,).
+        At the other instants, the array of the channel is linearly interpolated. A column without
+        a mask was sampled at every instant.
 
     Examples
     --------
@@ -135,7 +135,7 @@ class Run(Shown):
         return {called.get(name, name): a for name, a in self.columns().items()}
 
     def _arrays(self) -> dict[str, Array]:
-        """Return `columns` with the speed in any case."""
+        """Return `columns`, always including the speed."""
         return {"velocity_m_s": self.velocity} | self.columns()
 
     def select(self, which: slice | npt.ArrayLike) -> Run:
@@ -253,7 +253,7 @@ class Run(Shown):
         """Build a run from a data frame (pandas, polars), an Arrow table or a mapping of arrays.
 
         Columns are named as in a file; those that are not numeric are ignored. A column with 5 % or
-        more missing values (nan, null) has its own clock.
+        more missing values (nan, null) is a channel with a separate clock.
 
         Raises
         ------

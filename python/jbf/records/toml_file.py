@@ -36,9 +36,9 @@ def number(value: object, key: str) -> float:
 
 
 LEAST, MOST = 1e-12, 1e12
-"""Limits of any size, mass, viscosity, load or constant in SI units.
+"""Limits of dimensions, masses, viscosities, loads and constants, in SI units.
 
-Values that are computed from several of them stay finite.
+Products and quotients of several values within these limits are finite.
 """
 
 

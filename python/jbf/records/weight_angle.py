@@ -1,4 +1,4 @@
-"""The angle of a link that turns with several joints, over which its weight acts."""
+"""Angle of a link that several joints move; the torque of its weight depends on this angle."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ WEIGHT_ANGLE = "weight_angle_rad"
 def weight_offset(rig: Rig, run: Run, angle_rad: Array) -> Array | None:
     """Recorded angle of the link minus the angle of the joint, rad, shape (N,).
 
-    None without the column `weight_angle_rad`: the weight then acts over the angle of the joint. It
-    is used for rotary drives only.
+    None without the column `weight_angle_rad`: the torque of the weight then depends on the angle
+    of the joint. The column is used for rotary drives only.
     """
     if rig.quantities.motion != "rotary" or WEIGHT_ANGLE not in run.extra:
         return None
@@ -31,7 +31,7 @@ def weight_offset(rig: Rig, run: Run, angle_rad: Array) -> Array | None:
 def check_weight_angles(rig: Rig, runs: Sequence[Run]) -> None:
     """Raise an InputError if some runs of a rotary drive have the angle of the link and some not.
 
-    One model has one angle over which the weight acts.
+    In one model, the torque of the weight depends on one angle.
     """
     if rig.quantities.motion != "rotary":
         return

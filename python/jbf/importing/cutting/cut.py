@@ -25,10 +25,10 @@ TOO_FEW = f", but a run needs at least {MIN_SAMPLES}"
 REST_S, KEEP_REST_S = 0.25, 0.1
 """Default shortest rest at which a recording is cut, and the part of it that is kept, s."""
 LOST, SHORTEST_S = 0.05, 1.0
-"""Limits of the default cutting: share of lost motion, and median duration of a run, s.
+"""Largest share of discarded motion, and minimum median duration of runs, s, by default cutting.
 
-The default cutting is rejected if it loses more, or makes shorter runs. An axis with stick-slip is
-thus not cut at every stop.
+The default cutting is rejected outside these limits, so that an axis with stick-slip is not cut at
+every stop.
 """
 
 
@@ -47,7 +47,7 @@ def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
 def at_rests_by_default(recording: Recording, settings: CutSettings) -> list[Piece] | None:
     """Cut a recording at its rests.
 
-    Return None if this yields no additional runs, too short runs or too much loss.
+    Return None if the result has no additional runs, or exceeds the limits `LOST` and `SHORTEST_S`.
     """
     by_rests = replace(settings, by=("rests",), rest_s=REST_S, keep_rest_s=KEEP_REST_S)
     pieces = _cut(recording, by_rests)
@@ -101,7 +101,7 @@ def ends(recording: Recording, segment: int) -> tuple[float, float]:
 
 
 def _between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Piece]:
-    """Return the pieces between cuts, and as pieces to leave out the spans that the cuts remove."""
+    """Return the pieces between cuts, and the spans that the cuts remove as omitted pieces."""
     first_s, last_s = ends(recording, segment)
     found: list[Piece] = []
     begin = first_s

@@ -15,9 +15,9 @@ LOADS = ("load_n", "load_n_m", "pressure_pa")
 _PARTS = 20
 """Number of rows whose median gives one point of the load curve."""
 _STEP = 0.05
-"""Least size of a step, as a share of the larger level."""
+"""Minimum size of a step, as a share of the larger level."""
 _SIGMAS = 8.0
-"""Least size of a step, in standard deviations of the differences between neighbouring points."""
+"""Minimum size of a step, in standard deviations of the differences between neighbouring points."""
 
 
 def cut_at_load_steps(recording: Recording) -> list[Cut]:

@@ -20,7 +20,7 @@ WINDOW_S = 1.0
 STEADY = 0.02
 """Largest range of a steady speed, as a share of its median."""
 HOLDS = 3
-"""Least number of consecutive windows of a kind; fewer belong to the kind before."""
+"""Minimum number of consecutive windows of a kind; fewer belong to the kind before."""
 
 
 def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut]:
@@ -72,7 +72,7 @@ def _to_and_fro(kinds: list[str]) -> list[str]:
 
 
 def _held(kinds: list[str]) -> list[tuple[int, str]]:
-    """Return the start and name of each kind that lasts and differs from the last lasting kind."""
+    """Return the start and name of each lasting kind that differs from the previous one."""
     found: list[tuple[int, str]] = []
     last = None
     at = 0

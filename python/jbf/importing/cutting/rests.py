@@ -20,7 +20,7 @@ NOISES = 2.0
 
 
 def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
-    """Return a cut at each rest that is long enough, without the parts to be kept."""
+    """Return a cut at each rest of sufficient duration, without the parts to be kept."""
     motion = MotionSpeed(recording, WINDOW * settings.rest_s)
     top = motion.top()
     share = STILL if settings.still is None else settings.still

@@ -23,18 +23,18 @@ from jbf.importing.formats.table import (
 )
 
 Slice = Callable[[int, int], Any]
-"""Function that returns the values from a first row to before an end."""
+"""Function that returns the values of the rows from a first row to an end, exclusive."""
 _WIDEST = 64
 """Largest number of columns of a matrix of channels; wider matrices are ignored."""
 _NAMED = 3
 """Largest number of columns that the name of a table lists."""
 CLOCK = "time"
-"""Name of the time column of signals that have their own times."""
+"""Name of the time column of signals with separate times."""
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One channel with its own times.
+    """One channel with separate times.
 
     Attributes
     ----------

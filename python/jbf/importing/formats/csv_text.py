@@ -1,7 +1,7 @@
 """Text files: CSV of loggers, oscilloscopes, spreadsheets and drives, plain or gzipped.
 
-Files are read in blocks of lines. A block is converted to numbers at once, and cell by cell only if
-that fails. Valid files are thus read fast, and errors still state the row and column.
+Files are read in blocks of lines. A block is converted to numbers as a whole. If this conversion
+fails, the block is converted cell by cell, so that errors state the row and column.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _COMMENTS = ("#", "%", "//")
 
 
 class TextSource(Source):
-    """A text file of one table, or of several tables next to each other."""
+    """Text file of one table, or of several tables in adjacent columns."""
 
     def __init__(self, path: Path, options: Options) -> None:
         self.path = path
@@ -206,7 +206,7 @@ class TextSource(Source):
         lines
             Lines from `_samples`.
         damage, words
-            Counters of damaged rows and list of rows of words; both are skipped.
+            Counter of damaged rows, and list of text rows; both kinds of rows are skipped.
         """
         damage, words = damage or DamagedRows(self.path), [] if words is None else words
         names = self.layout.names
@@ -237,7 +237,7 @@ class TextSource(Source):
         return self.dialect.is_number(cell) or is_instant(cell)
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
-        """Return the rows of words among the samples, and the damaged rows."""
+        """Return the text rows among the samples, and the damaged rows."""
         words = [(len(self._words), "only words", self._words[0])] if self._words else []
         return [*words, *self._damage.skipped_rows()]
 
@@ -381,7 +381,7 @@ def _opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
 
 
 def open_text(path: Path, options: Options) -> Source:
-    """Open a text file: a table, or the trace of a controller with one block for each variable."""
+    """Open a text file: a table, or a trace of a controller with one block per variable."""
     with _opened(path) as file:
         begin = file.read(_TRACE_BYTES)
     encoding = options.encoding or decode(begin)

@@ -1,4 +1,4 @@
-"""Damaged rows among the samples of a text file: counted and left out, or an error."""
+"""Damaged rows among the samples of a text file, which are counted and skipped, or an error."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STOP_SHARE, STOP_ROWS = 1e-2, 20
 
 @dataclass
 class DamagedRows:
-    """Damaged rows of a file: a few, as from broken lines, are left out; more are an error.
+    """Damaged rows of a file; a small number is skipped, a larger number is an error.
 
     Attributes
     ----------

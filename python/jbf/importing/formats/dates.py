@@ -1,8 +1,8 @@
 """Dates and times of day in the notations of loggers, in whole nanoseconds.
 
 Notations: ISO 8601, `31.12.2026 23:59:59,125`, `31-Dec-2026 23:59:59`,
-`12/31/2026 11:59:59.125 PM`, `23:59:59.125`, file times of Windows. A time of day that starts again
-continues on the next day.
+`12/31/2026 11:59:59.125 PM`, `23:59:59.125`, file times of Windows. If times of
+day decrease, they continue on the next day.
 
 A column is converted by NumPy. Cells are grouped by their shape, which is the text with each digit
 replaced by 0. The pattern is matched once for each shape, and the digits of all its cells are

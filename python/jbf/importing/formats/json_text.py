@@ -26,7 +26,7 @@ SETTINGS = ("config", "settings", "meta", "metadata", "header", "info", "samplin
 RATES = ("hz", "rate_hz", "fs", "fs_hz", "sample_rate", "sampling_rate", "sample_rate_hz")
 """Keys of a sampling rate, Hz."""
 FEWEST = 3
-"""Least number of samples for a list of numbers to be a column."""
+"""Minimum number of samples for a list of numbers to be a column."""
 Columns = dict[str, npt.NDArray[np.float64]]
 
 
@@ -49,7 +49,7 @@ def open_json(path: Path, options: Options) -> Source:
 
 
 def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
-    """Return the content (a list for JSON lines), and the skipped torn lines with the reason."""
+    """Return the content (a list for JSON lines), and the skipped invalid lines with the reason."""
     text = read_text(path)
     try:
         return json.loads(text), []

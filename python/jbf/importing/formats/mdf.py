@@ -1,4 +1,4 @@
-"""MDF3 and MDF4 files, by asammdf; each channel group has its own clock and is read in blocks."""
+"""MDF3 and MDF4 files, by asammdf; each channel group has a clock and is read in blocks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class MdfSource(Source):
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        # asammdf also logs the errors that it raises.
+        # Suppress the log, since asammdf also raises the errors that it logs.
         logging.getLogger("asammdf").setLevel(logging.CRITICAL)
         # asammdf reads requested parts from an open file, but the complete file from a path.
         self._handle = path.open("rb")

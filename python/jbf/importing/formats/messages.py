@@ -64,7 +64,7 @@ class MessageSource(Source):
         """Yield the columns in blocks of messages; NaN where a message lacks a field."""
         paths = [None if name == LOG_TIME else path_of(name) for name in names]
         rows: list[list[float]] = []
-        # A message may be much larger than its requested numbers: do not keep any.
+        # Do not store messages, which may be much larger than the requested numbers.
         for stamp, message in self.messages(table.name):
             rows.append(
                 [

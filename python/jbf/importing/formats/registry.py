@@ -18,7 +18,7 @@ from jbf.text_files import check_readable, path_of
 
 @dataclass(frozen=True)
 class Format:
-    """A format.
+    """File format, with the function that opens it.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Format:
             raise self.absent(path) from None
 
     def absent(self, path: Path) -> InputError:
-        """Return the error that states what to install."""
+        """Return the error that names the package to install."""
         return InputError(
             file=path,
             problem=f"is {self.name}, which requires {self.library}; it is not installed",
@@ -94,14 +94,14 @@ FORMATS = (
 
 @dataclass(frozen=True)
 class Unread:
-    """A format that is recognised but cannot be read.
+    """Format that is recognised but not supported.
 
     Attributes
     ----------
     name
         Name for messages.
     mend
-        What to do with the file.
+        Remedy, such as an export to another format.
     suffixes, magic
         Suffixes of its file names, in lower case, and the first bytes of its files.
     """

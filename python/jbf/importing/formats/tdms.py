@@ -1,4 +1,4 @@
-"""TDMS files, by npTDMS; channels with a waveform increment have their own clock."""
+"""TDMS files, by npTDMS; channels with a waveform increment have a separate clock."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def open_tdms(path: Path, options: Options) -> Source:
         name, length, step_s, first_s, _ = key
         clock = None
         if key in starts and first is not None:
-            # Waveforms that were started at different instants keep their difference in time.
+            # Preserve the time differences between waveforms with different start times.
             first_s += float((starts[key] - first) / np.timedelta64(1, "ns")) / 1e9
         if step_s is not None:
             clock = CLOCK

@@ -63,7 +63,7 @@ class _Entry:
 
 
 def open_wpilog(path: Path, options: Options) -> Source:
-    """Open a data log; a torn record at its end is skipped."""
+    """Open a data log; a truncated record at its end is skipped."""
     data = path.read_bytes()
     if len(data) < _HEADER:
         raise InputError(
@@ -83,7 +83,7 @@ def open_wpilog(path: Path, options: Options) -> Source:
 
 
 def _entries(data: bytes) -> tuple[list[_Entry], int | None]:
-    """Return the numeric entries, and the position of a torn record or None.
+    """Return the numeric entries, and the position of a truncated record or None.
 
     Entries of equal name and type, as after a restart, are merged.
     """

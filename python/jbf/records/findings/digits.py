@@ -8,16 +8,16 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 FEWEST_GAPS = 8
-"""Number of gaps between levels from which a quantisation step is accepted."""
+"""Smallest number of gaps between levels for the estimate of a quantisation step."""
 MOST_STEPS = 20.0
-"""Widest gap that is compared with whole steps, in steps.
+"""Widest gap that is compared with multiples of the step, in steps.
 
-In a wider gap the accumulated error of the step would dominate.
+In a wider gap the error of the estimated step, multiplied by the number of steps, would dominate.
 """
 
 
 def last_digit(values: Array) -> float:
-    """Return the last decimal digit of the samples; for binary numbers, their rounding."""
+    """Return the unit of the last decimal digit of the samples, or their binary rounding error."""
     top = float(np.max(np.abs(values)))
     if top == 0.0:
         return 0.0
@@ -34,8 +34,8 @@ def resolution(values: Array) -> float:
 
     Notes
     -----
-    Quantisation levels are whole steps apart, to the last digit. All other values differ by as
-    little as one digit if there are enough of them.
+    Differences between quantisation levels are multiples of the step, up to the rounding to the
+    last digit. Without quantisation, the smallest difference in a long record is one digit.
     """
     digit = last_digit(values)
     apart = np.diff(np.unique(values))

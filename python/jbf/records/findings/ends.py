@@ -1,9 +1,9 @@
 """Outliers at the ends of a channel.
 
 Examples are the first samples before a converter is ready, and the last samples of a buffer that
-was not full. An outlier within a record is detected from its neighbours on both sides. At an end
-there are neighbours on one side only. A sample there is an outlier if it deviates from them by much
-more than any sample within the record does.
+was not full. An outlier within a record is detected from the adjacent samples on both sides; at an
+end, there are adjacent samples on one side only. A sample at an end is an outlier if its deviation
+from the adjacent samples exceeds the largest deviation within the record by the factor `TIMES`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Mask = npt.NDArray[np.bool_]
 MOST = 3
 """Largest number of outliers at each end."""
 TIMES = 4.0
-"""Threshold, relative to the largest deviation of an inner sample from its successors."""
+"""Threshold, relative to the largest deviation of an inner sample from the following samples."""
 LEAST_SAMPLES = 60
 
 
@@ -48,14 +48,14 @@ def _loose(time: Array, values: Array, beside: int) -> int:
     off = np.abs(np.sum(weights_at_zero(t) * y, axis=0))
     within = float(np.max(off[MOST : n - MOST]))
     far = np.flatnonzero(off[:MOST] > TIMES * within)
-    # If the inner samples never deviate, there is no scale to compare with.
+    # If the deviation of all inner samples is zero, there is no scale for the threshold.
     return int(far[-1]) + 1 if within > 0.0 and len(far) else 0
 
 
 def ends_finding(
     channel: str, what: str, run: str, mask: Mask, off: Array, unit: str, done: str
 ) -> Finding | None:
-    """Return the finding for outliers at the ends, with deviations `off`, or None."""
+    """Return the finding for outliers at the ends, or None; `off` contains their deviations."""
     if not mask.any():
         return None
     half = len(mask) // 2

@@ -31,7 +31,7 @@ class Examined:
     findings
         The data-quality findings.
     usable
-        False at readings of the force that carry no information, shape (n,).
+        False at invalid readings of the force, shape (n,).
     native
         The original readings if the force was interpolated, held or partly filled in; None
         otherwise.
@@ -63,7 +63,7 @@ def examine(run: Run, velocity: Array | None = None, period_s: float | None = No
     held, still = find_held(run, np.zeros(len(run), dtype=bool))
     native = find_native(run.time_s[~still], run.friction[~still]) if held else None
     if native is not None:
-        # An interpolated record may also contain held stretches.
+        # An interpolated record may also contain held samples.
         return Examined((_interpolated(run, native), *held), np.ones(len(run), dtype=bool), native)
     native = find_repeated(run.time_s, run.friction)
     if native is not None:

@@ -23,7 +23,7 @@ class Finding:
     done
         Action taken: `excluded`, `weighted`, `none`, ...
     words
-        The finding in a sentence.
+        Description of the finding, one sentence.
     """
 
     kind: str

@@ -1,4 +1,4 @@
-"""Wrong sign of the friction: the force drives the motion instead of opposing it."""
+"""Wrong sign of the friction: the force acts in the direction of the motion, not against it."""
 
 from __future__ import annotations
 
@@ -13,25 +13,26 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 SURE = 8.0
-"""Standard errors by which the force must drive the motion."""
+"""Smallest force in the direction of the motion, in standard errors."""
 SHARE = 0.3
-"""Least driving force relative to the standard deviation of the force.
+"""Smallest force in the direction of the motion, relative to the standard deviation of the force.
 
-A smaller one may remain from offset, inertia and a spring.
+A smaller force may be a residual of the fitted offset, inertia and spring.
 """
 STRETCHES = 12
-"""Number of parts of the record that are left out in turn, for the standard error."""
+"""Number of blocks of the record for the jackknife standard error."""
 LEAST = 100
-"""Least number of samples in motion; at least a quarter of them in each direction."""
+"""Minimum number of samples in motion; at least a quarter of them in each direction."""
 SLOW = 0.02
-"""Share of the top speed below which the force may be due to other causes than friction."""
+"""Speed, relative to the top speed, below which the force may have causes other than friction."""
 
 
 def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Finding]:
     """Find a force that acts in the direction of the motion.
 
-    An offset, an inertia and a spring also act in this direction at times; their forces are fitted
-    together with the friction. A record of one direction cannot separate an offset from friction.
+    Forces of an offset, an inertia and a spring also act in this direction in part of a record;
+    these forces are fitted together with the friction. In a record of one direction, an offset
+    cannot be distinguished from friction.
     """
     assert run.friction is not None
     v = motion.velocity
@@ -59,7 +60,7 @@ def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Fin
 
 
 def _reversing_force(x: Array, force: Array) -> tuple[float, float]:
-    """Return the force that reverses with the motion, and its standard error by the jackknife."""
+    """Return the force that reverses with the motion, and its jackknife standard error."""
     part = np.arange(len(force)) * STRETCHES // len(force)
     normal = np.stack([x[part == k].T @ x[part == k] for k in range(STRETCHES)])
     right = np.stack([x[part == k].T @ force[part == k] for k in range(STRETCHES)])

@@ -1,4 +1,4 @@
-"""Gaps: missing rows."""
+"""Gaps in the time stamps, due to missing rows."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STRETCH = 4
 def find_gaps(run: Run) -> list[Finding]:
     """Find missing rows in an evenly sampled record; they are not filled in.
 
-    A model integrates across the gap.
+    The state of a model is integrated across the gap.
     """
     steps = np.diff(run.time_s)
     usual = float(np.median(steps))

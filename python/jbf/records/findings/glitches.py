@@ -1,4 +1,4 @@
-"""Outliers: single samples far from both of their neighbours."""
+"""Outliers: single samples that deviate from both adjacent samples."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 FAR = 8.0
-"""Least deviation from both neighbours, to the same side, in local standard deviations."""
+"""Minimum deviation from both neighbours, to the same side, in local standard deviations."""
 CHANGES = 3.0
-"""Least deviation relative to the usual change between neighbours.
+"""Smallest deviation relative to the median change between adjacent samples.
 
-No corner of a smooth force reaches it.
+The deviation at a corner of a smooth force is smaller.
 """
 WINDOW = 41
 """Window of the local noise, samples."""
 LOUD = 0.8
-"""Lower bound of the local noise relative to the usual noise; near constant readings it is zero."""
+"""Lower bound of the local noise, relative to the median; required near constant readings."""
 RARE = 0.02
 """Largest share of outliers; with more of them, the record has large noise instead."""
 LEAST_SAMPLES = 100
 SLOW, BESIDE = 0.02, 3
-"""Speed below which the shaft is slow, relative to the top speed, and a range in samples.
+"""Speed limit of slow motion, relative to the top speed, and a distance in samples.
 
-Within this range of a reversal, or of a start from rest, the friction itself may have a peak.
+Within this distance of a reversal or of a start from rest, the friction may have a real peak.
 """
 
 
 def glitches(values: Array) -> Mask:
-    """Detect outliers: samples with a step to both neighbours, in the same direction."""
+    """Detect outliers: samples that deviate from both adjacent samples in the same direction."""
     n = len(values)
     found = np.zeros(n, dtype=bool)
     if n < LEAST_SAMPLES:
@@ -58,7 +58,7 @@ def glitches(values: Array) -> Mask:
 
 
 def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
-    """Find the outliers of the force; a peak at a reversal or a start from rest is not one.
+    """Find the outliers of the force, except for peaks at reversals and at starts from rest.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
 
 
 def _loose_ends(run: Run, velocity: Array, mask: Mask) -> Mask:
-    """Detect outliers at the ends, in addition to the given ones; not at reversals or starts."""
+    """Detect further outliers at the ends of the record, except at reversals and starts."""
     assert run.friction is not None
     loose, good = np.zeros(len(mask), dtype=bool), ~mask
     loose[good] = loose_ends(run.time_s[good], run.friction[good], 1)
@@ -104,7 +104,7 @@ def _breakaway(velocity: Array) -> Mask:
     """Mask of the samples next to a reversal or an end of a rest."""
     top = float(np.max(np.abs(velocity), initial=0.0))
     way = np.where(np.abs(velocity) > SLOW * top, np.sign(velocity), 0.0)
-    # In a slow reversal the sign changes far from both ends of the slow stretch.
+    # In a slow reversal, the sign changes many samples from both ends of the slow segment.
     turns = np.flatnonzero((np.diff(way) != 0.0) | (velocity[1:] * velocity[:-1] < 0.0))
     beside = np.zeros(len(way), dtype=bool)
     for off in range(1 - BESIDE, BESIDE + 1):

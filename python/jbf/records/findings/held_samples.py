@@ -1,4 +1,4 @@
-"""Held samples: a channel that repeats exactly the same value while it should change."""
+"""Held samples: a channel repeats the same value during a change of the measured quantity."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST = 5
-"""Smallest number of equal readings in a row, where quantisation does not make them likely."""
+"""Smallest length of a held sequence, if quantisation does not make longer sequences likely."""
 CHANCE = 1e-6
-"""Probability that a record contains a row of equal readings of this length by chance."""
+"""Probability that a record contains a sequence of equal readings of this length by chance."""
 
 
 def held(values: Array) -> Mask:
-    """Mask of the readings that repeat the previous one, in rows that are too long for chance."""
+    """Mask of readings equal to the previous one, in sequences that are improbable by chance."""
     n = len(values)
     same = np.concatenate(([False], np.diff(values) == 0.0))
     edges = np.diff(np.concatenate(([0], same.astype(np.int8), [0])))
-    # Only the beginnings are counted, so that one long row does not make long rows likely.
+    # Count beginnings only, so that one long sequence does not increase the probability.
     begun = float(np.sum(edges == 1)) / max(n - int(same.sum()), 1)
     share = min(max(begun, _by_steps(values), 1e-4), 0.9999)
-    # Rows of equal readings by quantisation: probability p^k for k in a row, at n places.
+    # Equal readings due to quantisation: probability p^k for a length k, at n positions.
     least = max(LEAST, int(np.ceil(np.log(CHANCE / max(n, 1)) / np.log(share))))
     found = np.zeros(n, dtype=bool)
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
@@ -41,17 +41,17 @@ def held(values: Array) -> Mask:
 
 
 def _by_steps(values: Array) -> float:
-    """Probability that noise keeps a reading in the middle of its quantisation step."""
+    """Probability of an unchanged reading with noise, in the middle of a quantisation step."""
     step, noise = step_of(values), noise_of(values)
     if step == 0.0:
         return 0.0
-    # Quantisation adds a variance of the square of the step over 12.
+    # The variance of the quantisation error is step^2 / 12.
     own = math.sqrt(max(noise**2 - step**2 / 12.0, 1e-4 * step**2))
     return math.erf(0.5 * step / own / math.sqrt(2.0))
 
 
 def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
-    """Find stretches in which the force does not change.
+    """Find segments in which the force is constant.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
     force = run.friction
     mask = held(force) & ~explained
     if mask.any() and is_without_noise(force[~mask]):
-        # A command that stays at its limit is real output of the drive.
+        # A command at its limit is the true output of the drive, not a recording artefact.
         read = force[~explained]
         mask &= (force != np.max(read)) & (force != np.min(read))
     if not mask.any():

@@ -1,8 +1,8 @@
 """Interpolated samples: a slow channel interpolated linearly at the instants of a faster one.
 
-Such a record is a polygon, to the last digit. Its corners are the original readings. Their period
-and phase are searched such that a polygon with these corners passes through every sample. Nothing
-is resampled: the corners are the measured readings, and the samples between them were not measured.
+Such a record is a polygonal line, up to the rounding of the last digit, and its corners are the
+original readings. The period and the phase of the corners are searched such that the polygonal line
+passes through every sample. Only the corners were measured; the samples between them were not.
 """
 
 from __future__ import annotations
@@ -26,27 +26,27 @@ LONGER = 240
 If a polygon has nearly as many corners as samples, few degrees of freedom remain to test it.
 """
 SHORT = (1.05, 1.3)
-"""Range of periods searched in a channel that is hardly slower than its record, samples."""
+"""Range of periods for a channel with nearly the sampling rate of the record, samples."""
 BEATS, NEAR = 4, np.linspace(-1.0, 1.0, 9)
-"""Number of the strongest beat frequencies that are tried, and offsets from each.
+"""Number of strongest beat frequencies that are tested, and offsets from each of them.
 
 The offsets are in units of the reciprocal of the analysed length.
 """
 HEARD = 960
 """Length of the analysed segment, samples."""
 LOOKS = 3
-"""Number of first windows along the record, and of further ones where it bends most.
+"""Number of windows along the record, and of further windows with the most non-zero differences.
 
-A coarsely quantised record is constant over long stretches.
+The further windows are required because a coarsely quantised record has long constant segments.
 """
 MOST_BENDS = 0.5
-"""Share of the samples with a bend from which the record is treated as bending everywhere."""
+"""Share of non-zero second differences above which no further windows are selected."""
 PERIODS = np.exp(
     np.concatenate(
         [np.arange(np.log(1.2), np.log(8.0), 0.005), np.arange(np.log(8.0), np.log(25.0), 0.02)]
     )
 )
-"""Periods that are searched, in samples; the grid is coarser where a window has few periods."""
+"""Periods that are searched, in samples; coarser if a window contains few periods."""
 PHASES = np.arange(0.0, 1.0, 0.1)
 """Phases that are searched, in periods."""
 FOLLOWED = 8
@@ -54,10 +54,10 @@ FOLLOWED = 8
 LEAST_FREE = 6
 """Smallest number of degrees of freedom of a window: samples minus corners."""
 LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
-"""Largest RMS residual of a polygon, relative to the noise.
+"""Largest RMS residuals of a polygon, relative to the noise.
 
-For a second search; for one at a short period, whose grid is coarser for its long window; and for
-acceptance.
+The limits are for refinement, for refinement at a short period (coarser grid relative to the window
+length), and for acceptance.
 """
 ELSEWHERE, CLEARLY = (0.31, 0.5, 0.69), 0.03
 """Other phases, in periods from the best one, and the largest ratio of the residuals.
@@ -65,25 +65,25 @@ ELSEWHERE, CLEARLY = (0.31, 0.5, 0.69), 0.03
 The residual at the best phase must be below this share of the smallest residual at the others.
 """
 FEW = 3.0
-"""Upper bound of the roughness of a window with a few large bends, relative to the usual bends."""
+"""Upper bound of the noise estimate, relative to the median; limits the effect of large changes."""
 DIGITS, NEARLY = 3.0, 0.05
-"""Residual allowed for rounding to the last digit, relative to that of rounding.
+"""Largest residual due to rounding to the last digit.
 
-The second value is its upper limit relative to the noise.
+The first limit is relative to the rounding error, the second to the noise.
 """
 ENDS = 20.0
-"""Largest distance of a corner from the end of the range for which it is set to the end, digits."""
+"""Largest distance from an end of the range at which a corner is set to that end, in digits."""
 FAR, ROUGH = 13, 0.93
-"""Sample distance and ratio of second differences from which a record is as rough as noise."""
+"""Lag, samples, and ratio of second differences above which adjacent samples are uncorrelated."""
 ROUNDING = 1e-7
-"""Share of the range below which noise counts as zero: digits, and the tolerance of the search."""
+"""Noise relative to the range below which it is zero: rounding, and tolerance of the search."""
 SMOOTH = 0.5
-"""Limit of the ratio of third to second differences for a curve; for noise it is more than one."""
+"""Largest ratio of third to second differences of a smooth curve; above one for noise."""
 MANY_CORNERS, MOST_CORNERS = 0.9, 0.955
-"""Numbers of corners per sample.
+"""Ratios of the number of corners to the number of samples.
 
-From the first on, the corners must be rougher than a curve. More than the second would be the
-samples themselves.
+Above the first ratio, a stricter roughness test applies to the corners. The second is the largest
+permitted ratio, since corners at a higher ratio would be the samples themselves.
 """
 
 
@@ -97,7 +97,7 @@ class Native:
 
 
 def find_native(time: Array, values: Array) -> Native | None:
-    """Recover the readings of a slow channel from its samples; None if the samples are readings."""
+    """Recover the original readings of an interpolated channel; None if it is not interpolated."""
     n = len(time)
     if n < 2 * WINDOW or _as_rough_as_noise(values) or is_smooth(values):
         return None
@@ -119,7 +119,7 @@ def find_native(time: Array, values: Array) -> Native | None:
 
 
 def find_native_of(time: Array, values: Array, period_s: float) -> Native | None:
-    """Recover the readings with a known period, from another run of the same logger."""
+    """Recover the original readings, with a period known from another run of the same logger."""
     if len(time) < 2 * WINDOW or is_smooth(values):
         return None
     noise = _noise(values, max(ROUNDING * float(np.ptp(values)), 4.0 * last_digit(values)))
@@ -131,9 +131,9 @@ def find_native_of(time: Array, values: Array, period_s: float) -> Native | None
 
 
 def _noise(values: Array, rounding: float) -> float:
-    """Roughness of a window as the standard deviation of white noise; zero for a straight line.
+    """Standard deviation of white noise in a window; zero for a straight line.
 
-    A single large jump does not increase it, and stretches without bends do not reduce it.
+    The estimate is robust to a single large jump and to straight segments.
     """
     bends = np.abs(np.diff(values, 2))
     rms = float(np.sqrt(np.mean(bends**2) / 6.0))
@@ -150,13 +150,13 @@ def _exact(values: Array, noise: float) -> float:
 
 
 def _search_windows(values: Array, rounding: float) -> list[int]:
-    """First samples of the search windows: along the record, and where it bends most often."""
+    """First samples of the search windows: along the record, and at the most frequent changes."""
     last = len(values) - WINDOW
     bends = np.abs(np.diff(values, 2)) > rounding
     along: list[int] = np.linspace(0, last, LOOKS).astype(int).tolist()
     if bends.mean() > MOST_BENDS:
         return along
-    # Number of bends in the window that begins at each sample.
+    # Number of non-zero second differences in the window that begins at each sample.
     often = np.convolve(bends, np.ones(WINDOW - 2), "valid")[: last + 1]
     for _ in range(LOOKS):
         busiest = int(np.argmax(often))
@@ -166,19 +166,19 @@ def _search_windows(values: Array, rounding: float) -> list[int]:
 
 
 def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
-    """Recover the readings of a channel that is hardly slower than its record."""
+    """Recover the readings of a channel with nearly the sampling rate of the record."""
     n = len(time)
     if n < 2 * LONGER:
         return None
     first = (n - LONGER) // 2
     t, y = time[first : first + LONGER], values[first : first + LONGER]
-    # The median: relative to the RMS, the polygon residual of filtered jumps is small, too.
+    # Median, since relative to the RMS the residual of filtered jumps would also be small.
     noise = float(np.median(np.abs(np.diff(y, 2))) / 0.6745 / np.sqrt(6.0))
     if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONGER * step:
         return None
     periods, phases = _grid(_beats(time, values, step))
     each = polygon_rms(t, y, periods, phases)
-    # Any such polygon nearly fits a curve that was smoothed by a filter.
+    # The residual of any such polygon is small for a record that was smoothed by a filter.
     usual = float(np.median(each))
     best = np.argsort(each, kind="stable")[:FOLLOWED]
     for left, period, phase in np.stack([each, periods, phases])[:, best].T.tolist():
@@ -193,9 +193,9 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
 
 
 def _beats(time: Array, values: Array, step: float) -> Array:
-    """Candidate periods, s, from the modulation of the roughness of a record.
+    """Candidate periods, s, from the modulation of the noise variance of a record.
 
-    An interpolated sample halfway between two readings is smoother than one at a reading.
+    The noise variance of an interpolated sample is smallest in the middle between two readings.
     """
     n = min(len(time), HEARD)
     first = (len(time) - n) // 2
@@ -217,7 +217,7 @@ def _grid(periods: Array) -> tuple[Array, Array]:
 
 
 def _as_rough_as_noise(values: Array) -> bool:
-    """Return True if adjacent samples differ as much as distant ones, so none are interpolated."""
+    """Return True if adjacent samples are uncorrelated, which excludes interpolation."""
     near = np.median(np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2]))
     far = np.median(np.abs(values[2 * FAR :] - 2.0 * values[FAR:-FAR] + values[: -2 * FAR]))
     return bool(near > ROUGH * far)
@@ -242,7 +242,7 @@ def _extended_polygon(
     n = len(time)
     begin = first
     while length < n:
-        # A stretch that is four times as long determines the period four times as accurately.
+        # The accuracy of the period is proportional to the length of the segment.
         length = min(4 * length, n)
         origin = time[begin]
         begin = max(min(first - length // 2, n - length), 0)
@@ -268,7 +268,7 @@ def _longest(
             longer = (times * period, phase + k * period)
             left, _, _ = polygon(time, values, *longer)
             if left < NEARLY * noise:
-                # The error of the shorter period is multiplied, too, so refine again.
+                # Refine again, since the error of the shorter period is multiplied as well.
                 longer = sharpened(time, values, *longer, near=True)
                 left, _, _ = polygon(time, values, *longer)
             if left < _exact(values, noise):
@@ -283,7 +283,7 @@ def _fit_polygon(
     inside = (knots >= time[0]) & (knots <= time[-1]) & np.isfinite(corners)
     if left > _exact(values, noise) or inside.sum() > MOST_CORNERS * len(time):
         return None
-    # A polygon of any phase nearly fits a record that was smoothed by a filter.
+    # The residual is small at every phase for a record that was smoothed by a filter.
     elsewhere = [polygon(time, values, period, phase + s * period)[0] for s in ELSEWHERE]
     if left > CLEARLY * min(elsewhere):
         return None
@@ -291,8 +291,8 @@ def _fit_polygon(
     native = Native(knots[inside], read, period)
     if step_of(read, drawn=True) > 0.0:
         return native
-    # Corners on a curve, or on a plateau, belong to a record without noise. Corners that are nearly
-    # as close as samples fit any curve.
+    # Corners on a smooth curve or a plateau belong to a record without noise. If the number of
+    # corners is nearly that of the samples, a polygon fits any curve.
     curved = SMOOTH if inside.sum() < MANY_CORNERS * len(time) else 2.0 * SMOOTH
     flat = np.quantile(np.abs(np.diff(read, 2)), 0.7) <= ROUNDING * np.ptp(read)
     return None if flat or is_smooth(read, curved) else native
@@ -309,8 +309,8 @@ def _at_ends(read: Array, values: Array) -> Array:
 def _coarse_search(t: Array, y: Array, step: float, noise: float) -> list[tuple[float, float]]:
     """Find periods and phases, s, of polygons that nearly fit a window, best first.
 
-    Several are returned, because with nearly as many corners as samples a wrong one may be closer
-    on this grid.
+    Several candidates are returned, because a wrong candidate may have the smallest residual on
+    this grid if the number of corners is close to the number of samples.
     """
     long_enough = len(t) - np.ceil(np.ptp(t) / (PERIODS * step)) - 2 >= LEAST_FREE
     periods, phases = _grid(PERIODS[long_enough] * step)

@@ -1,9 +1,9 @@
 """Interpolated samples on the straight line between their neighbours.
 
-They occur if an export interpolated a channel with its own time stamps onto the rows of another
-channel, or onto all instants of both. A logger may also replace lost samples like this. The corners
-of such a record are at rows, evenly spaced or not. Noise rarely puts a sample exactly on the line;
-the expected number is estimated from the samples close to it.
+Such samples occur if an export interpolated a channel with separate time stamps at the time stamps
+of another channel, or of both. A logger may also interpolate lost samples. The corners of such a
+record coincide with rows, at equal or unequal intervals. A sample with noise is rarely on the line
+by chance; the expected number is estimated from the samples close to the line.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ ROUNDING = 1.05
 FINE = 0.02
 """Largest rounding at which lines are detectable, relative to the deviation of adjacent samples."""
 CORNERS = 12.0
-"""Largest median distance from a sample on a line to a clear corner, in samples.
+"""Largest median distance from a sample on a line to a significant corner, in samples.
 
-A smooth force continues straight for longer.
+Straight segments of a smooth force are longer.
 """
 LONGEST = 50.0
-"""Largest ratio of samples to readings; beyond it the lines belong to the friction itself."""
+"""Largest ratio of samples to readings; at a larger ratio, the friction itself is linear."""
 
 
 def find_interpolated_samples(time: Array, values: Array) -> Native | None:
@@ -45,7 +45,7 @@ def find_interpolated_samples(time: Array, values: Array) -> Native | None:
     # Equal samples are excluded: a held channel is a separate finding.
     level = np.abs(values[2:] - values[:-2]) <= 2.0 * rounding
     line = (off <= rounding) & ~level
-    # If the friction itself is straight there, the adjacent samples are also nearly on a line.
+    # If the friction itself is linear there, the adjacent samples are also close to a line.
     beside = (off > rounding) & (np.convolve(line, [1, 0, 1], "same") > 0)
     usual = float(np.median(off[beside])) if np.any(beside) else 0.0
     if usual == 0.0 or rounding > FINE * usual or _far_from_corners(line, off > usual):
@@ -57,7 +57,7 @@ def find_interpolated_samples(time: Array, values: Array) -> Native | None:
     if count < max(LEAST, LEAST_SHARE * len(time), BY_CHANCE * chance):
         return None
     read = np.concatenate(([True], ~line, [True]))
-    # If the friction itself follows straight lines or a curve, its corners have no noise.
+    # If the friction itself is piecewise linear or a smooth curve, the corners have no noise.
     if read.sum() * LONGEST < len(time) or is_smooth(values[read]):
         return None
     return Native(time[read], values[read], float(np.median(np.diff(time[read]))))

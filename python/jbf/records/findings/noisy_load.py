@@ -19,8 +19,8 @@ EVEN = 1e-9
 def only_noise(load: Array) -> bool:
     """Return True for a column whose changes are white noise.
 
-    No line of its periodogram is significant (Fisher 1929), and its cumulative power rises evenly
-    with frequency (Bartlett 1954).
+    Both tests must be passed: no significant line in the periodogram (Fisher 1929), and a
+    cumulative periodogram that is linear in the frequency (Bartlett 1954).
     """
     n = len(load)
     if n < LEAST_SAMPLES or np.ptp(load) <= EVEN * float(np.mean(load)):

@@ -1,6 +1,7 @@
 """Polygons with corners evenly spaced in time: residual of the best fit, and refinement.
 
-The samples are linear in the values at the corners, so only period and phase are searched.
+The samples are linear in the values at the corners, which follow by linear least squares. Only the
+period and the phase are searched.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ Array = npt.NDArray[np.float64]
 USUAL_HALVINGS, MOST_HALVINGS = 9, 14
 """Usual and largest number of halvings of the search range.
 
-The search continues beyond the usual number while it improves.
+The search continues beyond the usual number as long as the residual decreases.
 """
 IN_VAIN = 4
 """Number of halvings after which a search without improvement ends."""
 AT_ONCE = 2**13
-"""Number of samples of polygons that are solved in one system."""
+"""Total number of samples of the polygons in one linear system."""
 
 
 def polygon(time: Array, values: Array, period: float, phase: float) -> tuple[float, Array, Array]:
@@ -48,7 +49,7 @@ def polygon_rms(time: Array, values: Array, period: Array, phase: Array) -> Arra
 def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Array, Array, Array]:
     """Fit the best polygons.
 
-    Each fit is a tridiagonal system; concatenated, they are one system without coupling.
+    Each fit is a tridiagonal system; all fits are solved together as one block-diagonal system.
 
     Returns
     -------
@@ -110,7 +111,7 @@ def sharpened(
             best = (float(left[least]), float(periods[least]), float(phases[least]))
         if k == 0:
             first = best[0]
-        # For a true polygon, the residual falls in proportion with every halving.
+        # For a true polygon, the residual is proportional to the step size of the search.
         if k == IN_VAIN and best[0] > 0.5 * first and not near:
             break
         if k >= USUAL_HALVINGS and best[0] > 0.9 * before:

@@ -1,7 +1,7 @@
-"""Repeated rows: a logger that polls more often than its link delivers new values.
+"""Repeated rows: the polling rate of a logger exceeds the update rate of its link.
 
-Motion and force then repeat together and jump together, while the drive moves on. Such a row is not
-a reading: its time stamp is later than its values.
+Motion and force are then constant over several rows and change in the same row, although the drive
+moves continuously. A repeated row is not a reading: its time stamp is later than its values.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from jbf.records.run import Run
 Mask = npt.NDArray[np.bool_]
 
 COUNTS = 2.0
-"""Least travel from one row to the next for a drive to be in motion, in encoder counts."""
+"""Minimum travel from one row to the next for a drive to be in motion, in encoder counts."""
 LEAST_ROWS = 40
-"""Least number of repeated rows in motion."""
+"""Minimum number of repeated rows in motion."""
 LEAST_SHARE = 0.02
-"""Least share of repeated rows among the rows in motion."""
+"""Minimum share of repeated rows among the rows in motion."""
 TOGETHER = 0.9
-"""Least share of whole rows among the repeated positions in motion."""
+"""Minimum share of rows with all values repeated among the repeated positions in motion."""
 LONGER = 2.0
-"""Ratio of the duration of a repeat to the longest one in motion from which it is a rest."""
+"""Minimum duration of a repetition for a rest, relative to the longest repetition in motion."""
 
 
 def repeated_rows(run: Run) -> Mask | None:
@@ -38,7 +38,7 @@ def repeated_rows(run: Run) -> Mask | None:
     place = np.unwrap(place) if place is run.angle_rad else place
     steps, way = np.diff(run.time_s), np.abs(np.diff(place))
     by_speed = np.abs(run.velocity[:-1]) * steps
-    # The ratio of the total displacements makes the result independent of the unit of the speed.
+    # The ratio of the total displacements cancels the unit of the speed.
     unit = float(np.sum(way)) / max(float(np.sum(by_speed)), 1e-300)
     moving = unit * by_speed > COUNTS * step_of(place)
     same = np.ones(len(steps), dtype=bool)
@@ -52,7 +52,7 @@ def repeated_rows(run: Run) -> Mask | None:
 
 
 def _of_rests(run: Run, same: Mask, moving: Mask) -> Mask:
-    """Mask of the repeats that last longer than those in motion: rests without new values."""
+    """Mask of the repetitions that are longer than those in motion: rests without new values."""
     edges = np.diff(np.concatenate(([0], same.astype(np.int8), [0])))
     firsts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     lasted = run.time_s[ends] - run.time_s[firsts]

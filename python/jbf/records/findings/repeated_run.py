@@ -1,7 +1,7 @@
-"""Runs that were given twice: the same recording under another name.
+"""Duplicate runs: the same recording under another name.
 
-The copy may have another time origin or another turn of the shaft. It adds no information, and
-would double the weight of the recording.
+The copy may differ in the time origin, or in the angle by full turns of the shaft. A copy adds no
+information, and would double the weight of the recording.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float64]
 SHIFTED = ("time_s", "angle_rad", "position_m")
 """Columns whose origin may differ."""
 ALIKE = 1e-6
-"""Tolerance of such a column relative to its range, for the rounding of a shift."""
+"""Tolerance for rounding in these columns, relative to their range."""
 
 
 def copies(runs: Sequence[Run]) -> dict[int, int]:
@@ -49,7 +49,7 @@ def _same(name: str, a: Array, b: Array) -> bool:
 
 
 def repeated(first: Run, again: Run) -> Finding:
-    """Return the finding for a run that was given twice."""
+    """Return the finding for a duplicate run."""
     words = f"identical to run {first.name} in every sample"
     size = float(len(again))
     return Finding("repeated_run", "friction_n", again.name, size, "samples", "left out", words)

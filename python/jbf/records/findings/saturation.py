@@ -13,9 +13,9 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST = 5
-"""Least number of identical readings at an extreme, where noise would make them differ."""
+"""Minimum number of identical readings at an extreme value of a noisy channel."""
 TIMES = 2.0
-"""Least ratio of their number to that at any of the adjacent levels; tails of noise decrease."""
+"""Minimum ratio of their number to that at each adjacent level; noise alone has smaller tails."""
 NEXT = 3
 """Number of levels next to the extreme that are compared."""
 COARSE = 0.6
@@ -25,15 +25,14 @@ ALIKE = 0.2
 ROUGH = 1.2
 """Ratio of third to second differences of noise: 1.8 for white noise, less than one for a curve."""
 REACH = 15
-"""Window of samples around a saturated one that are set aside with it.
+"""Window around a saturated sample that is excluded, samples.
 
-In this window only the lower values are not clipped. A selection by value would keep them and bias
-the force.
+The unclipped readings in this window are a selection of the lower values, and would bias the force.
 """
 
 
 def saturated(values: Array) -> tuple[Mask, list[float]]:
-    """Return a mask of the samples near readings at an end of the range; and these ends."""
+    """Return a mask of the samples near saturated readings, and the saturated values."""
     from scipy import ndimage  # importing takes most of a second
 
     mask = np.zeros(len(values), dtype=bool)
@@ -58,7 +57,7 @@ def _noise(values: Array) -> float:
         return 0.0
     low, middle = np.quantile(np.abs(np.diff(values, 3)[inside]), [0.25, 0.5])
     bend = float(np.median(np.abs(np.diff(values, 2)[inside])))
-    # Bends of a law without noise are smooth or of any size, most of them nearly zero.
+    # Without noise, most of the higher differences of a friction law are nearly zero.
     noisy = low > ALIKE * middle and middle > ROUGH * bend
     return float(middle / 0.6745 / np.sqrt(20.0)) if noisy else 0.0
 
@@ -70,7 +69,7 @@ def find_saturation(run: Run) -> tuple[list[Finding], Mask]:
     -------
     findings : list of Finding
     mask : ndarray
-        True at the samples to set aside, shape (n,).
+        True at the excluded samples, shape (n,).
     """
     assert run.friction is not None
     mask, ends = saturated(run.friction)

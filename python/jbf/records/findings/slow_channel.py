@@ -1,9 +1,9 @@
-"""A slow channel that holds its last reading until the next: rows of equal samples at a rate.
+"""Slow channel with sample and hold: sequences of equal samples that begin at a constant rate.
 
-The first sample of each row is a reading that was taken after the previous sample. Over a record,
-the beat of the two clocks determines the instant to a fraction of a sample. Coarse quantisation may
-give the same reading twice, and saturation many times. Some rows are then as long as two readings,
-or more.
+The first sample of each sequence is a reading that was taken after the previous sample. The beat of
+the two clocks over a record determines the instants of the readings to a fraction of a sampling
+interval. Due to coarse quantisation or saturation, consecutive readings may be equal. The duration
+of a sequence is then a multiple of the period of the channel.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ Array = npt.NDArray[np.float64]
 
 LEAST_ROWS = 40
 LEAST_SHARE = 0.02
-"""Least share of the samples that repeat the previous one."""
+"""Minimum share of the samples that repeat the previous one."""
 EVEN = 1e-3
 """Largest deviation of samples from an even grid, as a share of a step."""
 WITHIN = 1.02
-"""Range, in steps, within which all rows must begin relative to a steady clock.
+"""Largest range of the beginnings of sequences relative to a clock of constant rate, in steps.
 
-The beginnings of random rows drift further.
+The range is larger for sequences of random length.
 """
 SHORTEST, LONGEST = 2.0, 60.0
 """Range of the clock periods searched if some readings are equal, samples.
 
-A random row begins within a step of a clock of period two with probability one half; forty rows
-never do.
+At a period of two samples, a random sequence begins within a step of a tick with probability one
+half; the probability for forty sequences is negligible.
 """
 FINE = 0.2
-"""Phase difference between adjacent trial periods over the rows of the first window, steps."""
+"""Phase difference between adjacent trial periods over the sequences of the first window, steps."""
 
 
 def find_repeated(time: Array, values: Array) -> Native | None:
-    """Recover the readings of a slow channel that is held between them; None if it is not one."""
+    """Recover the readings of a channel with sample and hold; None for any other channel."""
     step = float(np.median(np.diff(time)))
     if np.max(np.abs(np.diff(time) / step - 1.0)) > EVEN:
         return None
@@ -47,7 +47,7 @@ def find_repeated(time: Array, values: Array) -> Native | None:
     begins = time[first]
     native = _of_clock(time, values, begins, np.arange(rows), step)
     if native is None:
-        # If readings are equal, by quantisation or saturation, rows are missing.
+        # If consecutive readings are equal (quantisation, saturation), some sequences are merged.
         count = _readings_before(begins / step)
         native = None if count is None else _of_clock(time, values, begins, count, step)
     return native
@@ -56,9 +56,9 @@ def find_repeated(time: Array, values: Array) -> Native | None:
 def _of_clock(
     time: Array, values: Array, begins: Array, count: npt.NDArray[np.intp], step: float
 ) -> Native | None:
-    """Recover the readings if each row begins within a step after its tick number of a clock."""
+    """Recover the readings if each sequence begins within one step after its tick of a clock."""
     period = float(np.polyfit(count, begins, 1)[0])
-    # Finer search: rows at both ends determine the period to a fraction of a step.
+    # Finer search: sequences at both ends determine the period to a fraction of a step.
     spread, period = min(
         (float(np.ptp(begins - p * count)), float(p))
         for p in period + np.linspace(-2.0, 2.0, 81) * step / count[-1]
@@ -66,28 +66,28 @@ def _of_clock(
     if spread > WITHIN * step:
         return None
     early = begins - period * count
-    # Each reading is at most a step before its row begins.
+    # Each reading precedes the beginning of its sequence by at most one step.
     phase = 0.5 * (float(np.max(early)) - step + float(np.min(early)))
     every = np.arange(count[-1] + 1)
     ticks: Array = phase + period * every.astype(np.float64)
-    # Equal readings begin no row; their value is that of the first sample after them.
+    # A reading equal to the previous one does not begin a sequence; use the first sample after it.
     shown = np.minimum(np.searchsorted(time, ticks), len(time) - 1)
     shown[count] = np.searchsorted(time, begins)
     return Native(ticks, values[shown], period)
 
 
 def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
-    """Number of readings of a slow clock before each row began; the first is 0.
+    """Number of readings of a slow clock before the beginning of each sequence; the first is 0.
 
-    None if the rows begin at the ticks of no steady clock. The longest period that fits is taken,
-    because any fraction of the period of a clock also fits.
+    None if no clock of constant rate fits the beginnings. The longest period that fits is selected,
+    because integer fractions of the true period also fit.
 
     Parameters
     ----------
     begins
-        Beginnings of the rows, in samples, shape (m,), m at least `LEAST_ROWS`.
+        Beginnings of the sequences, in samples, shape (m,), m at least `LEAST_ROWS`.
     """
-    # The rows that are closest together determine the period with the least ambiguity.
+    # The sequences that are closest together determine the period with the least ambiguity.
     near = int(np.argmin(begins[LEAST_ROWS - 1 :] - begins[: len(begins) - LEAST_ROWS + 1]))
     look = begins[near : near + LEAST_ROWS] - begins[near]
     grid = np.exp(np.arange(np.log(SHORTEST), np.log(LONGEST), FINE / look[-1]))
@@ -99,7 +99,7 @@ def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
 
 
 def _spread(begins: Array, periods: Array) -> Array:
-    """Range, in steps, of the phases of the rows for each clock period, shape (p,)."""
+    """Range, in steps, of the phases of the sequences for each clock period, shape (p,)."""
     phases = np.sort(np.mod(begins[None, :], periods[:, None]), axis=1)
     around = np.concatenate([np.diff(phases, axis=1), phases[:, :1] + periods[:, None]], axis=1)
     around[:, -1] -= phases[:, -1]
@@ -108,7 +108,7 @@ def _spread(begins: Array, periods: Array) -> Array:
 
 
 def _followed(begins: Array, near: int, period: float) -> npt.NDArray[np.intp] | None:
-    """Tick numbers of all rows, extended from a few rows outwards; None if they drift apart."""
+    """Tick numbers of all sequences, extended outwards from a few; None if the phase drifts."""
     low, high = near, near + LEAST_ROWS
     while True:
         rows = begins[low:high]

@@ -1,4 +1,4 @@
-"""A slow thermometer: one that is sampled less often than the force, coarsely, or with noise.
+"""Temperature that is sampled more slowly than the force, coarsely quantised, or noisy.
 
 Temperature effects are slow, because iron and oil take many seconds to warm. A model requires the
 temperature of the body, without the jumps of its readings.
@@ -16,11 +16,11 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 
 HELD = 0.5
-"""Share of repeated samples from which a reading is held."""
+"""Minimum share of repeated samples for a held reading."""
 SMOOTH_S = 2.0
 """Averaging time for a noisy reading, s."""
 NOISE_K = 0.1
-"""Noise below this, K, changes the viscosity of an oil by half a percent, and is not averaged."""
+"""Noise below which no average is taken, K; changes the viscosity of an oil by half a percent."""
 
 
 def recorded_temperature(run: Run) -> Array | None:
@@ -83,7 +83,7 @@ def _through_jumps(time: Array, celsius: Array) -> tuple[Array, float]:
 def _averaged(time: Array, celsius: Array) -> Array:
     """Mean over `SMOOTH_S` around each sample, with linear interpolation between samples."""
     area = np.concatenate(([0.0], np.cumsum(0.5 * np.diff(time) * (celsius[1:] + celsius[:-1]))))
-    # The window is symmetric, so that a steady rise is unchanged up to both ends.
+    # The window is symmetric, so that a linear rise is unchanged up to both ends.
     half = np.minimum(0.5 * SMOOTH_S, np.minimum(time - time[0], time[-1] - time))
     early, late = time - half, time + half
     with np.errstate(divide="ignore", invalid="ignore"):

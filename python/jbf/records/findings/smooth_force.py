@@ -13,7 +13,7 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST = 200
-"""Least number of samples in motion."""
+"""Minimum number of samples in motion."""
 ORDERS = (4, 6)
 """Orders of the differences that are compared."""
 FALLING = 0.5
@@ -27,8 +27,8 @@ def is_without_noise(force: Array) -> bool:
 
     Notes
     -----
-    The standard deviation of white noise is the same by differences of every order k, with the
-    factor ``1 / sqrt(binomial(2 k, k))``. That of a smooth signal falls with k.
+    Differences of order k times ``1 / sqrt(binomial(2 k, k))`` estimate the standard deviation of
+    white noise, for every k. For a smooth signal, this estimate decreases with k.
     """
     if len(force) < LEAST:
         return False

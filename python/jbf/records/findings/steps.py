@@ -15,12 +15,12 @@ Mask = npt.NDArray[np.bool_]
 MOST_LEVELS = 0.2
 """Largest ratio of levels to samples for quantised readings."""
 FEWEST_LEVELS = 4
-"""Readings with fewer levels belong to a law without noise: forward, backward and rest."""
+"""Minimum number of levels of quantised readings; a law without noise may have three levels."""
 CRUMBS, ALL = 0.03, 0.9
 """Largest deviation of gaps between levels from whole steps, and the share that must comply.
 
-The deviation is relative to the gap, or to five steps if that is larger. The levels of a law
-without noise are any distance apart.
+The deviation is relative to the gap, or to five steps if five steps are larger. The differences
+between the levels of a law without noise are arbitrary.
 """
 CRUMB = 1e-3
 """Corners closer than this share of the smallest possible step are one level."""
@@ -42,7 +42,7 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
     if len(levels) < FEWEST_LEVELS or len(levels) > MOST_LEVELS * len(values):
         return 0.0
     apart = np.diff(levels)
-    # Levels without samples give multiples of the step; digits of the file give small residues.
+    # Gaps are multiples of the step at levels without samples, with small rounding residues.
     step = float(np.median(apart[apart <= 1.5 * np.median(apart)]))
     times = apart / step
     whole = np.abs(times - np.round(times)) < CRUMBS * np.maximum(times, 5.0)

@@ -8,7 +8,7 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 CONTRADICTION = 10.0
-"""Least difference of path and speed for a contradiction, in standard errors."""
+"""Minimum difference of path and speed for a contradiction, in standard errors."""
 CONTRADICTION_REACH = 3
 """Number of samples on each side whose acceleration is affected."""
 RARE = 0.01
@@ -18,10 +18,10 @@ RARE = 0.01
 def contradiction_of(
     time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float
 ) -> Array:
-    """Difference between speed and path around each sample, m/s; zero where they agree.
+    """Difference between speed and path around each sample, m/s; zero if they agree.
 
-    Causes are a filter that settles, or an outlier. If most of the record disagrees, the result is
-    zero everywhere: then its errors are larger than estimated.
+    Possible causes are a filter transient and an outlier. If the share of differing samples exceeds
+    `RARE`, the result is zero everywhere, since the standard errors are then underestimated.
     """
     dt = np.diff(time)
     gap = np.abs(np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * dt)

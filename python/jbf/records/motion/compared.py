@@ -1,7 +1,7 @@
 """Path and speed over the same short windows, for their comparison.
 
-The change of the path over a window is the mean of the true speed there, and the recorded speed is
-averaged over the same window. Both are therefore smoothed equally, whatever the motion.
+The change of the path over a window, divided by its duration, is the mean of the true speed. The
+recorded speed is averaged over the same window, so that both are smoothed equally for any motion.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ In a slow motion with fast sampling, one count takes tens of samples.
 WHOLE = 1.2
 """Largest ratio of the duration of a window to the median; a longer window contains a gap."""
 LONG = 2.5
-"""Least ratio to the usual step for a step to be a gap."""
+"""Minimum ratio to the usual step for a step to be a gap."""
 SHARE = 0.05
-"""Least share of the window for a step to be a gap.
+"""Minimum share of the window for a step to be a gap.
 
 The displacement of a fast motion in such a step is unknown.
 """
 COMMON = 0.9
-"""Quantile of the time steps that defines the usual step, however uneven they are."""
+"""Quantile of the time steps that defines the usual step, also for uneven sampling."""
 LEAST = 60
-"""Least number of windows for a comparison."""
+"""Minimum number of windows for a comparison."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """Path and speed over windows of one width.
+    """Mean speeds by path and by recorded speed, over windows of one width.
 
     Attributes
     ----------

@@ -42,7 +42,7 @@ NOT_AS_RECORDED = (
 
 @dataclass(frozen=True, eq=False)
 class CorrectedRecords:
-    """The records of a motion after correction of inconsistent parts.
+    """Records of a motion after correction of inconsistent parts.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class CorrectedRecords:
     loose
         True at the ends where the motion is unknown, shape (n,).
     hum
-        Largest speed, m/s, that is also accepted as a rest; the count of an offset speed.
+        Largest speed, m/s, that is also accepted as a rest: one count of a speed with an offset.
     """
 
     path: Array | None

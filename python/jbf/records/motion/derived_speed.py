@@ -1,7 +1,8 @@
 """A recorded speed that was derived from the recorded path: a difference over some samples.
 
-Such a speed is redundant, is coarsely quantised, and is delayed if it is a backward difference. It
-is identified where it equals the difference within 5 % of its step in 90 % of the moving samples.
+Such a speed is redundant, is coarsely quantised, and is delayed if it is a backward difference. The
+speed is classified as derived if it equals the difference, within 5 % of the step of the
+difference, in 90 % of the samples in motion.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ SPANS = range(1, 13)
 USUAL = 0.95
 """Quantile that represents the largest speed; a sample above 2 % of it is in motion."""
 ALIKE = 0.9
-"""Least share of the samples in motion at which the speed equals the difference."""
+"""Minimum share of the samples in motion at which the speed equals the difference."""
 TO = 0.05
 """Tolerance of the equality, as a share of the step of the difference."""
 COARSE = 3.0

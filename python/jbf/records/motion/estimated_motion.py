@@ -1,12 +1,12 @@
 """Estimation of the motion from position and velocity records.
 
-A recorded speed has noise, and a recorded angle has the steps of the encoder. A friction law
-requires the speed, its sign and the acceleration. Both records are readings of one motion, which a
-fixed-interval smoother estimates with its errors (`smoothing`).
+A friction law requires the speed, its sign and the acceleration. A recorded speed is noisy, and a
+recorded angle is quantised by the encoder. A fixed-interval smoother (`smoothing`) estimates the
+motion and its standard errors from both records.
 
-Records of real machines have further defects. Positions may be finer than any encoder step, speeds
-may be filtered differences that disagree with the positions, noise may vary, and the speed may not
-be zero at rest. Each defect is detected from the record itself.
+Records of real machines have further defects. Positions may not be quantised, speeds may be
+filtered differences that contradict the positions, the noise may be heteroscedastic, and the speed
+may not be zero at rest. Each defect is detected from the record itself.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ WORTH = 0.1
 AT_REST_SIGMA = 3.0
 """Number of standard errors within which a speed next to a rest is zero."""
 GONE = 3.0
-"""Least displacement from a rest at which its direction is known, in standard errors: a count."""
+"""Minimum displacement from a rest for a known direction, in standard errors of the position."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +97,7 @@ class MotionErrors:
 
 @dataclass(frozen=True)
 class EstimatedMotion:
-    """The motion that a model is driven with; all arrays of shape (n,).
+    """Estimated motion, the input of a model; all arrays of shape (n,).
 
     Attributes
     ----------
@@ -106,16 +106,17 @@ class EstimatedMotion:
     velocity_error_m_s
         Standard error of the speed.
     resting
-        True where the shaft was at rest.
+        True at samples at which the shaft was at rest.
     sign_known
-        False where the sign of the motion, and so of the friction, is unknown, and where the
-        records of path and speed contradict one another.
+        False at samples at which the sign of the motion, and thus of the friction, is unknown, or
+        at which the records of path and speed contradict one another.
     findings
         Recording artefacts of path and speed, with the actions taken.
     errors
         Joint errors of the motion; None if unknown.
     clock_s
-        Instants of the even clock behind the stamps, s; None if the stamps are used unchanged.
+        Instants of the even clock estimated from the time stamps, s; None if the time stamps are
+        used unchanged.
     """
 
     velocity: Array
@@ -162,10 +163,10 @@ class EstimatedMotion:
         )
 
     def at(self, time_s: Array, instants_s: Array) -> EstimatedMotion:
-        """The motion at other instants within it.
+        """Motion at other instants within the record.
 
-        It is the posterior mean if that is known, and otherwise cubics through speed and
-        acceleration. Next to a rest it is linear.
+        The result is the posterior mean if available, and otherwise a cubic Hermite interpolation
+        of speed and acceleration. Next to a rest, the speed is interpolated linearly.
 
         Parameters
         ----------
@@ -178,7 +179,7 @@ class EstimatedMotion:
         v0, v1 = self.velocity[k], self.velocity[k + 1]
         a0, a1 = self.acceleration[k], self.acceleration[k + 1]
         rest = self.resting[k] & self.resting[k + 1]
-        # Next to a rest the speed is linear from where the shaft starts, or to where it stops.
+        # Next to a rest, the speed is linear between the rest and the first or last motion.
         corner = self.resting[k] | self.resting[k + 1]
         from_s, to_s = time_s[k].copy(), time_s[k + 1].copy()
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -321,8 +322,8 @@ def _steady(run: Run) -> EstimatedMotion:
 
 
 def _clock(run: Run, radius_m: float | None) -> Array | None:
-    """Return the even clock behind the stamps, s; None if the stamps are used unchanged."""
-    # If channels have separate clocks, the stamps of the force differ from those of the motion.
+    """Return the instants of an even clock, s; None if the time stamps are used unchanged."""
+    # With separate clocks, the time stamps of the force differ from those of the motion.
     even_s = None if run.read else even_clock(run.time_s)
     if even_s is None:
         return None

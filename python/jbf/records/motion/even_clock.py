@@ -1,4 +1,4 @@
-"""The even clock behind time stamps with jitter."""
+"""Even clock (constant sampling interval), estimated from time stamps with jitter."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ LONGEST_RESIDUAL, USUAL_RESIDUAL = 10.0, 1.0
 
 
 def even_clock(time_s: Array) -> Array | None:
-    """Estimate the instants of the even clock that produced the stamps, s.
+    """Estimate the instants of an even clock from time stamps with jitter, s.
 
-    None if the stamps are even, or far from an even clock. Missing samples are allowed.
+    None if the time stamps are even, or differ too much from an even clock. Missing samples are
+    permitted.
     """
     steps = np.diff(time_s)
     if len(steps) < 2:

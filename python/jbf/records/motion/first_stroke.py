@@ -1,8 +1,8 @@
 """Detection of a run that begins at rest with a noisy speed.
 
 If a run begins in motion, a model assumes that the contact is deflected in that direction. The
-recorded speed of a machine at rest is seldom zero: it fluctuates slightly. The direction of the
-first fluctuation is then not a direction of sliding.
+recorded speed of a machine at rest is seldom zero, but has noise. The sign of this noise is then
+not a direction of sliding.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 HUM = 1e-3
-"""Largest ratio of the first displacement to the longest one between two reversals for noise."""
+"""Largest first displacement of noise, relative to the longest one between two reversals."""
 
 
 def begins_with_oscillation(time_s: Array, velocity: Array) -> bool:
@@ -23,8 +23,8 @@ def begins_with_oscillation(time_s: Array, velocity: Array) -> bool:
     if v[0] == 0.0 or not len(turns):
         return False
     steps = 0.5 * (v[1:] + v[:-1]) * np.diff(time_s)
-    # A step with a reversal belongs half to each direction; its displacement is comparatively
-    # small.
+    # The displacement in a step with a reversal is small, and is not divided between the
+    # directions.
     ways = np.abs(np.add.reduceat(steps, np.unique(np.concatenate(([0], turns - 1)))))
     first = float(np.sum(np.abs(steps[: max(turns[0] - 1, 1)])))
     return first < HUM * float(np.max(ways))

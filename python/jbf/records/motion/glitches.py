@@ -1,4 +1,4 @@
-"""Outliers of a motion: single positions far from the path, or single speeds that contradict it."""
+"""Outliers of a motion: single positions, or single speeds that contradict the path."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 FAR = 8.0
-"""Least deviation of a sample, in local standard deviations."""
+"""Minimum deviation of a sample, in local standard deviations."""
 COUNTS = 3.0
-"""Least deviation, in encoder counts; rounding deviates by less than 1.5 counts from a cubic."""
+"""Minimum deviation, in encoder counts; rounding deviates by less than 1.5 counts from a cubic."""
 BESIDE = 0.825
-"""Least opposite deviation of the adjacent samples, relative to the effect of an outlier on them.
+"""Minimum opposite deviation of the adjacent samples, relative to the effect of an outlier on them.
 
 That effect is two thirds of the deviation at even steps. At a corner or a step the ratio is three
 quarters.
 """
 JUMP = 0.4
-"""Least deviation relative to the change of the speed across the sample times a time step."""
+"""Minimum deviation relative to the change of the speed across the sample times a time step."""
 CHANGES = 3.0
-"""For a speed: least deviation relative to the usual change of neighbours; no corner reaches it."""
+"""Minimum deviation of a speed, relative to the usual change; above the deviation at corners."""
 ALIKE = 0.5
-"""For a speed: least ratio of the smaller to the larger of the two steps of an outlier."""
+"""Minimum ratio of the smaller to the larger of the two changes at an outlier of a speed."""
 WINDOW = 41
 """Window of the local noise and of the usual change, samples."""
 RARE = 0.02
 """Largest share of outliers; with more of them, the record has large noise instead."""
 RARE_ALONE = 0.003
-"""Largest share of outliers of a speed without a path; a slip of the shaft may be as short."""
+"""Largest share of outliers of a speed without a path; a real slip may be as short."""
 LEAST_SAMPLES = 60
 ASIDE = "excluded from the motion"
 
@@ -119,7 +119,7 @@ def mend_speed_ends(
 
 
 def _off(time: Array, path: Array, least: float) -> Mask:
-    """Mask of the samples far from a cubic through two neighbours on either side."""
+    """Mask of the samples that deviate from a cubic through two adjacent samples on either side."""
     n = len(path)
     found = np.zeros(n, dtype=bool)
     if n < LEAST_SAMPLES:
@@ -130,7 +130,7 @@ def _off(time: Array, path: Array, least: float) -> Mask:
     off = -np.sum(weights * y, axis=0)
     size = np.abs(off)
     far = size > np.maximum(FAR * _around(size) / 0.6745, least)
-    # The cubics of adjacent samples include this sample: they deviate oppositely, by its weight.
+    # An outlier causes opposite deviations at the adjacent samples, by its weight in their cubics.
     for beside, weight in (
         (np.pad(off, (1, 0))[:-1], np.pad(weights[2], (1, 0))[:-1]),
         (np.pad(off, (0, 1))[1:], np.pad(weights[1], (0, 1))[1:]),
@@ -154,7 +154,7 @@ def _smaller_difference(before: Array, after: Array) -> Array:
         np.maximum(np.abs(before), np.abs(after)),
     )
     off = np.where((before * after > 0.0) & (less > ALIKE * more), less, 0.0)
-    # The neighbour of an outlier also deviates from it, so only the largest is kept.
+    # Samples next to an outlier deviate from it as well, so only the largest deviation is kept.
     most = np.maximum(np.pad(off, (1, 0))[:-1], np.pad(off, (0, 1))[1:])
     found: Array = np.where(off > most, off, 0.0)
     return found
@@ -168,9 +168,9 @@ def _median(values: Array, window: int) -> Array:
 
 
 def _around(sizes: Array) -> Array:
-    """Usual size around each sample: the largest median over windows around it or to either side.
+    """Local median size: the largest median of the centred, preceding and following windows.
 
-    Next to a rest, half of a centred window is free of noise.
+    Next to a rest, half of the centred window has no noise.
     """
     from scipy import ndimage
 

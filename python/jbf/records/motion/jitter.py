@@ -1,4 +1,4 @@
-"""Jitter: samples taken at instants off an even clock, whether or not the stamps report it."""
+"""Jitter of the sampling instants relative to an even clock, visible in the time stamps or not."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Array = npt.NDArray[np.float64]
 LEAST = 0.01
 """Smallest jitter that is reported, as a share of a step."""
 EVEN, MOSTLY = 0.5, 0.9
-"""Largest relative deviation from the usual step, and least share of steps within it.
+"""Largest relative deviation from the usual step, and minimum share of steps within it.
 
-Otherwise the record has no sampling rate.
+Otherwise the record has no constant sampling rate.
 """
 ORDER = 5
 """Order of the differences; they vanish for a smooth path."""
@@ -24,9 +24,9 @@ UNIT = np.sqrt(252.0)
 WHITE = -0.45
 """Correlation of adjacent differences below which they are noise; it is -5/6 for white noise."""
 BEYOND = 3.0
-"""Least ratio of the path noise at speed to that at slow motion, and to the encoder rounding."""
+"""Minimum ratio of the path noise at speed to that at slow motion, and to the encoder rounding."""
 COUNTS = 1.2
-"""Least path noise in encoder counts; alternating rounding may resemble noise."""
+"""Minimum path noise, in encoder counts; alternating rounding errors may resemble noise."""
 AGREE = 1.6
 """Largest ratio of the jitter estimates at different speeds."""
 
@@ -45,8 +45,8 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
     if len(steps) < 60 or near.mean() < MOSTLY:
         return None
     # A sampling rate that changes smoothly is not jitter. `noise_of` takes third differences of the
-    # steps, which are fourth differences of the stamps. White noise has 70 times its variance in
-    # them, not 20 times.
+    # steps, which are fourth differences of the time stamps. For white noise, the variance of the
+    # fourth differences is 70 times that of the noise, and that of third differences 20 times.
     size = noise_of(steps[near]) * float(np.sqrt(20.0 / 70.0))
     if size < LEAST * usual:
         return None
@@ -58,7 +58,7 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
 def jittered_path(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
     """Find a path whose noise grows with the speed.
 
-    The encoder was then read at other instants than the stamps state.
+    The encoder was then read at instants that differ from the time stamps.
     """
     usual = float(np.median(np.diff(time)))
     whole = np.abs(np.diff(time) / usual - 1.0) < LEAST

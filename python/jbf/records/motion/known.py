@@ -1,4 +1,4 @@
-"""The motion of a planned run, which is known exactly and is not estimated."""
+"""Motion of a planned run, which is known exactly and is not estimated."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The recorded path of the journal or the slider, in metres, with the name of its column."""
+"""Recorded path of the journal or the slider, in metres, with the name of its column."""
 
 from __future__ import annotations
 

@@ -12,13 +12,13 @@ Array = npt.NDArray[np.float64]
 FAST = 0.3
 """Share of the top speed above which the ratio is evaluated."""
 OFF = 0.2
-"""Least deviation of the ratio from one for path and speed to contradict one another."""
+"""Minimum deviation of the ratio from one for path and speed to contradict one another."""
 SPREADS = 4.0
-"""Least deviation relative to the spread (half the interquartile range)."""
+"""Minimum deviation relative to the spread (half the interquartile range)."""
 STEADY = 0.15
 """Largest relative spread of a constant factor."""
 SAME = 0.02
-"""Tolerance within which one metre per radian is exact: the speed is then also in radians."""
+"""Tolerance for a ratio of one metre per radian, at which the speed is in radians per second."""
 
 
 def factor_between(time: Array, path: Array, speed: Array) -> float | None:
@@ -62,6 +62,6 @@ def _middle(c: Compared) -> tuple[float, float]:
     if fast.sum() < 20:
         return 1.0, np.inf
     low, middle, high = np.quantile(c.by_path[fast] / c.by_speed[fast], [0.25, 0.5, 0.75])
-    # At a steady speed the spread is zero, however coarse the counts are.
+    # At a constant speed the spread is zero, even with coarse quantisation.
     coarse = c.count / float(np.median(np.abs(c.by_speed[fast])))
     return float(middle), float(0.5 * (high - low)) + coarse

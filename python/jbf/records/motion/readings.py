@@ -48,7 +48,7 @@ class ReadingErrors:
 
 @dataclass(frozen=True)
 class Readings:
-    """The readings of a motion; all arrays of shape (n,).
+    """Readings of a motion; all arrays of shape (n,).
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class Readings:
         )
 
     def first_speed(self) -> Array:
-        """First estimate of the speed, for the effect of the errors of the stamps, shape (n,)."""
+        """First estimate of the speed, for the effect of time-stamp errors, shape (n,)."""
         if np.isfinite(self.velocity).all():
             return self.velocity
         time = self.time_s
@@ -116,7 +116,7 @@ class Readings:
         corners
             Factor of the noise intensity in each step, shape (n - 1,).
         speed
-            A velocity at each sample, for the effect of the errors of the stamps.
+            A velocity at each sample, for the effect of the errors of the time stamps.
         """
         return self._core.smoothed(errors, corners, speed)
 

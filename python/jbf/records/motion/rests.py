@@ -13,9 +13,9 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 REST_SAMPLES = 3
-"""Least number of consecutive zero speeds for a rest; fewer are a zero crossing."""
+"""Minimum number of consecutive zero speeds for a rest; fewer are a zero crossing."""
 STILL_SAMPLES = 20
-"""Least number of samples without an encoder step, at speeds of noise size, for a rest."""
+"""Minimum number of samples without an encoder step, at speeds of noise size, for a rest."""
 STILL_STEPS = 1.5
 """Largest apparent displacement of the encoder during a rest, in steps."""
 STILL_SHARE = 5e-3
@@ -23,9 +23,9 @@ STILL_SHARE = 5e-3
 HUM_ERRORS = 5.0
 """Largest speed of a rest in standard deviations of the speed noise."""
 STANDS_OUT = 9.0
-"""Speed of a moving sample relative to the median of a rest: six standard deviations."""
+"""Minimum ratio of a speed in motion to the median in a rest: six standard deviations."""
 LONGER = 2.0
-"""Least ratio of the duration of a rest to the time for which a reversal appears at rest."""
+"""Minimum ratio of the duration of a rest to the time for which a reversal appears at rest."""
 
 
 def resting_samples(velocity: Array) -> Mask:
@@ -111,13 +111,13 @@ def _ptp(values: npt.NDArray[Any], samples: int) -> Array:
 def _reverses(time_s: Array, velocity: Array, first: int, end: int, step: float) -> bool:
     """Return whether one or two reversals explain an apparent rest.
 
-    A reversal at the acceleration from before to after would stay within the encoder step for about
-    as long.
+    With the mean acceleration between the adjacent motions, a reversal would remain within the
+    encoder step for about the same duration.
     """
     way = min(end - first, STILL_SAMPLES)
     before, after = max(first - way, 0), min(end + way, len(time_s)) - 1
     v0, v1 = velocity[before], velocity[after]
-    # A speed of rounding size counts as zero.
+    # A speed of the size of the rounding error is zero.
     least = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity)))
     if min(abs(v0), abs(v1)) < least or v0 == v1 == 0.0:
         return False
@@ -128,7 +128,7 @@ def _reverses(time_s: Array, velocity: Array, first: int, end: int, step: float)
 
 
 def certain_rests(rest: Mask) -> Mask:
-    """Mask of the inner part of each rest; near its ends the motion may be less than a count.
+    """Mask of the inner part of each rest, without ends with possible motion of less than a count.
 
     Ends at the first or the last sample are not shortened.
     """
@@ -169,8 +169,8 @@ def rest_edges(rest: Mask, time_s: Array, velocity: Array, acceleration: Array) 
 def backward_near_rest(rest: Mask, time_s: Array, velocity: Array, acceleration: Array) -> Mask:
     """Mask of the samples next to a rest that decelerate after it or accelerate towards it.
 
-    A shaft that starts does not slow down, and one that stops does not speed up. Only speeds below
-    the change in one sample are considered.
+    Physically, the shaft accelerates after a rest and decelerates before one. Only speeds below the
+    change of speed in one sampling interval are considered.
     """
     backward = np.zeros(len(rest), dtype=bool)
     step_s = np.gradient(time_s) if len(time_s) > 1 else np.zeros(len(time_s))
@@ -189,9 +189,9 @@ def backward_near_rest(rest: Mask, time_s: Array, velocity: Array, acceleration:
 
 
 def uncertain_near_rest(rest: Mask, path: Array, velocity: Array, least: float) -> Mask:
-    """Mask from a rest to where the path has moved in the direction of the speed by `least`, m.
+    """Mask of samples next to a rest with a displacement of less than `least`, m, along the speed.
 
-    A polynomial oscillates at the onset of a motion, so it does not determine the first direction.
+    A polynomial oscillates at the onset of a motion, and does not determine the first direction.
     """
     unsure = np.zeros(len(rest), dtype=bool)
     edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))

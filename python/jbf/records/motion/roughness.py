@@ -10,13 +10,13 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 UNEVEN = 3.0
-"""Ratio of local to usual noise from which the noise is uneven and evaluated locally."""
+"""Minimum ratio of local to usual noise for a local estimate of heteroscedastic noise."""
 DIGITS = 1e-7
 """Share of the range of a signal below which changes are rounding to the digits of a file."""
 LEVELS = 10
-"""Least number of different values of a quantised signal."""
+"""Minimum number of different values of a quantised signal."""
 ALTERNATING, VARIOUS = 0.1, 6
-"""Least share of sign changes, or least number of sizes, of the second differences of rounding."""
+"""Minimum share of sign changes, or number of sizes, of second differences due to rounding."""
 PARTS = 6
 """Largest divisor of the smallest change that is tried for the step."""
 WHOLE, MOSTLY = 0.05, 0.9
@@ -60,7 +60,7 @@ def white_noise(signal: Array, order: int) -> float:
 
 
 def local_noise(signal: Array) -> Array | float:
-    """`noise_of` for each sample if the noise is uneven, otherwise as a single number."""
+    """`noise_of` for each sample if the noise is heteroscedastic, otherwise a single number."""
     usual = noise_of(signal)
     if len(signal) < 4 * UNEVEN_SAMPLES:
         return usual
@@ -81,10 +81,10 @@ def step_of(angle: Array) -> float:
 
 
 def quantum_of(signal: Array) -> float:
-    """Quantisation step of a signal, of which its changes are multiples; zero if not quantised.
+    """Quantisation step of a signal, the largest divisor of its changes; zero if not quantised.
 
-    The smallest change alone may be many steps if the signal is never slow. A signal with few
-    different values has discrete set levels and is not quantised.
+    The smallest change may be several steps if the signal always changes fast. A signal with few
+    different values has set levels and is not considered quantised.
     """
     if len(np.unique(signal)) < LEVELS:
         return 0.0

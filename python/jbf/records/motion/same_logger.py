@@ -1,7 +1,7 @@
-"""Further starts for runs whose estimated reading errors differ from those of other runs.
+"""Further starting values for runs whose estimated reading errors differ from other runs.
 
 The likelihood of a run may have several maxima. The reading errors are properties of the logger, so
-the estimates from other runs are further starts.
+the estimates from other runs are used as further starting values.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def further_starts(motions: Sequence[Smoothed]) -> tuple[ReadingErrors, ...]:
 def _relative_sizes(motion: Smoothed) -> Array:
     """Logarithms of the variances of position and velocity, and the delay of the velocity.
 
-    They are in units of the differences up to which runs are the same; nan for a channel that was
+    The values are relative to the tolerances `SAME` and `SAME_DELAY`; nan for a channel that was
     not recorded.
     """
     readings, errors = motion.readings, motion.errors

@@ -2,8 +2,8 @@
 
 The jerk or the snap of the motion is Student-t noise: large in the few steps with a corner, small
 elsewhere. With a random jerk the acceleration jumps at a corner; with a random snap it is smooth.
-The likelier model is used. Expectation-maximisation (`Readings.estimated`) estimates the errors of
-the readings from a start that is searched here.
+The model of higher likelihood is used. Expectation-maximisation (`Readings.estimated`) estimates
+the errors of the readings; this module searches the starting values.
 
 References
 ----------
@@ -45,7 +45,7 @@ TRIED = (3, 12)
 With fewer passes, the order for a position loop with stick-slip is uncertain.
 """
 SNAP_GAIN = 0.02
-"""Minimum gain in the lower bound, per sample, for the snap, which rounds corners."""
+"""Minimum gain in the lower bound, per sample, for a random snap, which smooths corners."""
 LONG_PASSES = 12
 """Passes in which the corners are estimated with known errors of the readings."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
@@ -55,37 +55,37 @@ FLAT = 0.5
 NARROW = 2.0
 """Range around a known intensity, decades."""
 DELAY_GAIN = 10.0
-"""Least log-likelihood gain of a delay of the velocity."""
+"""Minimum log-likelihood gain of a delay of the velocity."""
 START_FACTORS = (1.0, 10.0, 100.0)
 """Starting factors applied to the standard deviation of the velocity by third differences."""
 DELAY_ROUNDS, DELAY_SETTLED = 4, 0.01
 """Largest number of searches of the delay, and the change that ends them, samples."""
 HIDDEN = 0.01
-"""Share of the variance of the velocity with which a delay is evaluated as well."""
+"""Factor of a second, smaller velocity variance at which a delay is evaluated."""
 STAMP_ERRORS = (0.01, 0.05, 0.2)
 """Standard errors of the instants that are tried, in samples."""
 START_GAIN = 10.0
-"""Least gain in the lower bound for an additional starting value."""
+"""Minimum gain in the lower bound for an additional starting value."""
 STAMP_GAIN = 10.0
-"""Least log-likelihood gain of an error of the instants."""
+"""Minimum log-likelihood gain of an error of the instants."""
 TURN_GAIN = 3.0
-"""Least log-likelihood gain of corners at all reversals."""
+"""Minimum log-likelihood gain of corners at all reversals."""
 LONGEST_DELAY = 1.5
 """Largest delay of the velocity that is searched, samples."""
 
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """The posterior of a motion at n instants.
+    """Posterior of a motion at n instants.
 
     Attributes
     ----------
     readings, errors
-        The readings, and their estimated errors.
+        Readings, and their estimated errors.
     corners
         Factor of the noise intensity in each step, shape (n - 1,).
     speed
-        Speed at each sample, for the effect of the errors of the stamps, shape (n,).
+        Speed at each sample, for the effect of the errors of the time stamps, shape (n,).
     mean, covariance
         Position and its first N - 1 derivatives, shape (n, N), and their covariance, shape (n, N,
         N), where the N-th derivative is noise.
@@ -160,9 +160,12 @@ def _composed(gain: Array, chosen: npt.NDArray[np.intp]) -> Array:
 
 
 def is_even(readings: Readings, even_s: Array) -> bool:
-    """Return whether readings are likelier at the instants of an even clock than at their stamps.
+    """Return whether an even clock has a higher likelihood than the recorded time stamps.
 
-    The instants are in s.
+    Parameters
+    ----------
+    even_s
+        Instants of the even clock, s.
     """
     part = _longest_path_window(readings, CHOSEN)
     few = readings.part(part)
@@ -198,7 +201,7 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
 
 
 def _smoothed(readings: Readings, errors: ReadingErrors, corners: Array) -> Smoothed:
-    """Posterior with corners located to a step, and with corners at all reversals if likelier."""
+    """Posterior with localised corners, and with corners at all reversals if more likely."""
     mean = readings.smoothed(errors, corners, np.zeros(len(readings.time_s))).mean
     found = _located_to_a_step(corners)
     if errors.order == JERK:
@@ -225,10 +228,10 @@ def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Arr
 
 
 def _likeliest_start(readings: Readings) -> tuple[ReadingErrors, float]:
-    """Starting variances from the roughness of the readings, or larger ones if likelier.
+    """Starting variances from the roughness of the readings, or larger ones of higher likelihood.
 
-    The roughness is that of most samples: if a machine mostly rests, the readings in motion are
-    noisier. Also returns the log-likelihood.
+    The roughness is a median over all samples. If the machine is mostly at rest, the variance of
+    the readings in motion is larger. Also returns the log-likelihood.
     """
     start = _start(readings)
     tried = [
@@ -271,7 +274,9 @@ def _of_likeliest_order(readings: Readings) -> ReadingErrors:
 def _likeliest_intensity(
     readings: Readings, errors: ReadingErrors, decades: float | None = None
 ) -> tuple[ReadingErrors, float]:
-    """Find the likeliest intensity of normal noise, constant in time, and its log-likelihood.
+    """Maximise the likelihood over the intensity of normal noise that is constant in time.
+
+    Returns the errors with this intensity, and the log-likelihood.
 
     Parameters
     ----------
@@ -307,7 +312,7 @@ def _likeliest_intensity(
 
 
 def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
-    """Likeliest errors, with or without jitter of the stamps, and the penalised log-likelihood."""
+    """Maximum-likelihood errors with or without time-stamp jitter; penalised log-likelihood."""
     step = float(np.median(np.diff(readings.time_s)))
     found = _likeliest_start(readings)
     start, _ = found
@@ -334,7 +339,7 @@ def _longest_path_window(readings: Readings, longest: int) -> slice:
 
 
 def _delayed(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, Array]:
-    """Errors and corners with the likeliest delay of the velocity, from starting values."""
+    """Errors and corners with the maximum-likelihood delay of the velocity."""
     errors, corners = readings.estimated(start, np.ones(len(readings.time_s) - 1), PASSES)
     if not (np.isfinite(readings.position).any() and np.isfinite(readings.velocity).any()):
         return errors, corners
@@ -354,7 +359,7 @@ def _delayed(readings: Readings, start: ReadingErrors) -> tuple[ReadingErrors, A
 def _likeliest_delay(
     readings: Readings, errors: ReadingErrors, corners: Array, longest_s: float
 ) -> tuple[float, float]:
-    """Likeliest delay of the velocity, s, and its log-likelihood gain."""
+    """Maximum-likelihood delay of the velocity, s, and its log-likelihood gain."""
     from scipy.optimize import minimize_scalar
 
     speed = readings.smoothed(errors, corners, readings.first_speed()).mean[:, 1]
@@ -372,11 +377,11 @@ def _likeliest_delay(
 
 
 def _located_to_a_step(corners: Array) -> Array:
-    """Factors that also allow each corner in the steps before and after its own.
+    """Factors of the noise intensity with each corner extended to the adjacent steps.
 
-    The expectation of one step does not take into account that its neighbour explains the readings
-    nearly as well. Without this, the error of the acceleration at the sample between them is too
-    small.
+    The expectation for one step neglects that a corner in an adjacent step has nearly the same
+    likelihood. Without the extension, the standard error of the acceleration at the sample between
+    the two steps is too small.
     """
     padded = np.pad(corners, 1, mode="edge")
     found: Array = np.maximum(np.maximum(padded[:-2], padded[2:]), corners)

@@ -15,16 +15,16 @@ from jbf.records.motion.compared import Compared, compared
 Array = npt.NDArray[np.float64]
 
 SURE = 6.0
-"""Least delay of the speed, in standard errors."""
+"""Minimum delay of the speed, in standard errors."""
 ALIKE = 0.9
 """Correlation of speed and acceleration above which a delay only scales the speed.
 
 This is the case for a speed that decays exponentially.
 """
 WITHIN = 1.5
-"""Largest delay that the smoother corrects, samples; a longer filter also has a shape."""
+"""Largest delay that the smoother corrects, samples; longer filters also distort the speed."""
 STRETCHES = 12
-"""Number of parts of the record that are left out in turn, for the standard error."""
+"""Number of blocks of the record for the jackknife standard error."""
 
 
 def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:

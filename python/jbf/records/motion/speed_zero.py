@@ -1,7 +1,7 @@
 """Offset of the speed: a speed that is not zero while the position is constant.
 
-A quantised speed whose levels do not include zero never reads zero, and a tachometer has an offset.
-A rest then looks like creep, and the friction of a rest like that of sliding.
+Causes are a quantised speed without a level at zero, and the offset of a tachometer. Without a
+correction, a rest would appear as creep, and its friction as friction of sliding.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEAST = 3 * STILL_SAMPLES
-"""Least number of samples at standstill for an estimate of the offset."""
+"""Minimum number of samples at standstill for an estimate of the offset."""
 GONE = 4.0
-"""Least displacement that the speed implies during a standstill, in encoder steps."""
+"""Minimum displacement that the speed implies during a standstill, in encoder steps."""
 ERRORS = 5.0
-"""Least offset in standard errors."""
+"""Minimum offset in standard errors."""
 
 
 def speed_zero(
@@ -51,7 +51,7 @@ def speed_zero(
     if step <= 0.0 or still.sum() < LEAST:
         return speed, 0.0, None
     at_rest = speed[still]
-    # The median of counts is itself a count; the mean of the central values lies between counts.
+    # Mean of the central values, since a median of quantised values is itself quantised.
     low, high = np.quantile(at_rest, [0.1, 0.9])
     inner = at_rest[(at_rest >= low) & (at_rest <= high)]
     zero = float(np.mean(inner))

@@ -1,4 +1,4 @@
-"""Held samples of a path: it repeats a value while the shaft moves on, and then catches up."""
+"""Held samples of a path: repeated values during a motion, followed by the current position."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from jbf.records.motion.roughness import step_of
 Array = npt.NDArray[np.float64]
 
 LEAST = 3
-"""Least number of repeated readings in a row; with jitter, two may be at about one instant."""
+"""Minimum number of consecutive repeated readings; with jitter, two may be nearly simultaneous."""
 COUNTS = 5.0
-"""Least displacement of the shaft during the held readings, in encoder counts."""
+"""Minimum displacement of the shaft during the held readings, in encoder counts."""
 CATCHES_UP = 0.3
 """Largest error of the next reading, as a share of the missed displacement."""
 STEADY = 0.3
-"""Least displacement from one held reading to the next, relative to the mean."""
+"""Minimum displacement from one held reading to the next, relative to the mean."""
 MOST = 0.3
 """Largest share of held readings in a record; more of them are a property of the channel."""
 
@@ -39,7 +39,7 @@ def replace_stale_positions(
             continue
         if abs(moved[end] - moved[first]) < least:
             continue
-        # The shaft moved throughout; at the ends of a rest it did not.
+        # Accept only motion throughout the held readings, which excludes the ends of a rest.
         each = np.abs(np.diff(moved[first : end + 1]))
         if np.min(each) < STEADY * np.mean(each):
             continue

@@ -2,8 +2,9 @@
 
 Input: a `Campaign` (runs prepared once), a law and effects. Output: `Fit`, `Bootstrap`,
 `TrajectoryFit`. `samples` defines the samples that count and their weights; `noise` is the noise
-model of the instrument. `problem` encodes parameters and predicts; `minimum` searches;
-`standard_errors` computes the uncertainty; `identifiability` decides which parameters are held.
+model of the instrument. `problem` encodes parameters and predicts the friction; `minimum` minimises
+the sum of squares. `standard_errors` computes the uncertainty of the estimates. `identifiability`
+decides which parameters are held.
 
 May import: `jbf.records`, `jbf.models`, `jbf._core`.
 """

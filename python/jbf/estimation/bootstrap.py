@@ -1,8 +1,9 @@
-"""Simulated recordings of the fitted runs, and standard errors from fits to them.
+"""Bootstrap standard errors from fits to simulated recordings of the fitted runs.
 
-Standard errors from the curvature of the likelihood are correct where predictions are nearly linear
-in the parameters and the noise is that of the friction. Neither holds for a drive that rings: its
-likelihood has many adjacent maxima, and it amplifies errors of the recorded motion.
+Standard errors from the curvature of the likelihood are valid if predictions are nearly linear in
+the parameters and the residual contains only the noise of the friction. Neither condition holds for
+a drive with a resonance: its likelihood has many adjacent maxima, and the resonance amplifies
+errors of the recorded motion.
 
 Notes
 -----
@@ -111,9 +112,9 @@ def bootstrap(
     start: Mapping[str, float] | None = None,
     progress: Callable[[str, int, int], None] | None = None,
 ) -> Bootstrap:
-    """Fit simulated records of the same runs and take the errors from the scatter of the estimates.
+    """Compute standard errors from the scatter of fits to simulated records of the same runs.
 
-    Takes `repeats` times as long as the fit.
+    The computing time is `repeats` times that of the fit.
 
     Parameters
     ----------
@@ -122,8 +123,8 @@ def bootstrap(
     runs
         The runs that were fitted.
     repeats
-        Number of simulated sets. An error from 19 estimates is uncertain by a quarter, from 40 by a
-        fifth.
+        Number of simulated sets of runs. The relative uncertainty of a standard error is a quarter
+        with 19 estimates, and a fifth with 40.
     seed
         Seed of the random numbers; equal seeds give equal results.
     start
@@ -211,7 +212,7 @@ def bootstrap(
 def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
     """Standard deviation of the innovations of each run, N.
 
-    For a run with fewer than 100 samples, that of all runs together.
+    The standard deviation over all runs is used for a run with fewer than 100 samples.
     """
     samples = campaign.samples
     every_run = samples.innovations(fitted.residuals, fitted.noise)
@@ -223,23 +224,23 @@ def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
 def simulated_recording(
     prepared: Prepared, friction: Array, noise: Noise, sigma_n: float, random: np.random.Generator
 ) -> Run:
-    """Simulate a new recording of the run by its instruments, if the prediction were correct."""
+    """Simulate a recording of a run with the predicted friction and the noise of the model."""
     error = noise.coloured(random.normal(0.0, sigma_n, len(prepared.run)), prepared.step_s)
     return simulated_readings(prepared, friction + error, random)
 
 
 def simulated_readings(prepared: Prepared, friction: Array, random: np.random.Generator) -> Run:
-    """Simulate a new recording of the motion by the run's instruments, with the given friction.
+    """Simulate a recording of the motion by the instruments of a run, with the given friction.
 
-    A column that is disregarded carries no information and is kept unchanged, so that it is
-    disregarded again. A force whose sign is unknown is kept as well. The simulated motion may
-    determine the sign, and a model that assumed the other sign would have recorded a bad sample.
+    A column that the fit disregards is kept unchanged, so that it is disregarded again. The
+    friction of a sample with an unknown sign of motion is also kept. The simulated motion may
+    determine the sign, and a friction simulated with the opposite sign would be an outlier.
     """
     run, motion = prepared.run, prepared.motion
     n = len(run)
     recorded = prepared.friction
     friction = np.where(np.isfinite(recorded) & motion.sign_known, friction, recorded)
-    # Recorded errors of the speed with random sign: equal in size and position.
+    # The recorded errors of the speed with random signs keep their sizes and positions.
     error = (run.velocity - motion.velocity) * random.choice([-1.0, 1.0], n)
     moving = ~motion.resting
     velocity = np.where(moving, motion.velocity + error, run.velocity)
@@ -280,8 +281,8 @@ def with_error(value: ParameterValue, estimates: Array, page: Parameter) -> Para
         deviations -= page.period * np.round(deviations / page.period)
     # Central 68 %: estimates that ended on a distant maximum would dominate a standard deviation.
     low, high = np.quantile(deviations, [0.15866, 0.84134])
-    # No error is smaller than that by the curvature (Cramer 1946, ch. 32); a small number of
-    # estimates may scatter too little by chance.
+    # The error from the curvature is a lower bound (Cramer 1946, ch. 32). The scatter of a small
+    # number of estimates may be below it by chance.
     error = max(float(0.5 * (high - low)), value.stderr)
     note = reason_not_identifiable(page, value.value, error)
     return replace(value, stderr=None if note else error, note=note, held=note is not None)
@@ -290,7 +291,7 @@ def with_error(value: ParameterValue, estimates: Array, page: Parameter) -> Para
 def simulated_runs(
     model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: int
 ) -> list[Run]:
-    """Simulate new recordings of the runs by a model, or by a model with only some of its effects.
+    """Simulate recordings of the runs with a model, or with some of its effects only.
 
     Parameters
     ----------
@@ -334,8 +335,8 @@ def _sign_randomised(
     for e, sign, counts, p in zip(
         innovations, np.split(signs, ends), plain.counted, campaign.prepared, strict=True
     ):
-        # The innovation of a sample that does not count is meaningless; it is drawn from the
-        # others.
+        # The innovation of a sample that does not count is undefined. It is drawn at random from
+        # those of the samples that count.
         filled = np.where(counts, e, random.choice(counted, len(e)))
         noise.append(solution.noise.coloured(sign * filled, p.step_s))
     return noise

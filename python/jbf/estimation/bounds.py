@@ -1,4 +1,4 @@
-"""Bounds of parameters: those that a user imposes on a fit, and estimates that end at a bound."""
+"""Parameter bounds that a user imposes on a fit, and detection of estimates at a bound."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def checked_bounds(
 
 
 def bounded_page(page: Parameter, low: float, high: float) -> Parameter:
-    """Return a parameter within bounds: starting values are moved inside.
+    """Return a parameter with the given bounds and its starting values clipped to them.
 
     A null outside the bounds no longer applies. An angle is not wrapped, because wrapping could
     leave the bounds.
@@ -77,7 +77,7 @@ def bounded_pages(pages: Mapping[str, Parameter], bounds: Bounds) -> dict[str, P
 
 
 def bound_note(page: Parameter, value: float, error: float) -> str | None:
-    """Return a note if a value is at one of its bounds, otherwise None."""
+    """Return a note if a value is at one of the parameter's bounds, otherwise None."""
     for side, bound, wish in (("lower", page.lower, "less"), ("upper", page.upper, "more")):
         if at_bound(page, value, bound, error):
             return f"at its {side} bound {bound:g}: the best fit requires {wish}"
@@ -87,8 +87,8 @@ def bound_note(page: Parameter, value: float, error: float) -> str | None:
 def at_bound(page: Parameter, value: float, bound: float, error: float) -> bool:
     """Whether a value is at a bound.
 
-    A linear parameter is compared with its own size and error. The distance between its bounds is
-    often many times the value of any machine.
+    For a linear parameter, the tolerance is relative to the value and the standard error. The
+    distance between the bounds of the catalogue is often much larger than any realistic value.
     """
     if page.log:
         distance = abs(np.log(value) - np.log(bound))

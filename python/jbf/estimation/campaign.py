@@ -1,8 +1,7 @@
 """A rig and its runs, prepared once for many fits.
 
-Typical magnitudes of a campaign as robust quantiles.
-
-Neither inertia at a reversal nor a bad sample determines a scale.
+The properties of a campaign, such as the ranges of load and temperature, determine which effects
+the runs can show.
 """
 
 from __future__ import annotations
@@ -188,7 +187,7 @@ class Campaign:
 
     @cached_property
     def temperature_range_c(self) -> tuple[float, float] | None:
-        """Lowest and highest recorded temperature, C; None unless every run has temperatures."""
+        """Lowest and highest recorded temperature, C; None if a run has no temperatures."""
         recorded = [recorded_temperature(p.run) for p in self.prepared]
         temperatures = [celsius for celsius in recorded if celsius is not None]
         if not temperatures or len(temperatures) < len(recorded):
@@ -197,14 +196,14 @@ class Campaign:
 
     @property
     def temperatures_k(self) -> float | None:
-        """Range of recorded temperatures over all runs, K; None unless every run has them."""
+        """Range of the recorded temperatures of all runs, K; None if a run has no temperatures."""
         if self.temperature_range_c is None:
             return None
         low, high = self.temperature_range_c
         return high - low
 
     def missing_requirement(self, effect: Effect) -> str | None:
-        """Why these runs cannot show an effect, as text; None if they meet all its requirements."""
+        """Reason why the runs cannot show an effect; None if they meet all of its requirements."""
         needs = effect.needs
         if coasting(self.rig) is not None and effect.name in NEEDS_RECORDED_FORCE:
             return "no force was recorded"
@@ -243,19 +242,19 @@ class Campaign:
         return (*(f for p in self.prepared for f in p.examined.findings), *self.more_findings)
 
     def with_findings(self, findings: Sequence[Finding]) -> Campaign:
-        """Return the campaign with additional findings that required a model."""
+        """Return the campaign with additional findings from a fitted model."""
         return replace(self, more_findings=(*self.more_findings, *findings))
 
     @property
     def step_n(self) -> float:
-        """Largest quantisation step that is comparable with the noise, N; zero without one."""
+        """Largest quantisation step that is comparable with the noise, N; zero if there is none."""
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
 
     def steps_rms(self, residual_rms: float) -> float:
         """RMS of the uncorrected quantisation bias of the mean readings, N.
 
-        It is zero without a quantisation step. The noise smooths the quantisation error and is
-        estimated from the readings. The given residual RMS also contains lack of fit, and is
+        The RMS is zero without a quantisation step. The noise, which smooths the quantisation
+        error, is estimated from the readings. The residual RMS also contains lack of fit, and is
         therefore an upper limit of the noise.
         """
         if self.step_n <= 0.0:
@@ -270,7 +269,7 @@ class Campaign:
 
     @property
     def arm_m(self) -> float:
-        """Radius that converts an angle to a travel, m; 1 for a drive."""
+        """Radius that converts an angle to a path, m; 1 for a drive."""
         return 1.0 if self.rig.bearing is None else self.rig.bearing.radius_m
 
     @property
@@ -280,7 +279,7 @@ class Campaign:
         return [(p, _moving(p, counted)) for p, counted in pairs]
 
     def without(self, masks: Sequence[Mask]) -> Campaign:
-        """Return the campaign with additional samples excluded, one mask a run."""
+        """Return the campaign without the samples of the given masks, one mask per run."""
         return replace(self, samples=self.samples.within([~m for m in masks]))
 
     def only(self, selection: Sequence[int]) -> Campaign:
@@ -333,7 +332,7 @@ def _each(
 
 
 def _without_motion(run: Run, error: NoMotion) -> Finding:
-    """Finding for a run that is excluded because nothing moves in it."""
+    """Finding for a run that is excluded because it contains no motion."""
     words = f"{error.problem}: the run is left out"
     return Finding(
         "no_motion", "velocity_m_s", run.name, float(len(run)), "samples", "left out", words
@@ -341,7 +340,7 @@ def _without_motion(run: Run, error: NoMotion) -> Finding:
 
 
 def _moving(p: Prepared, counted: Mask) -> Mask:
-    """Mask of samples in motion; noise near zero speed has neither a direction nor a travel."""
+    """Mask of samples in motion, without speeds near zero that may be noise."""
     speed = np.abs(p.motion.velocity)
     top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
     return np.asarray(counted & (speed > HUM * top))

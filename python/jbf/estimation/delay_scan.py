@@ -1,16 +1,18 @@
-"""Likelihood of time delays, scanned over a grid.
+"""Likelihood of time delays on a grid.
 
-Squared residuals change in steps with a delay where a jump passes a sample, so neither gradient nor
-curvature determines it. `scan_delays` shifts the force of each run in time and finds large delays.
-Parts of a run show whether the delay grows. `exact_delay` refines the delay parameter of a model.
+The sum of squares is discontinuous in the delay where a jump passes a sample, so neither its
+gradient nor its curvature determines the delay. `scan_delays` shifts the force of each run in time
+and finds large delays; parts of a run show whether the delay grows. `exact_delay` refines the delay
+parameter of a model.
 
 Notes
 -----
-A search interpolates a delayed force linearly between samples. The likelihood then has a slope that
-the search can follow, but samples next to a jump have little weight. These samples determine the
-delay best: each shows whether it was read before or after a reversal. `exact_delay` therefore
-evaluates the model one delay before each sample. A sample close to a reversal is a mixture of both
-sides of the jump. The other parameters follow the delay along the valley of the objective.
+A search interpolates a delayed force linearly between samples. The likelihood is then
+differentiable in the delay, but samples next to a jump have little weight. These samples contain
+most information on the delay: each shows whether it was read before or after a reversal.
+`exact_delay` therefore evaluates the model one delay before each sample. The distribution of a
+sample close to a reversal is a mixture of both sides of the jump. The other parameters change with
+the delay such that the objective is minimal to first order.
 """
 
 from __future__ import annotations
@@ -86,10 +88,10 @@ class _Estimate:
 def scan_delays(problem: Problem, solution: Solution, look: int, chance: float) -> Delays | None:
     """Estimate how the delays of the runs differ; None if they do not differ significantly.
 
-    All samples are used, including those next to reversals. These determine a delay of less than
-    one sample if the friction is smooth in time; otherwise they determine it in steps. A delay
-    common to all runs may be that of the instrument, which is an effect. A force that is early in
-    all runs is a recording artefact.
+    All samples are used, including those next to reversals. They resolve a delay of less than one
+    sampling interval only if the friction is smooth in time. A delay common to all runs may be that
+    of the instrument, which is an effect. A force that precedes the motion in all runs is a
+    recording artefact.
 
     Parameters
     ----------
@@ -117,7 +119,7 @@ def scan_delays(problem: Problem, solution: Solution, look: int, chance: float) 
         return Delays(tuple(common[0] for _ in delays), 0.0, 0.0)
     rate = drift[0] if drift is not None and drifting else 0.0
     if spread is None or not differ:
-        # One clock, started with each run.
+        # The drift is that of one clock, which is restarted at the beginning of each run.
         return Delays(tuple(0.5 * rate * p.run.duration_s for p in runs), rate, 0.0)
     estimated = [d for d in delays if np.isfinite(d.variance)]
     mean = float(
@@ -130,9 +132,9 @@ def scan_delays(problem: Problem, solution: Solution, look: int, chance: float) 
 def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[Array, Array]]:
     """Yield the squared residuals of each run by delay, (len(grid), n), and the sample times.
 
-    The residuals are not whitened. A filter that describes the error of a delayed force as coloured
-    noise would shift that error as well. Runs are processed one at a time, because a recording of
-    days would fill the memory.
+    The residuals are not whitened: a noise model that describes the error of a delayed force as
+    coloured noise would shift this error as well. Runs are processed one at a time to limit the
+    memory.
     """
     samples, runs = solution.samples, problem.campaign.prepared
     forces = [fine_force(problem, solution.values, p) for p in runs]
@@ -181,9 +183,9 @@ def _without_delay(
 
 
 def _grid_estimate(grid: Array, costs: Array, count: int, settings: DelaySettings) -> _Estimate:
-    """Mean and variance of the likelihood on the grid.
+    """Mean and variance of the delay under the normalised likelihood on the grid.
 
-    They replace the curvature, since squares change in steps next to jumps.
+    They replace the maximum and the curvature, since the sum of squares is discontinuous at jumps.
     """
     k = int(np.argmin(costs))
     if count < settings.min_part_samples or not 0 < k < len(grid) - 1:
@@ -197,7 +199,7 @@ def _grid_estimate(grid: Array, costs: Array, count: int, settings: DelaySetting
 
 
 def _drift(grid: Array, squares: Array, time: Array, settings: DelaySettings) -> _Estimate:
-    """Slope of the delay over the parts of a run."""
+    """Estimate the increase of the delay per second from the delays of the parts of a run."""
     last_s = float(time[-1]) if len(time) else 0.0
     edges = np.linspace(0.0, last_s, settings.drift_parts + 1)
     middles, values, weights = [], [], []
@@ -217,7 +219,7 @@ def _drift(grid: Array, squares: Array, time: Array, settings: DelaySettings) ->
 
 
 def _finite(estimates: list[_Estimate]) -> tuple[Array, Array]:
-    """Values with a finite variance, and their precisions."""
+    """Estimates with a finite variance, and their precisions (inverse variances)."""
     finite = [e for e in estimates if np.isfinite(e.variance)]
     return np.array([e.value for e in finite]), 1.0 / np.array([e.variance for e in finite])
 
@@ -249,9 +251,9 @@ class ExactDelay:
     Attributes
     ----------
     values
-        All parameter values; the others follow the delay.
+        All parameter values; the other parameters are conditional on the delay.
     sd_s
-        Standard deviation of the likelihood of the delay, s, which no curvature gives.
+        Standard deviation of the delay under its normalised likelihood, s.
     residuals
         Record minus expected reading at these values, N, one array a run.
     """
@@ -296,7 +298,7 @@ def exact_delay(
 
 @dataclass(frozen=True, eq=False)
 class _Scan:
-    """Likelihood of a delay with the other parameters following it.
+    """Likelihood of a delay with the other parameters conditional on it, to first order.
 
     Attributes
     ----------

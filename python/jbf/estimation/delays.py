@@ -1,10 +1,10 @@
 """Time delays of the force channel, estimated jointly with the parameters of a model.
 
 A delay that differs between runs, or a clock with a wrong rate, is a recording artefact and not an
-effect. The force is then compared with the motion at the time at which it was read. A law adapts to
-a delayed force. A search for the delay of each run at fixed parameters (`delay_scan`) therefore
-keeps what the law has absorbed, and converges slowly. One Gauss-Newton step in the delays of all
-runs and all parameters does not have this defect.
+effect. The force is then compared with the motion at the time at which the force was read. The
+estimates of a law are biased by a delayed force. A search for the delay of each run at fixed
+parameters (`delay_scan`) therefore underestimates the delay and converges slowly. A joint
+Gauss-Newton step in the delays of all runs and all parameters avoids this bias.
 
 Notes
 -----
@@ -70,13 +70,13 @@ class DelayStep:
 
     @property
     def square(self) -> float:
-        """Square of the step in units of its covariance (Wald statistic)."""
+        """Wald statistic of the step: its square in units of its covariance."""
         delays = self.delays_s[self.identifiable]
         return float(delays @ np.linalg.lstsq(self.covariance_s2, delays, rcond=RANK)[0])
 
     @property
     def p_value(self) -> float:
-        """P-value of the step if every force is compared without an additional delay."""
+        """P-value of the step under the null hypothesis that no run has an additional delay."""
         count = int(np.sum(self.identifiable))
         return float(special.chdtrc(count, self.square)) if count else 1.0
 
@@ -97,7 +97,7 @@ class DelayStep:
         return float(special.chdtrc(count - 1, float(total @ inverse @ total)))
 
     def mean_s(self, delays_s: Array) -> float:
-        """Mean of the identifiable ones of `delays_s`, weighted by their inverse variance, s."""
+        """Mean of the identifiable delays in `delays_s`, weighted by inverse variance, s."""
         if not np.any(self.identifiable):
             return 0.0
         weights = 1.0 / np.diag(self.covariance_s2)
@@ -121,7 +121,7 @@ class DriftStep:
 
     @property
     def square(self) -> float:
-        """Square of the drift in units of its variance (Wald statistic)."""
+        """Wald statistic of the drift: its square in units of its variance."""
         return self.drift**2 / self.variance
 
 
@@ -133,7 +133,7 @@ def run_delay_step(problem: Problem, solution: Solution) -> DelayStep:
     columns = [k for k, i in enumerate(problem.open) if problem.names[i] != TAU]
     delays, covariance = _step(problem, solution, columns, "by run")
     linear_s = problem.campaign.settings.delays.linear_s
-    # An exact fit gives no variance.
+    # The variance of the residual of an exact fit is zero.
     identifiable = (np.diag(covariance) > 0.0) & (np.diag(covariance) < linear_s**2)
     return DelayStep(
         np.where(identifiable, delays, 0.0),
@@ -174,13 +174,13 @@ def drift_step(problem: Problem, solution: Solution, with_delay: bool = False) -
 
 
 def fine_force(problem: Problem, values: Array, p: Prepared) -> tuple[Array, Array]:
-    """Times close enough for an interpolated shift, s, and the force of a model there, N."""
+    """Times with intervals of at most `FINE_S`, s, and the force of a model at them, N."""
     instants = fine_instants(p)
     return instants, problem.chain.predict(values, [fine_motion(p)])[0]
 
 
 def fine_instants(p: Prepared) -> Array:
-    """Times of a run that are close enough for an interpolated shift, s."""
+    """Times that divide the sampling intervals of a run into at most `FINE_S`, s."""
     count = max(int(np.ceil(p.step_s / FINE_S)), 1)
     samples = np.arange(len(p.run), dtype=np.float64)
     place = np.linspace(0.0, len(p.run) - 1.0, count * (len(p.run) - 1) + 1)
@@ -203,7 +203,7 @@ def delay_slope(problem: Problem, values: Array, prepared: Prepared) -> Array:
 def _step(
     problem: Problem, solution: Solution, columns: Sequence[int], clocks: Clocks
 ) -> tuple[Array, Array]:
-    """Step in the delays of a clock model, joint with the parameters, and its covariance.
+    """Joint step in the delays of a clock model and the parameters, and covariance of the delays.
 
     `columns` selects the parameters among the free ones.
     """
@@ -257,5 +257,5 @@ def _rows(
         samples = solution.samples.only([i]).within([far])
         derivatives = np.column_stack([solution.jacobian[i][:, list(columns)], *by_clock])
         r, j = samples.stacked([solution.residuals[i]], [derivatives], solution.noise)
-        # The residual remains a separate row where it is longer than its derivatives.
+        # The last row is the part of the residual that the derivatives do not explain.
         yield *triangular(r, j), len(r)

@@ -1,4 +1,4 @@
-"""Residuals that contain errors of the estimated motion.
+"""Covariance of residuals that contain errors of the estimated motion.
 
 A residual is the noise of the reading plus the error of the motion times the sensitivity of the
 model to it. The errors of the motion are correlated in time, and their posterior is known.
@@ -75,7 +75,7 @@ class ErrorsInMotion:
         ----------
         weights
             Weight of each sample, 0 to 1; samples without weight are excluded.
-        which
+        selection
             Indices of the runs to use; None for all runs.
         """
         white = []
@@ -95,7 +95,7 @@ class ErrorsInMotion:
     def innovations(self, residuals: Sequence[Array], weights: Sequence[Array]) -> list[Array]:
         """Independent residuals of standard deviation `noise`, one array a run.
 
-        They are zero at samples without weight.
+        Values at samples without weight are zero.
         """
         innovations = []
         for run, (residual, weight) in enumerate(zip(residuals, weights, strict=True)):

@@ -37,7 +37,7 @@ class Estimates(Result):
 
     @property
     def var_names(self) -> tuple[str, ...]:
-        """Names of the estimated parameters: those that are not held."""
+        """Names of the estimated parameters, without held parameters."""
         return tuple(name for name, p in self.parameters.items() if not p.held)
 
     def conf_int(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
@@ -61,8 +61,8 @@ class Estimates(Result):
         Notes
         -----
         The interval is ``value -/+ z stderr`` with the quantile z of the standard normal
-        distribution (Wald interval). It is not valid for parameters whose likelihood is not a
-        parabola at one standard error (`Fit.doubtful`); their errors come from a bootstrap.
+        distribution (Wald interval). The interval is not valid for parameters whose log likelihood
+        is not quadratic up to one standard error (`Fit.doubtful`); use a bootstrap for them.
         """
         if not 0.0 < number(level, "level") < 1.0:
             raise InputError(

@@ -70,8 +70,8 @@ class Fit(Estimates):
     converged, message
         Convergence flag and message of the search.
     doubtful
-        Names of the parameters whose standard error is not valid, because the likelihood is not a
-        parabola at one standard error. :func:`jbf.bootstrap` computes their errors.
+        Names of the parameters whose standard error is not valid, because the log likelihood is not
+        quadratic up to one standard error. :func:`jbf.bootstrap` computes their errors.
     fixed
         Names of the parameters that were not fitted.
     findings
@@ -89,8 +89,8 @@ class Fit(Estimates):
     `loglik` is the Gaussian log-likelihood of the residuals whitened by the estimated noise model,
     with their variance at its maximum-likelihood value s^2:
     ``-2 loglik = n (log(2 pi s^2) + 1) + log det C``, where s^2 C is the covariance of the noise.
-    The number of parameters k counts the estimated ones only (`var_names`), neither those that are
-    held nor those of the noise. ``aic = 2 k - 2 loglik`` (Akaike 1974) and
+    The number of parameters k is that of the estimated ones (`var_names`), without held parameters
+    and those of the noise. ``aic = 2 k - 2 loglik`` (Akaike 1974) and
     ``bic = k log(n) - 2 loglik`` (Schwarz 1978) compare fits to the same samples. Robust weights
     are treated as known.
 
@@ -161,7 +161,7 @@ class Fit(Estimates):
         return self.model.predict(run)
 
     def report(self) -> str:
-        """Return `summary`: statistics, parameters with errors, and the strongest correlations."""
+        """Return statistics, parameters with errors and the strongest correlations as text."""
         return self.summary()
 
     def _facts(self) -> Mapping[str, Any]:
@@ -263,8 +263,8 @@ def fit(
     law, clock
         Base law and its clock.
     start, fixed
-        Values by parameter name to start from, or to hold. Other starting values are those of the
-        catalogue or, for a law in newtons, are estimated from the data.
+        Starting values, and values of held parameters, by parameter name. Other starting values are
+        those of the catalogue or, for a law in newtons, estimates from the data.
     bounds
         Pairs (low, high) by parameter name, within the bounds of the catalogue. A parameter that
         ends at a bound has no standard error.
@@ -291,10 +291,10 @@ def fit(
     Notes
     -----
     The estimates minimise ``sum(e(y - f(p))^2)`` over the whitened residuals e. The noise is white
-    plus a first-order coloured part where the residual shows colour and plain least squares agrees
-    (`Fit.noise`). Huber's weights (Huber 1964) or those of Student's t (Lange et al. 1989) are used
-    where they have the smaller held-out error. The standard errors are those of Newey & West (1987)
-    where the whitened residuals are correlated.
+    plus a first-order coloured part if the residual is autocorrelated and the estimates hardly
+    differ from those of ordinary least squares (`Fit.noise`). Huber's weights (Huber 1964) or those
+    of Student's t (Lange et al. 1989) are used if they reduce the held-out error. The standard
+    errors are those of Newey & West (1987) if the whitened residuals are correlated.
 
     Examples
     --------

@@ -58,8 +58,9 @@ LEAST_INTENSITY = 1e-4
 def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
     """Return the generalised least-squares solution, and the problem with the delay corrected.
 
-    They are unchanged if the motion is exact enough and the force is on time. Where position and
-    velocity were read on two clocks, the force may be on either of them, and both are tried.
+    Both are unchanged if the errors of the motion are negligible and the force has no delay. If
+    position and velocity have different clocks, the force may have either clock, and both are
+    tried.
     """
     motions = [p.motion.errors for p in problem.campaign.prepared]
     if any(e is None for e in motions):
@@ -70,7 +71,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
     between_s = float(np.median([e.velocity_delay_s for e in errors]))
     clocks = [0.0] if between_s == 0.0 or TAU in problem.names else [0.0, between_s]
     ends = [_iterated(problem, solution, clock_s) for clock_s in clocks]
-    # The steps in a delay may lead away from the minimum.
+    # Steps in the delay may increase the deviance.
     ends += [
         _iterated(problem, solution, c, delays=False)
         for c, e in zip(clocks, ends, strict=True)
@@ -96,10 +97,10 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 
 
 def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Estimate the errors of the motion again for a model with more effects, and fit once.
+    """Estimate the errors of the motion for a model with more effects, and refit once.
 
-    Their noise, scale and smoothness are estimated. A delay that was corrected is projected out as
-    before.
+    The noise of the force, and scale and smoothness of the motion's errors, are estimated. A
+    corrected delay is projected out of the residuals as before.
     """
     before = problem.campaign.samples.motion
     delayed = before is not None and before.by_delay is not None
@@ -127,7 +128,7 @@ class _End:
 
     @cached_property
     def deviance(self) -> float:
-        """Minus twice the log likelihood, scaled to the samples before the force was shifted."""
+        """Minus twice the log likelihood, scaled to the number of samples before the shift."""
         solution = self.solution
         samples = self.first.samples_at(solution.values)
         motion = estimate_motion_errors(self.problem, solution)
@@ -180,7 +181,7 @@ def _with_smoothing(end: _End) -> Array:
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
     """Return the problem with the noise intensity of the motion that maximises the likelihood.
 
-    A force determines an acceleration better than differences of positions do.
+    The force contains more information on the acceleration than the positions do.
     """
     if not problem.campaign.force_has_clock:
         return problem, solution
@@ -233,9 +234,9 @@ def _rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> 
 def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMotion:
     """Estimate sensitivities at a solution, the noise, and the scale of the motion's errors.
 
-    Noise and scale maximise the likelihood. The scale corrects the smoother's standard errors,
-    which are too large if the motion is smoother than the assumed noise process. Its logarithm has
-    a normal prior, so that it stays at 1 where the motion's errors are negligible.
+    Noise and scale maximise the likelihood. The scale corrects the standard errors of the smoother,
+    which are too large if the motion is smoother than the assumed noise process. The logarithm of
+    the scale has a normal prior, so that the scale is 1 if the motion's errors are negligible.
     """
     prepared = problem.campaign.prepared
     predicted = [p.friction - r for p, r in zip(prepared, solution.residuals, strict=True)]
@@ -251,8 +252,7 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
             )
     mass = coasting(problem.campaign.rig)
     if mass is not None:
-        # The force is derived from the deceleration, so an error of the acceleration is in the
-        # record too.
+        # The force is derived from the deceleration and contains the errors of the acceleration.
         for derivatives in sensitivity:
             derivatives[:, 2] += mass
     weights = solution.samples.weight
@@ -267,9 +267,9 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
     def deviance(x: Array) -> float:
         return _penalised(problem, at(x), solution.residuals, weights)
 
-    from scipy.optimize import minimize  # half a second to import
+    from scipy.optimize import minimize  # import time of half a second
 
-    # With little noise the motion's errors explain the whole residual: a second minimum.
+    # A second minimum exists at low noise, where the motion's errors explain the whole residual.
     starts = [
         np.array([noise, scale])
         for noise in (-1.0, -3.0, LEAST_NOISE + 1.0)

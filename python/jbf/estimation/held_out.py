@@ -1,7 +1,7 @@
-"""Held-out errors: prediction of samples that the fit did not use, each held out once.
+"""Held-out errors: prediction errors at samples that a fit did not use.
 
-Runs are held out in turn; with many runs, several at a time. A single run, and a run beyond the
-range of all others, is divided into parts of which alternate ones are held out.
+Each run is held out once; with many runs, several runs are held out at a time. A single run, and a
+run beyond the range of all others, is divided into parts, and alternate parts are held out.
 """
 
 from __future__ import annotations
@@ -94,8 +94,8 @@ def errors_by_run(
     Parameters
     ----------
     deviations
-        Whether the errors contain the random effects of their run. Without them, models are
-        compared by what they predict, since no model predicts these deviations.
+        Whether the errors contain the random effects of their run, which no model predicts. Models
+        are compared without them.
     counted
         Samples that count, for the comparison of models that exclude different samples.
     """
@@ -134,9 +134,10 @@ def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
 
 
 def indispensable_runs(problem: Problem, solution: Solution) -> frozenset[int]:
-    """Runs that alone identify some parameter.
+    """Indices of the runs without which at least one parameter is not identifiable.
 
-    A fit to the other runs cannot predict what this parameter does; a fit with half of the run can.
+    A fit to the other runs does not estimate this parameter. A fit to the other runs and half of
+    this run does.
     """
     count = len(problem.campaign.prepared)
     if count == 1:
@@ -256,7 +257,7 @@ def _predicted(
         target = problem.encode(solution.values) + step_x
         step = problem.decode(target, solution.values)
         inside = np.allclose(problem.encode(step), target, rtol=0.0, atol=1e-9)
-        # With many maxima, a step does not show which one the remaining runs would reach.
+        # With many maxima of the likelihood, a fit to the remaining runs may reach another one.
         smooth = solution.converged and not any(find_effect(e).peaks for e in solution.effects)
         if inside and smooth and square <= SHORT**2 * len(step_x):
             residuals = problem.residuals(step, group)
@@ -278,7 +279,7 @@ def _fitted(part: Problem, kept: Samples, start: Array, solution: Solution) -> A
 
 
 def _straight(solution: Solution, step_x: Array, group: list[int], residuals: list[Array]) -> bool:
-    """Whether the predictions of runs change along a step as their derivatives predict."""
+    """Whether the predictions of the runs are linear in the parameters along a step."""
     error, moved, size = 0.0, 0.0, 0.0
     for i, refitted in zip(group, residuals, strict=True):
         counted = solution.samples.counted[i]
@@ -290,10 +291,10 @@ def _straight(solution: Solution, step_x: Array, group: list[int], residuals: li
 
 
 def _groups(campaign: Campaign) -> list[list[int]]:
-    """Groups of runs that are held out together, each with the same kinds of motion as the others.
+    """Groups of runs that are held out together, with similar kinds of motion in each group.
 
-    The runs are distributed by direction, top speed and name, so the groups do not depend on the
-    order of the runs.
+    The runs are distributed by direction, top speed and name, so that the groups do not depend on
+    the order of the runs.
     """
     speeds = [p.motion.velocity for p in campaign.prepared]
     order = sorted(

@@ -6,10 +6,10 @@ the others is an extrapolation (`extrapolated_runs`).
 
 Notes
 -----
-A prediction error counts against a model to the extent that the model claims precision. The
-uncertainty of the parameters makes a prediction uncertain in the directions of its derivatives, and
-errors in these directions have little weight. The determinant of this covariance is the penalty
-(Geisser & Eddy 1979; Bjornstad 1990).
+The covariance of a predictive density is that of the noise plus that due to the uncertainty of the
+parameters. Prediction errors in the directions of the derivatives with respect to uncertain
+parameters therefore have little weight. The log determinant of the covariance is the penalty for
+this uncertainty (Geisser & Eddy 1979; Bjornstad 1990).
 """
 
 from __future__ import annotations
@@ -64,8 +64,8 @@ class _Moments:
     def of(cls, part: HeldOutPart, solution: Solution, samples: Samples, noise: Noise) -> _Moments:
         jacobian = [solution.jacobian[i] for i in part.runs]
         e, j = samples.only(part.runs).stacked(part.residuals, jacobian, noise)
-        # Select after the whitening: the first innovation of a half depends on the sample before
-        # it.
+        # Select after the whitening, because the first innovation of a held-out part depends on
+        # the preceding sample.
         weight = [samples.weight[i] > 0.0 for i in part.runs]
         held_out = np.concatenate([m[w] for m, w in zip(part.masks, weight, strict=True)])
         e, j = e[held_out], j[held_out]
@@ -123,7 +123,7 @@ def _part_deviance(part: _Moments, total: Array, variance: float, prior: float) 
 
 
 def stroke_of(p: Prepared) -> Strokes:
-    """Number of the stroke of each sample; -1 where it is not known to move.
+    """Number of the stroke of each sample; -1 if the sample is not known to be in motion.
 
     A stroke ends where the motion reverses.
     """
@@ -167,8 +167,8 @@ def independent_units(
 class ExtrapolatedRun:
     """A run that is beyond the range of all others.
 
-    The prediction of a fast run from slower ones is an extrapolation. Its error depends on the form
-    of the law more than on the fit, and is not a held-out error.
+    The prediction of a fast run from slower ones is an extrapolation. The error of this prediction
+    depends more on the form of the law than on the fit, and is not used as a held-out error.
 
     Attributes
     ----------

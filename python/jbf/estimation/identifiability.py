@@ -1,8 +1,8 @@
-"""Parameters that the runs do not identify: they are held, and a note states the reason.
+"""Parameters that are not identifiable: they are held, and a note states the reason.
 
-The value of a held parameter is used for prediction only and is not an estimate. A search may move
-it anywhere, and a reader, a model file or firmware would interpret the arbitrary number. It is
-therefore reset to a neutral value, unless that changes the prediction at the samples that count.
+The value of a held parameter is used for prediction only and is not an estimate. A search may end
+at an arbitrary value of such a parameter. The value is therefore reset to a neutral one, unless the
+reset changes the prediction at the samples that count.
 """
 
 from __future__ import annotations
@@ -55,14 +55,14 @@ value. It is a numerical resolution.
 def reason_not_identifiable(
     page: Parameter, value: float, error: float, *, sensitive: bool = True, separate: bool = True
 ) -> str | None:
-    """Why the runs do not identify a fitted parameter; None if they do.
+    """Reason why a fitted parameter is not identifiable; None if it is identifiable.
 
     Parameters
     ----------
     value, error
         Value and standard error in the parameter's unit; the error is nan if it is unknown.
     sensitive
-        Whether anything in these runs depends on the parameter.
+        Whether the predictions for the runs depend on the parameter.
     separate
         Whether the parameter can be distinguished from all other parameters.
     """
@@ -77,14 +77,14 @@ def reason_not_identifiable(
 def _exceeds_itself(page: Parameter, value: float, error: float) -> str | None:
     """Return a note if the error of a scale exceeds its value, else None.
 
-    A scale has no sign, so such an error leaves its size undetermined. A signed parameter may be
-    zero within its error.
+    A scale is positive, so its order of magnitude is undetermined if the error exceeds the value. A
+    signed parameter may be zero within its error.
     """
     if not (page.log or page.lower == 0.0) or not error > abs(value):
         return None
     reason = f"not determined: its standard error, {error:.2g}, exceeds its value"
     most = value + ONE_SIDED * error
-    # For a logarithmic parameter with such an error, no interval holds on either side.
+    # For a logarithmic parameter with such an error, neither limit of the interval is valid.
     if page.log or most >= page.upper:
         return reason
     return f"{reason}; it is below {most:.2g}"
@@ -97,7 +97,7 @@ def idle_effects(
     errors: Mapping[str, float] | None = None,
     fixed: Collection[str] = (),
 ) -> tuple[str, ...]:
-    """Effects that a fit left at their null, where they change nothing.
+    """Effects whose fitted parameters are at their null, where the effect has no influence.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def _idle_to_null(
     errors: StandardErrors,
     start: Mapping[str, float],
 ) -> Reset:
-    """Set the effects that a fit left at their null to it exactly."""
+    """Set the parameters of idle effects to exactly their null."""
     by_name = {problem.names[i]: errors.error(k) for k, i in enumerate(problem.open)}
     idle = idle_effects(
         problem.effects, problem.parameters, solution.values.tolist(), by_name, problem.fixed
@@ -207,7 +207,7 @@ def _idle_to_null(
 
 
 def _neutral(problem: Problem, name: str, values: Array) -> float:
-    """Value at which a parameter changes nothing, or its starting value.
+    """Value at which a parameter has no influence, or its starting value.
 
     A breakaway force without evidence of a peak equals the sliding force.
     """
@@ -220,7 +220,7 @@ def _neutral(problem: Problem, name: str, values: Array) -> float:
 def _moved_towards(page: Parameter, value: float, target: float, share: float) -> float:
     """Move a value by a fraction of the distance to `target`, in the search variable.
 
-    An infinite `target` is reached only with a fraction of one.
+    An infinite `target` is reached only if the fraction is one.
     """
     if share == 1.0 or not np.isfinite(target):
         return target if share == 1.0 else value

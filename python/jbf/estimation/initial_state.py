@@ -1,9 +1,9 @@
-"""Initial-state transient: how long a model remembers the unrecorded state at the start of a run.
+"""Initial-state transient: duration of the influence of the unrecorded state at the start of a run.
 
-A film, the age of a contact, a contact that deflects, and a load cell with backlash start a run in
-an unknown state. The state is forgotten as the shaft moves, or as the force reverses. The model
-gives the duration: two simulations of a run that start from opposite states differ as long as the
-state is remembered.
+A film, the age of a contact, a contact that deflects, and a load cell with backlash have an unknown
+state at the start of a run. The influence of this state decays as the shaft moves, or ends as the
+force reverses. Its duration is the time during which two simulations of the run from opposite
+initial states differ.
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ class Memory:
 def initial_memory(
     law: str, effects: Iterable[str], settings: TransientSettings = DEFAULT.transient
 ) -> Memory | None:
-    """Return the memory of the initial state of a run by a law and its effects; None without."""
+    """Return the memory of a law and its effects for the initial state; None if they have none."""
     page, s = find_law(law), settings
     by_speed = page.has_memory and not page.has_bristle
     if has_unknown_start(effects):
-        # A film that builds up or breaks down pushes the load cell in one direction or the other.
+        # The initial state of a film determines the side of the backlash on which the load cell is.
         speeds = (*(s.film_speeds if by_speed else ()), *s.contact_speeds)
         return Memory(speeds, s.contact_margin, np.inf, s.max_share_backlash)
     if page.has_bristle:
@@ -60,7 +60,7 @@ def initial_memory(
 
 
 def has_unknown_start(effects: Iterable[str]) -> bool:
-    """Whether one of the effects has an unknown initial state of its own."""
+    """Whether at least one of the effects has an unknown initial state."""
     return any(find_effect(name).unknown_start for name in effects)
 
 
@@ -72,12 +72,12 @@ def transient_masks(
     noise_rms: float,
     settings: TransientSettings = DEFAULT.transient,
 ) -> list[Mask]:
-    """Mask of the samples at which a run still remembers its initial state, one a run.
+    """Mask of the samples that depend on the initial state of their run, one mask per run.
 
     Parameters
     ----------
     values
-        Parameters of a model that fits roughly.
+        Parameter values of an approximate fit.
     noise_rms
         Noise on the friction, N.
     """
@@ -100,7 +100,7 @@ def transient_masks(
 
 
 def _transient_mask(p: Prepared, differs: Mask, memory: Memory) -> Mask:
-    """Mask of the first interval in which two initial states differ, extended for safety."""
+    """Mask of the first interval in which two simulations differ, extended by a margin."""
     index = np.flatnonzero(differs)
     if not len(index):
         return np.zeros(len(differs), dtype=bool)

@@ -1,15 +1,15 @@
 """Samples next to a jump of the friction whose time is uncertain.
 
 Friction jumps at a reversal of the motion. The record does not determine the sign of the samples
-there, and they do not count (`Samples`). An effect that moves the jump (a delayed record, or
-backlash to be crossed first) moves this uncertainty with it. The model then has a ramp over one
-sample where the record has a jump within it. The error is about half of the change over the
-sample: a fit weights the sample by it, and tests exclude the sample.
+there, and these samples do not count (`Samples`). An effect that shifts the jump in time (a delay
+or backlash) also shifts the uncertain samples. The model then has a ramp over one sampling interval
+where the record has a jump within the interval. The prediction error is about half of the change
+over the interval. It reduces the weight of the sample in a fit, and tests exclude the sample.
 
-If an effect spreads a jump over time, the error of the jump's time is spread with it. This error is
-the standard error of the speed over the acceleration. The prediction error in newtons is the change
-of the reading during that time; it weights the samples in a fit. Tests exclude them where it is a
-large part of the noise.
+If an effect spreads a jump over time, more samples are affected by the error of the jump's time.
+This error is the standard error of the speed divided by the acceleration. The prediction error, N,
+is the change of the reading during the error of the time. It reduces the weights of the samples in
+a fit. Tests exclude samples for which it is a large part of the noise.
 """
 
 from __future__ import annotations
@@ -81,8 +81,8 @@ def samples_near_jumps(
 ) -> Samples:
     """Return the samples with weights adapted to the jumps of the predictions.
 
-    They are unchanged if the effects neither move jumps nor spread them. The effects must not be at
-    their null.
+    The weights are unchanged if the effects neither move jumps nor spread them. The effects must
+    not be at their null.
     """
     moves, spreads = moves_jumps(effects), spreads_jumps(effects)
     if not (moves or spreads):
@@ -103,7 +103,7 @@ def samples_near_jumps(
 def _without_jumps(
     p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
-    """Mask without the samples next to a jump, and weights for an error of half its size."""
+    """Mask without samples next to a jump, and weights for an error of half of the jump."""
     change = jumps(prediction, settings)
     kept = counted & (change == 0.0)
     return kept, weight * _share(0.5 * change, _residual_rms(p, kept, prediction))
@@ -112,7 +112,7 @@ def _without_jumps(
 def _without_reversals(
     p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
-    """Samples without those behind a reversal of uncertain time, and weights for its error."""
+    """Mask without samples after a reversal of uncertain time, and weights for the error."""
     noise_rms = _residual_rms(p, counted, prediction)
     error_n = timing_errors(p, prediction, settings.max_timing_error * noise_rms)
     return counted & (error_n == 0.0), weight * _share(error_n, noise_rms)
@@ -123,7 +123,7 @@ def _residual_rms(p: Prepared, kept: Mask, prediction: Array) -> float:
 
 
 def _share(error_n: Array, noise_rms: float) -> Array:
-    """Weight of a sample whose prediction has this error in addition to the noise."""
+    """Weight of a sample whose prediction has an error `error_n` in addition to the noise."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.where(error_n > 0.0, noise_rms / np.hypot(noise_rms, error_n), 1.0))
 

@@ -1,7 +1,7 @@
-"""Linear least squares by blocks of rows, with a limited use of memory.
+"""Linear least squares by blocks of rows, with limited memory.
 
-The derivatives of a recording of days alone would fill the memory of a machine. They are computed
-run by run, and reduced to triangular factors.
+The derivatives of a long recording may exceed the memory. They are computed run by run and reduced
+to triangular factors.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def triangular(r: Array, j: Array) -> tuple[Array, Array]:
 
 
 def least_squares(design: Array, target: Array) -> Array:
-    """Shortest least-squares step in the columns of a design, each scaled to unit length."""
+    """Minimum-norm least-squares solution for a design with columns scaled to unit length."""
     size = np.linalg.norm(design, axis=0)
     size[size <= 0.0] = 1.0
     reduced, axes = triangular(target, design / size)

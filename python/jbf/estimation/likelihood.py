@@ -24,7 +24,7 @@ Array = npt.NDArray[np.float64]
 
 
 def likelihood_gain(richer: Solution, simpler: Solution) -> float:
-    """Log-likelihood gain; each sample has the smaller of the weights of the two models."""
+    """Log-likelihood gain, with the smaller of the two models' weights for each sample."""
     if richer.samples is simpler.samples:
         return simpler.cost - richer.cost
     shared = common_samples(richer.samples, simpler.samples)
@@ -79,8 +79,8 @@ def effective_share(solution: Solution) -> float:
 def share_of_gain(richer: Solution, simpler: Solution) -> float:
     """Factor on a log-likelihood gain for innovations that are not white, at most one.
 
-    It is the smaller of two estimates. One uses all autocorrelations; the other uses the long-run
-    variance of the score in the direction in which the two solutions differ.
+    The factor is the smaller of two estimates. One is computed from all autocorrelations, the other
+    from the long-run variance of the score in the direction in which the two solutions differ.
     """
     samples = common_samples(richer.samples, simpler.samples)
     pairs = _innovation_pairs(richer, simpler, samples)
@@ -134,9 +134,10 @@ def independent_share(
 ) -> float:
     """Number of independent samples per sample of the given innovations, 0 to 1.
 
-    Innovations of noise alone are white. Those of a wrong model are not, and n of them carry the
-    information of fewer samples (Bartlett 1946). The autocorrelations are summed until they are
-    insignificant, or longer than the longest correlation time of noise.
+    The innovations of a correct model are white. Those of a wrong model are autocorrelated, and n
+    of them contain the information of fewer independent samples (Bartlett 1946). The
+    autocorrelations are summed up to the first insignificant one or the longest correlation time of
+    noise.
     """
     count = max(sum(len(e) for e in innovations), 1)
     longest = int(settings.longest_memory_s / min(steps)) + 1
@@ -155,10 +156,10 @@ def independent_share(
 
 
 def score_gain(problem: Problem, values: Array, near: Solution) -> float:
-    """Score test of a model at its null.
+    """Score test statistic of a model at its null.
 
-    It returns the log-likelihood gain predicted for one full Gauss-Newton step from `values`, with
-    the noise of a nearby solution.
+    The statistic is the log-likelihood gain predicted for one full Gauss-Newton step from `values`,
+    with the noise of the solution `near`.
     """
     return promised_gain(*problem.gauss_newton_rows(values, near.samples, near.noise))
 

@@ -1,9 +1,9 @@
-"""Minimum of the least squares of a model, from its starting points to convergence.
+"""Minimisation of the sum of squares of a model, from its starting points to convergence.
 
-`Approach` ranks the starting points and follows the best one, assuming white noise. It may be
-interrupted after a first look, which estimates the log-likelihood gain of a model for a quarter of
-the computation. `settle` converges with coloured noise; `search_peaks` looks for a higher maximum
-of the likelihood where an effect causes many.
+`Approach` ranks the starting points and continues from the best one, assuming white noise. It may
+end after a few steps (`Look`), which estimate the log-likelihood gain of a model in a quarter of
+the computing time. `settle` converges with coloured noise. `search_peaks` searches for a higher
+maximum of the likelihood if an effect causes several maxima.
 """
 
 from __future__ import annotations
@@ -89,12 +89,13 @@ class Approach:
     Parameters
     ----------
     seeds
-        Known values by name; starting values fill up each seed.
+        Known values by name; the other parameters have their starting values.
     each
-        Follow the best starting point of each seed instead of the best of all.
+        Continue from the best starting point of each seed instead of the best of all.
     stepped
-        One additional starting point: the end of a step from a smaller model. Starting values suit
-        a strong effect; a weak one may lie on the far side of a maximum of the objective.
+        One additional starting point: the end of a step from a smaller model. The starting values
+        are those of a strong effect. The minimum of a weak effect may be separated from them by a
+        maximum of the objective.
     """
 
     def __init__(
@@ -152,11 +153,11 @@ class Approach:
         return self._squares[key]
 
     def look(self, near: Solution) -> Look:
-        """Take a few steps from the best start of the first seed; compare with a smaller model."""
+        """Compute the gain over `near` after a few steps from the best start of the first seed."""
         problem, thinned, visited = self.problem, self.thinned, self.visited
         samples = thinned.campaign.samples
         search(thinned, samples, self._nearest, WHITE, LOOKED, visited=visited)
-        # The subsequent search takes the same path and must not count as having joined this one.
+        # The next search visits the same points and must not end there as a duplicate search.
         visited.ended.clear()
         points = list(visited.points.values())
         lowest = min(points, key=lambda point: point.square)
@@ -167,7 +168,8 @@ class Approach:
         lines = visited.lines_at(lowest.values) if thinned is problem else None
         visited.lowest = None
         if near.noise.colour > 0.0:
-            # Next to smooth noise, a small reduction by a sharp feature is a large gain.
+            # In noise of low frequency, an effect of high frequency has a large gain even if it
+            # reduces the sum of squares only slightly.
             if lines is None:
                 return Look(lowest.values, gain, np.inf, None)
             before = float(np.sum(near.stacked()[0] ** 2))
@@ -198,11 +200,11 @@ class Approach:
         evaluations
             Maximum number of evaluations; enough to rank candidates, or to converge.
         least
-            Sum of squares, N^2, that the first steps must fall below; otherwise the search is not
-            continued.
+            Upper limit of the sum of squares, N^2, after the first steps; otherwise the search is
+            not continued.
         followed, steps, method
-            Number of starting points tried, evaluations for each of them before only the best one
-            is followed, and method of these first searches.
+            Number of starting points, number of evaluations for each of them before only the best
+            search is continued, and method of these first searches.
         """
         problem, thinned, visited = self.problem, self.thinned, self.visited
         thinned_samples, starts = thinned.campaign.samples, self.starts
@@ -245,7 +247,7 @@ def approach(
     steps: int = TRIAL_EVALUATIONS,
     method: Method = "dogbox",
 ) -> Solution:
-    """Run a complete approach: rank the starting points, then follow the best one."""
+    """Rank the starting points, and search from the best one assuming white noise."""
     return Approach(problem, seeds).follow(
         evaluations, followed=followed, steps=steps, method=method
     )
@@ -277,7 +279,7 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
         end = search(problem, samples, end.values, WHITE, MAX_EVALUATIONS)
         noise = noise_at(problem, samples, end.values)
     if near.samples is not samples:
-        # The search first uses jumps at full weight, and then converges with their reduced weight.
+        # Search first with full weights, then with reduced weights of samples next to jumps.
         weighted = problem.samples_at(end.values)
         unconverged = problem.solution(end.values, weighted, noise, False, end.message)
         return settle(problem, unconverged, weighted)
@@ -291,7 +293,7 @@ def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> 
 
 
 def search_peaks(problem: Problem, near: Solution) -> Solution:
-    """Search the highest maximum of the likelihood near a solution, where an effect causes many."""
+    """Search for the highest maximum of a likelihood with several maxima near a solution."""
     for effect in problem.effects:
         peak = find_effect(effect).peaks
         name = f"{effect}.{peak}"
@@ -331,8 +333,8 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
 def not_above_nested(problem: Problem, solution: Solution) -> Solution:
     """Return the solution, or a better one found from the optimum of the law without its effects.
 
-    A model with effects contains the law: with the effects at their null it predicts the same. A
-    search that ends above the optimum of the law has therefore stopped in a local minimum.
+    The law is nested in a model with effects: with the effects at their null, the predictions are
+    equal. A search that ends above the optimum of the law has therefore reached a local minimum.
     """
     if not problem.effects:
         return solution

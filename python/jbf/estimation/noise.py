@@ -1,4 +1,4 @@
-"""Noise model of the instrument: white noise and a coloured part with its own correlation time.
+"""Noise model of the instrument: white noise and a coloured part with a correlation time.
 
 The residual of a correct model is noise. It is described as white noise plus a first-order
 coloured part (correlation time tau), which is an ARMA(1,1) process at uniform steps. Its one-step
@@ -140,9 +140,9 @@ def estimate_noise(
 ) -> Noise:
     """Estimate the noise model with the smallest innovations of the given residuals.
 
-    The noise is white unless colour exceeds its threshold. The standard deviation of the coloured
-    part is limited to `most_n`, N, where that is known. The error of a wrong model is as smooth as
-    coloured noise, and would be absorbed by it.
+    The noise is white unless the gain of a coloured part exceeds its threshold. The standard
+    deviation of the coloured part is limited to `most_n`, N, if it is given. Without this limit,
+    the noise model would absorb the smooth error of a wrong model.
     """
     shortest = 2.0 * min(steps)
     longest = max(settings.longest_memory_s, 2.0 * shortest)
@@ -161,7 +161,7 @@ def estimate_noise(
         slope, curvature = _cost_derivatives(unpack(x), residuals, steps, masks)
         unit = special.expit(x)
         inner = unit * (1.0 - unit) * [high - low, 1.0]
-        # The small diagonal keeps the step at zero where nothing changes.
+        # The small diagonal regularises the step for variables without influence on the cost.
         return slope * inner, curvature * np.outer(inner, inner) + 1e-6 * np.eye(2)
 
     def slope(x: Array) -> Array:

@@ -22,14 +22,14 @@ Mask = npt.NDArray[np.bool_]
 def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     """Standard deviation of the noise on the friction record, N, from the data only.
 
-    Runs whose force is a command, or was filtered, do not show the noise. The result is zero if all
-    runs are of this kind: the floor is then unknown.
+    Runs whose force is a command or was filtered do not contain the noise. The result is zero if
+    all runs are of this kind: the noise floor is then unknown.
 
-    The white part is estimated from third differences of the record. It is at least the
+    The white part is estimated from third differences of the record. Its lower limit is the
     quantisation error of a converter (Widrow 1956), because with coarse quantisation most readings
-    equal those before them. A coloured part does not appear in differences. It appears where the
-    same motion repeats a period later, and where the shaft rests. The larger estimate is used where
-    it is clearly larger.
+    equal the preceding ones. A coloured part does not contribute to third differences. It is
+    estimated from repeated periods of the motion and from rests. The total is used if it clearly
+    exceeds the white part.
     """
     noisy = [i for i, p in enumerate(prepared) if p.has_noise]
     if not noisy:
@@ -54,7 +54,7 @@ def _white(prepared: Sequence[Prepared], samples: Samples) -> float:
     squares = []
     for p, counted in zip(prepared, samples.counted, strict=True):
         values, dither_square = _dithered(p)
-        # With steps that are coarse relative to the noise, readings repeat; their error remains.
+        # With coarse quantisation, readings repeat and only the quantisation error is known.
         squares.append(max(noise_of(values[counted]) ** 2 - dither_square, dither_square))
     counts = [int(c.sum()) for c in samples.counted]
     return float(np.sqrt(np.average(squares, weights=counts))) if any(counts) else 0.0
@@ -144,7 +144,7 @@ def period_samples(velocity: Array, settings: PeriodSettings = DEFAULT.periods) 
     )
     if not len(tops):
         return None
-    # The first repetition of about the highest correlation, rather than a multiple of it.
+    # Select the first of the highest peaks: later ones are at multiples of the period.
     peak = int(tops[np.flatnonzero(rho[tops] > 0.98 * np.max(rho[tops]))[0]])
     # For a record with an incomplete last period, the correlation peaks slightly off the period.
     reach = max(peak // 30, 2)

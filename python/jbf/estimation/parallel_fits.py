@@ -1,7 +1,7 @@
 """Parallel fits in threads.
 
-The core releases the interpreter lock, so that one fit can run in the core while another is between
-two calls. Each fit is an independent task: the results are bit-identical to sequential ones.
+The compiled core releases the global interpreter lock, so that several fits can run in it at the
+same time. Each fit is an independent task: the results are bit-identical to sequential ones.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ It limits the effort only.
 def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
     """Number of parallel fits for a campaign.
 
-    One fit at a time is used where the matrices of long records fill the memory. User-defined
-    functions are not run in parallel either, since they may have an internal state.
+    The number is one if the matrices of long records fill the memory. It is also one for
+    user-defined functions, since they may have an internal state.
     """
     user_defined = isinstance(find_law(law), UserLaw)
     user_defined = user_defined or any(isinstance(find_effect(n), UserEffect) for n in effects)

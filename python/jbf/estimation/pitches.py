@@ -1,14 +1,15 @@
 """Spatial periods (pitches) at which the force of a drive repeats: starting values for their fit.
 
-The likelihood of a pitch has one maximum for each pitch that the travel can resolve, and its width
-decreases with the length of the travel. A search from a distant start finds none of them. The force
-is therefore first corrected for its dependence on speed, on acceleration and, once a turn, on
-angle, whatever the law. The highest lines of the spatial spectrum of the remainder are the starting
-values.
+The likelihood of a pitch has one maximum for each pitch that the travel can resolve. The width of
+the maxima decreases with the length of the travel, so that a search from a distant start does not
+converge to the highest one. The starting values are therefore the highest lines of the spatial
+spectrum of the force. The dependence of the force on speed, on acceleration and, once per turn, on
+angle is removed before, independently of the law.
 
-The search has a penalty. In noise, the highest line of all resolvable pitches gains
-`2 log(pitches)` in twice the log likelihood. There are fewer pitches than samples, and an effect
-with amplitude, phase and pitch pays `3 log(samples)` for its three parameters.
+The maximum over all pitches increases the gain by chance. In noise, the highest line of all
+resolvable pitches has a gain of `2 log(pitches)` in twice the log likelihood. There are fewer
+pitches than samples, and the threshold contains a penalty of `3 log(samples)` for amplitude, phase
+and pitch.
 """
 
 from __future__ import annotations
@@ -54,8 +55,7 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
     Parameters
     ----------
     along
-        Use the force in the direction of motion, which reverses with it; otherwise the force
-        itself.
+        Whether the force in the direction of motion is used instead of the force itself.
     """
     by_direction = _pitches_of.setdefault(campaign, {})
     if along not in by_direction:
@@ -66,7 +66,7 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
 def longest_pitch(campaign: Campaign) -> float:
     """Longest pitch that fits often enough into the travel of the runs, m.
 
-    It is infinite for runs without travel.
+    The pitch is infinite for runs without travel.
     """
     angles = np.concatenate([p.motion.angle_rad[moving] for p, moving in campaign.moving])
     span = float(np.ptp(angles)) * campaign.arm_m if len(angles) else 0.0
@@ -113,7 +113,8 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
         if power[k] <= 0.0:
             break
         highest.append(float(span / periods[k]))
-        # A position that is passed often gives a high line side lobes as high as a lower line.
+        # With unequal numbers of passes over the positions, side lobes of a high line may exceed a
+        # lower line.
         signal = signal - _wave(signal, place, highest[-1])
         resolved[max(k - 2 * PADDING, 0) : k + 2 * PADDING + 1] = False
     return tuple(highest)

@@ -1,4 +1,4 @@
-"""One run prepared for many fits: its estimated motion, and the motion as an object of the core."""
+"""A run prepared for many fits, with its estimated motion as an object of the compiled core."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ It is a numerical resolution.
 def slides(motion: EstimatedMotion) -> Mask:
     """Mask of the samples where friction has a known direction, shape (n,).
 
-    At rest, friction is any force up to the breakaway level in either direction: it balances the
-    force of the drive. Such a sample has no residual, nor has a sample near a reversal.
+    At rest, friction balances the force of the drive up to the breakaway level in either direction.
+    The residual is therefore undefined at rest. It is also undefined near a reversal.
     """
     return np.asarray(motion.sign_known & ~motion.resting)
 
@@ -128,7 +128,7 @@ class Prepared:
         InputError
             The run lacks a friction column.
         NoMotion
-            Nothing moves in the run.
+            The run contains no motion.
         """
         run = as_read(run_on(rig, run))
         moved = coasting(rig)
@@ -261,9 +261,9 @@ class Prepared:
         return Driven(driven.motion, kept if driven.kept is None else driven.kept[kept])
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state for another process, without the core object.
+        """Return the state for pickling, without the object of the compiled core.
 
-        The core object is created again there.
+        The object is created again after unpickling.
         """
         return {name: value for name, value in vars(self).items() if name != "core"}
 

@@ -1,7 +1,7 @@
 """A campaign, a law and effects: predictions and derivatives in the search variables.
 
-The search variable of a scale parameter is its logarithm: a step is then a ratio, and cannot change
-the sign.
+The search variable of a scale parameter is its logarithm, so that the parameter remains positive
+and a step is a ratio.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ class Problem:
         decoded = x.copy()
         # The search may evaluate far outside the bounds before it is limited.
         decoded[log] = np.exp(np.minimum(x[log], 700.0))
-        # A logarithm and its inverse may lead outside by a rounding error.
+        # Rounding errors of a logarithm and its inverse may exceed the bounds.
         values[self.open] = np.clip(decoded, self.lower[self.open], self.upper[self.open])
         return values
 
@@ -237,12 +237,12 @@ class Problem:
         return samples_near_jumps(samples, prepared, predicted, effects)
 
     def transient_samples(self, values: Array, noise_rms: float) -> list[Mask]:
-        """Mask of the samples at which a run still remembers its initial state, one a run.
+        """Mask of the samples that depend on the initial state of their run, one mask per run.
 
         Parameters
         ----------
         values
-            Parameters of a model that fits roughly.
+            Parameter values of an approximate fit.
         noise_rms
             Noise on the friction, N.
         """
@@ -284,8 +284,8 @@ class Problem:
 def bounded(jacobian: Array, scale: Array) -> Array:
     """Derivatives with respect to the search variables; zero where they have diverged.
 
-    A step too coarse for extreme parameters may make them diverge. The search then turns back
-    because of its residuals.
+    Derivatives may diverge if the integration step is too coarse for extreme parameters. The search
+    rejects such parameters because of their large residuals.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         derivatives: Array = jacobian * scale

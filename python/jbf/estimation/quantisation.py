@@ -2,8 +2,8 @@
 
 The mean of readings with step q of a force f with Gaussian noise of standard deviation s is
 biased. The first and largest harmonic of the bias is
-`(q / pi) exp(-2 (pi s / q)^2) sin(2 pi f / q)` (Widrow 1956). This function of the force is not
-reduced by averaging, and repeats with the motion.
+`(q / pi) exp(-2 (pi s / q)^2) sin(2 pi f / q)` (Widrow 1956). The bias is a function of the force:
+it is not reduced by averaging, and repeats with the motion.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ def zero_offset(step_n: float, readings_n: Array) -> float:
 def quantisation_bias(step_n: float, noise_rms: float, force_n: Array) -> Array:
     """Quantisation bias of the mean reading, shape (n,), N.
 
-    A converter that rounds down equals one that rounds to the nearest with a zero offset of half a
-    step. The bias is the same for both, relative to the mean reading of a model with that zero.
+    A converter that rounds down is equivalent to one that rounds to the nearest step and has a zero
+    offset of half a step. Relative to this offset, the bias is the same for both.
 
     Parameters
     ----------
@@ -100,6 +100,6 @@ def noise_before_converter(step_n: float, moves_n: Array) -> float:
 
 def _same(noise: float) -> float:
     """Probability that two successive readings are equal; the noise is given in steps."""
-    sd = math.sqrt(2.0) * noise  # of the difference of two readings
+    sd = math.sqrt(2.0) * noise  # standard deviation of the difference of two readings
     mean = sd * math.sqrt(2.0 / math.pi) * -math.expm1(-0.5 / sd**2)
     return math.erf(1.0 / (sd * math.sqrt(2.0))) - mean

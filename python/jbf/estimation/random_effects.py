@@ -29,7 +29,7 @@ It is a numerical tolerance.
 def spread_between(estimates: Array, precisions: Array) -> tuple[float, float, float]:
     """Standard deviation between runs, its p-value, and Cochran's Q over its degrees of freedom.
 
-    The standard deviation is zero where the runs agree.
+    The standard deviation is zero if the runs differ by no more than their errors.
 
     Notes
     -----
@@ -39,11 +39,11 @@ def spread_between(estimates: Array, precisions: Array) -> tuple[float, float, f
     """
     mean = float(np.sum(precisions * estimates) / np.sum(precisions))
     q, free = float(np.sum(precisions * (estimates - mean) ** 2)), len(estimates) - 1
-    # Residuals are never as white as assumed, so twice the chi-square is required.
+    # Residual autocorrelation inflates Q, so twice the chi-square quantile is required.
     p_value = float(special.chdtrc(free, 0.5 * q))
     total = float(np.sum(precisions))
     scale = total - float(np.sum(precisions**2)) / total
-    # If one run has all of the precision, the others do not determine a spread.
+    # If one run has almost all of the precision, the spread is not identifiable.
     variance = (q - free) / scale if scale > ROUNDING * total else 0.0
     return float(np.sqrt(max(variance, 0.0))), p_value, q / free
 
@@ -100,7 +100,7 @@ class RandomEffects:
     ) -> float:
         """Log determinant of the correlation of the runs due to the random effects.
 
-        It is the penalty, in twice the log likelihood, for the freedom of the runs to deviate.
+        This is the penalty for the random effects in minus twice the log likelihood.
         """
         sizes = [
             self._basis(i, w, step, noise)[1]

@@ -1,8 +1,8 @@
 """Choice between plain and robust least squares by held-out error.
 
-With noise alone, all weights lead to the same estimates. If the estimates differ, either the model
-is wrong somewhere or there are outliers. The held-out error of other runs decides between these
-two cases, not the noise model. The weights affect the estimates, not only their uncertainty.
+If the residual is Gaussian noise, plain and robust estimates agree. If the estimates differ, either
+the model is wrong or the record contains outliers. The held-out error decides between these two
+cases, because the weights affect the estimates and not only their uncertainty.
 """
 
 from __future__ import annotations
@@ -63,7 +63,8 @@ def best_weighting(problem: Problem, plain: Solution) -> Solution:
 def _better(robust_errors: Array, errors: Array) -> bool:
     """Whether held-out errors are smaller: in their RMS or in their median.
 
-    The median decides where outliers dominate the RMS, provided that the RMS is not clearly larger.
+    The median is used if outliers dominate the RMS, provided that the RMS does not clearly
+    increase.
     """
     rms = float(np.sqrt(np.mean(robust_errors**2) / max(float(np.mean(errors**2)), 1e-300)))
     median = float(np.median(np.abs(robust_errors)) / max(float(np.median(np.abs(errors))), 1e-300))

@@ -1,11 +1,11 @@
 """Selection and weights of samples for a model, by run.
 
-They are decided once for a model, and used by its likelihood, its score tests and all tests of the
-residual structure. The record does not determine the sign of the friction within a few samples of a
-reversal. It is also not usable where position and speed contradict each other. Such samples do not
-count. At rest, friction balances the force of the drive up to the breakaway level. A law predicts
-no value there, so samples at rest do not count either. A model may exclude further samples
-(`jumps`). A fit uses the weight of each sample; a test uses the samples that count.
+The likelihood, the score tests and all tests of the residual structure of a model use the same
+selection and weights. A sample does not count in three cases. Within a few samples of a reversal,
+the record does not determine the sign of the friction. Position and speed may contradict each
+other. At rest, friction balances the force of the drive up to the breakaway level, and a law
+predicts no value. A model may exclude further samples (`jumps`). A fit uses the weight of each
+sample; a test uses the samples that count.
 """
 
 from __future__ import annotations
@@ -41,8 +41,9 @@ class Samples:
     counted
         True at the samples that tests, RMS and noise use, shape (n,).
     weight
-        Weight of each sample in a fit, 0 to 1, shape (n,). It is 1 where the sample counts, and
-        less next to a jump whose time is itself fitted, or where the noise is larger than usual.
+        Weight of each sample in a fit, 0 to 1, shape (n,). The weight is 1 for a sample that
+        counts. It is smaller next to a jump whose time is fitted, and for a sample with larger
+        noise.
     between
         Random effects of the runs; None if none are known.
     level

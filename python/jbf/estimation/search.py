@@ -1,9 +1,9 @@
 """Least squares on innovations from one starting point, by Gauss-Newton steps within bounds.
 
-Searches of one problem share their evaluations. A search that continues where another ended does
-not evaluate that point again. A search that reaches a point visited by another one need not
-continue. `other_peaks` finds further starting points where a parameter, such as a frequency that
-the samples cannot distinguish from others, causes many maxima of the likelihood.
+Searches of one problem share their evaluations. A search that starts at the end of another search
+does not evaluate this point again, and a search ends if it reaches a point of another search.
+`other_peaks` finds further starting points for a parameter, such as a frequency, whose likelihood
+has several maxima.
 """
 
 from __future__ import annotations
@@ -203,7 +203,7 @@ def search(
 
 
 def _key(values: Array) -> bytes:
-    """Key of parameter values without their last bits, which a logarithm and its inverse change."""
+    """Key of parameter values, insensitive to rounding errors in their last bits."""
     part, power = np.frexp(values)
     key: Array = np.ldexp(np.round(np.ldexp(part, 44)), power - 44)
     return key.tobytes()

@@ -1,8 +1,9 @@
 """Standard errors of the free parameters of a fit, and their validity.
 
-They follow from the curvature of the likelihood. Where the noise model does not describe the
-residual, they contain the long-run variance of the score of each parameter (`variance`).
-`doubtful_errors` checks that the likelihood is a parabola up to one standard error.
+Standard errors are computed from the curvature of the log likelihood. If the noise model does not
+describe the residual, they are increased by the long-run variance of the score of each parameter
+(`variance`). `doubtful_errors` checks that the log likelihood is quadratic up to one standard
+error.
 """
 
 from __future__ import annotations
@@ -150,24 +151,27 @@ def doubtful_errors(
 
     Notes
     -----
-    One standard error away from the estimate, with the other parameters following, the log
-    likelihood falls by one half if it is a parabola. It is evaluated there. Where a drive rings,
-    the likelihood has many adjacent maxima, and the width of one of them is not a standard error.
+    The log likelihood is evaluated one standard error away from the estimate, with the other
+    parameters at their conditional maximum. If it is quadratic, it decreases by one half. The
+    likelihood of a drive with a resonance has many adjacent maxima, and the width of one of them is
+    not a standard error.
     """
     errors = standard_errors(problem, solution)
     x = problem.encode(solution.values)
     sd = np.where(errors.separate, errors.sd, np.nan)
     for k, i in enumerate(problem.open):
-        # A parameter at a bound does not follow another parameter.
+        # A parameter at a bound remains there if another parameter is displaced.
         page = problem.parameters[problem.names[i]]
         if bound_note(page, float(solution.values[i]), errors.error(k)) is not None:
             sd[k] = np.nan
     low, high = problem.encode(problem.lower), problem.encode(problem.upper)
     doubtful = []
-    # Effects catalogued with many maxima: one standard error away may still be the same maximum.
+    # For effects whose likelihood has many maxima, the check at one standard error may reach only
+    # one of the maxima.
     many = {effect for effect in problem.effects if find_effect(effect).peaks}
     for k, i in enumerate(problem.open):
-        # Position of the maximum of the likelihood with this parameter one standard error away.
+        # Conditional maximum of the likelihood for a displacement of this parameter by one standard
+        # error, to first order.
         direction = errors.correlation[:, k] * sd
         if parameters[problem.names[i]].held:
             continue

@@ -1,9 +1,9 @@
 """Starting values of a fit, estimated from typical magnitudes of the data.
 
-A law in newtons has no single scale that suits both a watch and a press. The catalogue entry of a
-parameter names the quantity of the data that it is similar to (`jbf_core::page::Start`). Without
-such a name, the starting value is that of the catalogue. The magnitudes are robust quantiles:
-neither inertia at a reversal nor a bad sample determines one.
+The parameters of a law in newtons differ by orders of magnitude between machines. The catalogue
+entry of a parameter names the quantity of the data from which its starting value is computed
+(`jbf_core::page::Start`). Without such a name, the starting value is that of the catalogue. The
+magnitudes are quantiles, which are robust against outliers and inertial forces at reversals.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def scales(campaign: Campaign) -> Scales:
     Raises
     ------
     InputError
-        There is no such sample.
+        No sample is in motion.
     """
     moving = campaign.moving
     if not any(np.any(m) for _, m in moving):
@@ -98,7 +98,7 @@ def scales(campaign: Campaign) -> Scales:
     kinetic = max(f_low - slope * v_low, 0.5 * median_n)
     breakaway = max(float(np.quantile(along[low], 0.9)), 1.1 * kinetic)
     distances = np.concatenate([_strokes(p, m) for p, m in moving])
-    # A drive that settles overshoots slightly; those distances are not strokes.
+    # Overshoots of a drive at the end of a stroke are not strokes.
     stroke = max(float(np.median(distances[distances >= 0.1 * np.max(distances)])), 1e-9)
     step = float(np.median([p.step_s for p in campaign.prepared]))
     resolved = min(max(0.1 * slow_m_s * step, 1e-7 * stroke), 1e-2 * stroke)
@@ -120,8 +120,7 @@ def _strokes(p: Prepared, moving: Mask) -> Array:
 def stroke(campaign: Campaign) -> tuple[float, float]:
     """Lowest and highest position of a campaign's stroke, m (rad for a joint).
 
-    They are computed from the motion and not from the force, so no information on held-out forces
-    is used.
+    Both are computed from the motion only, so that no information on held-out forces is used.
     """
     angles = np.concatenate([p.motion.angle_rad[moving] for p, moving in campaign.moving])
     places = angles * campaign.arm_m
@@ -179,9 +178,9 @@ def _run_time(campaign: Campaign) -> Starts:
 
 
 def _reference_temperature(campaign: Campaign) -> Starts:
-    """Temperature at which the lubricant's viscosity applies, C.
+    """Reference temperature of the lubricant's viscosity, C.
 
-    Without it, the mean of the recorded temperatures, rounded to a degree.
+    If the rig has none, the mean of the recorded temperatures is used, rounded to one degree.
     """
     lubricant = campaign.rig.lubricant
     if lubricant is not None and lubricant.temperature_c is not None:
@@ -214,7 +213,7 @@ RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
 
 
 def _starts_down_to_sample(page: Parameter, campaign: Campaign) -> Starts:
-    """Catalogue values, and thirds of them down to the smallest delay that a sample resolves, s."""
+    """Catalogue values, and successive thirds of them down to the smallest resolved delay, s."""
     least, step = min(page.starts), float(np.median([p.step_s for p in campaign.prepared]))
     count = int(np.ceil(np.log(max(least / (0.25 * step), 1.0)) / np.log(3.0)))
     return (*page.starts, *(least / 3.0**k for k in range(1, count + 1)))
@@ -230,8 +229,8 @@ PITCHES = ("pitch", "ripple_pitch")
 def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
     """Limit a transition speed by the data.
 
-    A film that carries the load only at several times the highest recorded speed is not visible,
-    and its equations become stiff.
+    A film with a transition speed of several times the highest recorded speed has no influence on
+    the record, and its equations are stiff.
     """
     top = max(float(np.max(np.abs(p.motion.velocity))) for p in campaign.prepared)
     upper = min(
@@ -241,7 +240,7 @@ def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
 
 
 def _limited_by_travel(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit a pitch by the travel: a longer pitch does not repeat often enough for a ripple."""
+    """Limit a pitch by the travel, which must contain several periods of a ripple."""
     upper = min(page.upper, longest_pitch(campaign))
     return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
 
@@ -250,7 +249,7 @@ def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
     """Limit a time by the records.
 
     The limit of a delay is a fraction of the shortest run. The limit of any other time is the
-    longest run, since slower processes are not visible in it.
+    longest run, since slower processes are not identifiable.
     """
     durations = [p.run.duration_s for p in campaign.prepared]
     share = campaign.settings.delays.max_run_share
@@ -262,7 +261,7 @@ def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
 def _inside(page: Parameter, starts: Starts) -> Parameter:
     """Return the catalogue entry with these starting values, limited to its bounds.
 
-    Without any values it is unchanged.
+    The entry is unchanged if `starts` is empty.
     """
     inside = (float(np.clip(x, page.lower, page.upper)) for x in starts)
     return replace(page, starts=tuple(dict.fromkeys(inside)) or page.starts)

@@ -1,8 +1,8 @@
 """Fit of the base law along known motions, to a tolerance, with exact derivatives.
 
-It applies to motions that are known exactly (a sine of the drive), not only as recorded samples.
-The solver takes as few steps as the tolerance permits, whatever the sampling. For records with
-effects, noise on the speed and unknown signs, use :func:`jbf.fit`.
+The motions are known exactly (a sine of the drive) and not only as recorded samples. The step size
+of the solver follows from the tolerance and not from the sampling. For records with effects, noise
+on the speed and unknown signs, use :func:`jbf.fit`.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class TrajectoryFit(Estimates):
     Attributes
     ----------
     parameters
-        Name to value with standard error (residuals as independent noise of one size).
+        Name to value with standard error, for independent residuals of equal variance.
     sum_of_squares
         Sum of squares of the residual friction coefficients.
     nobs
@@ -141,7 +141,7 @@ def fit_trajectories(
     >>> round(fit.params["f_m"], 4)
     0.25
     """
-    from scipy import optimize  # most of a second to import
+    from scipy import optimize  # import time of nearly one second
 
     pages = parameters_of("journal", ())
     given = {

@@ -1,9 +1,9 @@
-"""Samples that depend on a state of the model that was not recorded.
+"""Samples that depend on an unrecorded state of the model.
 
 A film, a contact or a load cell with backlash starts a run in an unknown state (`initial_state`). A
 film also depends on motion in a gap of the record. These samples do not identify the friction law
-and are excluded for every model of the campaign. A film that is too fast for the sampling rate of
-the records is refused.
+and are excluded for every model of the campaign. An InputError is raised for a film that is too
+fast for the sampling rate of the records.
 """
 
 from __future__ import annotations
@@ -83,16 +83,14 @@ def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) ->
     Parameters
     ----------
     values
-        Parameters of a model that fits roughly.
+        Parameter values of an approximate fit.
     least_n
         Difference of the friction that is negligible, N.
 
-    Notes
-    -----
-    The model interpolates linearly over missing rows. If the shaft reversed or started in the gap,
-    the film state after it is wrong until the film has forgotten. Two simulations bound this
-    duration: one keeps the speed from before the gap until its end; the other has the speed after
-    the gap from its beginning.
+    Notes ----- The model interpolates the motion linearly over missing rows. If the shaft reversed
+    or started in the gap, the simulated film state is wrong for some time after the gap. Two
+    simulations bound this duration: in one, the speed changes at the end of the gap; in the other,
+    at its beginning.
     """
     prepared = problem.campaign.prepared
     affected = [np.zeros(len(p.run), dtype=bool) for p in prepared]
@@ -150,9 +148,9 @@ def without_transients(campaign: Campaign, law: str, clock: Clock) -> Campaign:
 def without_further_transients(problem: Problem, solution: Solution) -> Campaign | None:
     """Return the campaign without the initial-state transients of a model with effects.
 
-    This applies if the effects change the film or have an initial state of their own. The result is
-    None if no significant number of further samples is excluded. A law that lacks an effect, such
-    as the load, fits badly, and so gives a wrong duration of the film's memory.
+    Effects may change the film or have an initial state. The base law then gives a wrong duration
+    of the transient, and more samples must be excluded. The result is None if no significant number
+    of further samples is excluded.
     """
     pages = [find_effect(name) for name in problem.effects]
     lasting = [page.name for page in pages if page.stage == "film" or page.unknown_start]
@@ -169,7 +167,7 @@ def without_further_transients(problem: Problem, solution: Solution) -> Campaign
 
 
 def _without_unrecorded(problem: Problem, values: Array, residuals: Sequence[Array]) -> Campaign:
-    """Return the campaign without the samples at which a model remembers unrecorded states."""
+    """Return the campaign without the samples that depend on unrecorded states of a model."""
     campaign = problem.campaign
     noise_rms = noise_floor(campaign.prepared, campaign.samples)
     masks = problem.transient_samples(values, noise_rms)
@@ -183,7 +181,7 @@ def _without_unrecorded(problem: Problem, values: Array, residuals: Sequence[Arr
 
 
 def _state(law: str, effects: Iterable[str]) -> str:
-    """Text for the state that differed from that of the model when a run began."""
+    """Description of the state that was unknown at the start of a run."""
     page = find_law(law)
     cell = has_unknown_start(effects)
     if page.has_film:

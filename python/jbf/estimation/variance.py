@@ -1,15 +1,15 @@
 """Variance of statistics of residuals that are not independent Gaussian noise.
 
-If the noise model is correct, innovations are white, and the variance of a score is its squared
-length. This fails for noise with a longer correlation time, heavy-tailed noise, or heteroscedastic
-noise related to the score.
+If the noise model is correct, the innovations are white, and the variance of a score is the sum of
+squares of its direction. This is not valid for noise with a longer correlation time, heavy-tailed
+noise, or heteroscedastic noise correlated with the score.
 
 Notes
 -----
 The long-run (HAC) variance is estimated from the score of the record, summed over windows longer
-than the correlation time (Bartlett kernel; Newey & West 1987). Robust sizes bound the influence of
-outliers (Hampel 1974). Blocks longer than the correlation time change sign together in a sign
-randomisation.
+than the correlation time (Bartlett kernel; Newey & West 1987). Robust standard deviations bound the
+influence of outliers (Hampel 1974). In a sign randomisation, all samples of a block change sign
+together; the blocks are longer than the correlation time.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def score_square(
     step_s: float,
     settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
-    """Square of a score over its long-run variance: chi-square, one degree of freedom a direction.
+    """Squared score over its long-run variance, chi-square with one degree per direction.
 
     The variance of each direction is at least that of white noise.
 
@@ -71,7 +71,7 @@ def score_inflation(
     steps_s: Sequence[float],
     settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
-    """Ratio of the variance of a score to that in white noise, at least one.
+    """Ratio, at least one, of the variance of a score to its variance in white noise.
 
     Parameters
     ----------
@@ -97,10 +97,10 @@ def significant_inflation(
     steps_s: Sequence[float],
     settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
-    """Ratio of the variance of a score to that in white noise, or one if it is not significant.
+    """Ratio of the variance of a score to its variance in white noise; one if not significant.
 
-    A direction of a few breakaways has few windows, and the mean square of a few numbers is not a
-    reliable variance. Parameters as for :func:`score_inflation`.
+    A direction that is nonzero in few windows only does not give a reliable variance. Parameters as
+    for :func:`score_inflation`.
     """
     ratio = score_inflation(directions, innovations, steps_s, settings)
     if ratio <= 1.0:
@@ -118,8 +118,8 @@ def significant_inflation(
 def _scaled(directions: Sequence[Array]) -> tuple[Sequence[Array], float]:
     """Directions divided by their largest element, and their sum of squares.
 
-    The squares of a direction far above the noise would overflow. The sum is zero where there is no
-    direction, or an infinite one.
+    The scaling avoids an overflow of the squares. The sum is zero if all elements are zero or one
+    of them is infinite.
     """
     largest = max((float(np.max(np.abs(d), initial=0.0)) for d in directions), default=0.0)
     if not 0.0 < largest < np.inf:
@@ -134,10 +134,10 @@ def cluster_inflation(
     inflation: float,
     settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
-    """Ratio of the variance of a score to that in white noise, from the scatter of whole runs.
+    """Ratio of the variance of a score to its variance in white noise, from the scatter of runs.
 
-    It is zero if the scatter is not significant. A level that each run has of its own lasts longer
-    than any window (clusters: Liang & Zeger 1986).
+    The ratio is zero if the scatter is not significant. An offset that differs between runs lasts
+    longer than any window, so that the runs are used as clusters (Liang & Zeger 1986).
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Budget of a fit or a diagnosis in inner steps of the model.
 
-It ends every computation, whatever the records and the values that a search reaches. A limit in
-seconds would differ between machines; steps end the same computation at the same point everywhere.
+The budget limits the duration of every computation. It is counted in steps and not in seconds, so
+that a computation ends at the same point on every machine.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Work:
         return cls(max(STEPS_A_SAMPLE * samples, ANY_STEPS))
 
     def take(self, steps: float) -> None:
-        """Count steps that are about to be taken.
+        """Add steps to the count before they are taken.
 
         Raises
         ------
@@ -49,7 +49,7 @@ class Work:
             raise Unfinished(steps=self.taken)
 
     def part(self, share: float) -> Work:
-        """Return a fraction of the budget, for a part of the work that must not use the rest."""
+        """Return a separate budget of a fraction of this one, for a part of the computation."""
         return Work(share * self.most)
 
     def renew(self, most: float | None = None) -> None:

@@ -100,6 +100,8 @@ def test_invalid_csv_is_refused_with_file_and_cause(
 
 
 @pytest.mark.parametrize(("content", "rms"), ACCEPTED.values(), ids=ACCEPTED)
-def test_csv_in_unusual_notation_gives_its_rms(content: Text, rms: float, capfd: Capture) -> None:
+def test_csv_in_unusual_notation_is_read_with_the_expected_rms(
+    content: Text, rms: float, capfd: Capture
+) -> None:
     write(content, "bad.csv")
     assert compared("bad.csv", capfd)["rms"] == pytest.approx(rms, rel=5e-3)

@@ -33,7 +33,7 @@ INVALID |= {"LINES": "-1", "LC_ALL": "xx_YY", "PYTHONWARNINGS": "error"}
 
 
 @pytest.mark.parametrize("settings", [INVALID, pytest.param(MINIMAL, marks=EXTENDED)])
-def test_compare_gives_the_same_result_in_an_unusual_environment(
+def test_compare_command_reports_the_same_rms_under_unusual_environment_variables(
     settings: dict[str, str], folder: Path
 ) -> None:
     file = "Lauf µ ∅.csv"

@@ -42,7 +42,9 @@ def test_diagnose_writes_model_json_and_page(slide: Path, tmp_path: Path, capsys
     assert level["chance"] <= 0.01 / level["candidates"]
 
 
-def test_printed_text_is_short_complete_or_the_verdict_alone(slide: Path, capsys: Capture) -> None:
+def test_diagnose_prints_up_to_30_lines_by_default_more_if_full_and_one_if_quiet(
+    slide: Path, capsys: Capture
+) -> None:
     printed = {}
     for option in ("", "--quiet", "--full"):
         assert main(["diagnose", str(slide), *LAW, *option.split()]) == 0

@@ -60,7 +60,7 @@ def test_half_open_spans_of_both_directions_share_a_tick_label() -> None:
     assert place.ticks == ("up to\n0.1 s", "over\n0.1 s")
 
 
-def test_bins_of_one_plot_series_are_drawn_at_different_places() -> None:
+def test_bins_of_one_plot_series_have_different_abscissae() -> None:
     comparison = compare(Model(Rig(), "coulomb", parameters=LAW), there_and_back(along(1.0)))
     for axis in all_axes(comparison.campaign, 0.1):
         place = bin_axis(failure_of(axis.axis, *axis.bins))

@@ -62,7 +62,7 @@ def test_confidence_interval_of_a_rate_is_that_of_clopper_and_pearson() -> None:
         ((), {}, False, False),
     ],
 )
-def test_answer_is_false_if_neither_effect_nor_alternative_is_simulated(
+def test_check_answer_is_false_if_neither_effect_nor_alternative_is_simulated(
     named: tuple[str, ...], alternatives: dict[str, tuple[str, ...]], right: bool, false: bool
 ) -> None:
     answer = Answer(("a",), 0, "missing", named, alternatives)

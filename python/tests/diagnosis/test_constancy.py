@@ -89,7 +89,9 @@ def test_single_run_or_run_of_two_samples_causes_no_disagreement(run: int) -> No
 
 
 @pytest.mark.parametrize(("term", "disagrees"), [("effect", True), ("law", False)])
-def test_disagreement_on_an_effect_excludes_that_on_the_law(term: str, disagrees: bool) -> None:
+def test_disagreement_on_an_effect_excludes_the_disagreement_on_the_law(
+    term: str, disagrees: bool
+) -> None:
     """The law's direction is the sign of the velocity, that of the sensor offset a constant."""
     sign = np.where(np.arange(N) < N // 2, 1.0, -1.0)
     campaign = slides([sign * SPEED] * 3)
@@ -135,7 +137,9 @@ def test_random_effect_of_the_viscosity_covers_both_of_its_parameters(
     assert disagreement(problem, changed).beyond_chance() == (deviates == "zero")
 
 
-def test_effect_with_many_likelihood_peaks_may_differ_by_run(rig: Rig, runs: list[Run]) -> None:
+def test_parameters_of_an_effect_with_many_likelihood_maxima_may_differ_by_run(
+    rig: Rig, runs: list[Run]
+) -> None:
     """The runs of a drive with a resonance may be fitted at different likelihood maxima."""
     campaign = Campaign.prepare(rig, runs)
     problem = Problem(campaign, "journal", "journal", ("drive_compliance",))
@@ -206,7 +210,7 @@ def test_deviation_of_a_signed_parameter_is_reported_in_its_unit(more: float, wo
 
 
 @pytest.mark.parametrize(("step", "size"), [(2.99, "%"), (3.01, "larger"), (-3.01, "smaller")])
-def test_parameter_change_over_twentyfold_is_reported_without_a_number(
+def test_run_specific_parameter_change_above_twentyfold_is_reported_without_a_number(
     step: float, size: str
 ) -> None:
     """The search variable is the logarithm of the dry friction of 5 N."""
@@ -232,7 +236,7 @@ def test_disagreement_is_reported_with_its_share_and_runs_in_order_of_size() -> 
     assert find_disagreement(*solution_with(one_way(5), agreeing), DEFAULT) == []
 
 
-def test_runs_agree_even_if_common_parameters_are_five_percent_off() -> None:
+def test_no_disagreement_is_found_if_common_parameters_deviate_by_five_percent() -> None:
     problem, solution = solved(coulomb, 0.1)
     off = problem.solution(1.05 * solution.values, solution.samples, solution.noise)
     for at in (solution, off):

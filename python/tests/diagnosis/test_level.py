@@ -185,7 +185,7 @@ def test_candidate_with_two_parameters_has_chi_square_of_two_degrees() -> None:
     assert found.chance == pytest.approx(stats.chi2.sf(8.0, 2), rel=1e-3)
 
 
-def test_candidate_without_a_direction_keeps_its_share_of_the_level() -> None:
+def test_candidate_without_a_direction_keeps_its_share_of_the_significance_level() -> None:
     one = _one_direction(np.full(4, 0.5), np.array([1.0, 1.0, -1.0, -1.0]), [0, 2])
     level = Level(false_alarm_rate=0.01, candidates=2, chance=1.0)
     chance = stats.chi2.sf(4.0, 1)

@@ -16,7 +16,7 @@ def _round(*effects: str) -> ManualRound:
     return manual_round(Rig(), linear_runs("mass"), effects, law="coulomb")
 
 
-def test_round_without_effects_has_the_trials_of_the_first_diagnosis_step() -> None:
+def test_manual_round_without_effects_has_the_trials_of_the_first_diagnosis_step() -> None:
     step, first = _round().step, linear_diagnosis("mass").steps[0]
     assert step.effects == ()
     assert step.held_out_rms == pytest.approx(first.held_out_rms, rel=1e-6)
@@ -24,7 +24,7 @@ def test_round_without_effects_has_the_trials_of_the_first_diagnosis_step() -> N
     assert evidence[0] == pytest.approx(evidence[1], abs=1e-6)
 
 
-def test_round_with_an_effect_has_the_fit_and_does_not_try_the_effect_again() -> None:
+def test_manual_round_with_an_effect_fits_it_and_does_not_try_it_again() -> None:
     found = _round("inertia")
     alone = fit(Rig(), linear_runs("mass"), ["inertia"], law="coulomb")
     assert found.fit.parameters == alone.parameters

@@ -162,7 +162,9 @@ def test_plan_for_a_shaft_has_its_angle_and_the_default_acceleration() -> None:
         ({"limits": Limits(duration_s=30.0)}, "velocity_m_s is missing"),
     ],
 )
-def test_impossible_plan_is_rejected_with_the_reason(change: dict[str, Any], problem: str) -> None:
+def test_plan_with_invalid_limits_or_duration_is_rejected_with_the_reason(
+    change: dict[str, Any], problem: str
+) -> None:
     assert (LEAST_RUNS, MOST_RUNS) == (3, 200)
     request: dict[str, Any] = {"limits": LIMITS, "minutes": 2.0, "noise_rms": NOISE_N} | change
     with pytest.raises(InputError, match=problem):

@@ -213,7 +213,9 @@ SQUARE = non_centrality(PRICE, 1, CHANCE)
 
 
 @pytest.mark.parametrize(("unexplained", "margin"), [(4.0, 8.0), (3.0, 2.0), (10.0, 40.0)])
-def test_gain_over_a_rival_is_normally_distributed(unexplained: float, margin: float) -> None:
+def test_gain_difference_to_a_rival_is_normally_distributed(
+    unexplained: float, margin: float
+) -> None:
     """The variance of the difference of the gains is four times its mean."""
     expected = stats.norm.sf(margin, loc=unexplained**2, scale=2.0 * unexplained)
     assert distinction_probability(unexplained, margin) == pytest.approx(float(expected))
@@ -256,7 +258,7 @@ def test_large_distinguishable_strength_depends_on_the_rival_only() -> None:
     )
 
 
-def test_square_of_a_change_is_clipped_at_three_sigma_per_sample() -> None:
+def test_squared_change_of_each_sample_is_clipped_at_three_sigma() -> None:
     assert bounded_square(np.array([1.0, -2.0, 100.0])) == pytest.approx(1.0 + 4.0 + 9.0)
 
 
@@ -271,7 +273,7 @@ def swings(velocity_noise: float = 0.0) -> Candidates:
     return coulomb_candidates(runs)
 
 
-def test_part_of_a_change_beyond_a_rival_is_a_regression_residual() -> None:
+def test_unexplained_part_of_a_change_by_a_rival_is_a_regression_residual() -> None:
     at_hand = PresentRuns(swings(), ())
     random = np.random.default_rng(5)
     changes = [0.02 * random.standard_normal((len(f), 2)) for f in at_hand.now]

@@ -48,7 +48,7 @@ def axes_of(residuals: list[Array]) -> dict[str, float]:
 
 @pytest.mark.parametrize("noise", [WHITE, Noise(0.2, 0.5)])
 @pytest.mark.parametrize("seed", range(5))
-def test_no_structure_is_reported_in_noise_that_the_noise_model_describes(
+def test_no_residual_structure_is_reported_for_noise_of_the_fitted_noise_model(
     seed: int, noise: Noise
 ) -> None:
     residuals = [noise.coloured(e, 0.02) for e in white_noise(sines(), seed)]
@@ -152,7 +152,7 @@ def test_structure_within_the_quantisation_is_not_reported(part: float, found: b
 
 
 @pytest.mark.extended
-def test_friction_level_that_steps_within_every_run_is_unexplained() -> None:
+def test_step_of_the_friction_level_within_every_run_gives_an_unexplained_verdict() -> None:
     rig, runs, _ = simulated(21, foreign=("level_step",), strength=1.5)
     result = diagnose(rig, runs)
     assert (result.verdict, result.effects) == ("unexplained", ())

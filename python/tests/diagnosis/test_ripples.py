@@ -91,7 +91,7 @@ def test_ripple_with_the_sign_of_the_velocity_is_reported_as_friction() -> None:
 
 
 @pytest.mark.parametrize("amplitude", [0.5, 2.0])
-def test_only_the_larger_of_two_ripples_is_reported(amplitude: float) -> None:
+def test_only_the_larger_ripple_is_reported_if_a_record_has_two(amplitude: float) -> None:
     campaign = reversing()
     force = waves(campaign, [1.0] * 5)
     friction = waves(campaign, [amplitude] * 5, friction=True, seed=4)

@@ -68,7 +68,7 @@ def test_all_coefficients_of_an_effect_grow_with_its_strength(candidates: Candid
     assert model.values(2.0)[others] == pytest.approx(model.usual[others])
 
 
-def test_change_by_a_linear_effect_is_strength_times_its_column(
+def test_friction_change_by_a_linear_effect_is_proportional_to_its_strength(
     candidates: Candidates, at_hand: PresentRuns
 ) -> None:
     offset, mass = (model_of(candidates, name) for name in ("sensor_offset", "inertia"))

@@ -161,7 +161,7 @@ def test_delay_from_jumps_and_its_error_are_moments_of_a_mixture_likelihood() ->
     assert found.sd_s == pytest.approx(sd, rel=0.05)
 
 
-def test_jumps_give_no_delay_if_it_is_fixed_undetermined_or_too_small() -> None:
+def test_no_delay_is_estimated_from_jumps_if_it_is_fixed_unidentifiable_or_too_small() -> None:
     problem, solution, errors = solved()
     which = problem.names.index(TAU)
     k = problem.open.index(which)
@@ -248,7 +248,7 @@ def test_sensor_drift_is_not_delayed_in_a_model_with_a_time_delay() -> None:
     np.testing.assert_allclose(model.predict(run)[late], expected[late], rtol=1e-9)
 
 
-def test_mean_force_near_a_reversal_is_blurred_by_the_errors_of_instant_and_delay() -> None:
+def test_expected_force_near_a_reversal_is_smoothed_by_the_errors_of_time_and_delay() -> None:
     """`F_c (2 Phi(t / sd) - 1)`, where sd is the root of the sum of both variances."""
     time = np.arange(0.0, 2.0, STEP_S)
     tau_s, turn_s, slope, error, delay_sd_s = 0.0471, 1.0071, 0.1, 2e-4, 3e-3

@@ -95,7 +95,7 @@ def test_whitened_residuals_have_unit_variance_for_errors_drawn_from_the_posteri
 
 
 @pytest.mark.parametrize("scale", [0.3, 1.0, 3.0])
-def test_likelihood_is_largest_at_the_scale_with_which_motion_errors_were_drawn(
+def test_likelihood_is_maximal_at_the_simulated_scale_of_the_motion_errors(
     scale: float,
 ) -> None:
     errors: Any = estimate_motion(drive(3), None).errors

@@ -173,7 +173,7 @@ def test_parameter_is_at_its_null_if_only_the_held_out_run_determines_it(others:
 
 @pytest.mark.usefixtures("push_effect")
 @pytest.mark.parametrize(("share", "witnesses"), [(0.9, {0}), (1.1, set())])
-def test_run_with_nearly_all_information_on_a_parameter_is_its_only_source(
+def test_run_is_indispensable_if_it_has_nearly_all_information_on_a_parameter(
     share: float, witnesses: set[int]
 ) -> None:
     """Share of the minimum information, a sum of squared derivatives, in the other three runs."""
@@ -183,7 +183,9 @@ def test_run_with_nearly_all_information_on_a_parameter_is_its_only_source(
 
 @pytest.mark.usefixtures("push_effect")
 @pytest.mark.parametrize(("factor", "off_n"), [(1.0, 0.0), (3.0, 2.0 * PUSH_N)])
-def test_halves_of_the_only_informative_run_predict_each_other(factor: float, off_n: float) -> None:
+def test_indispensable_run_is_held_out_in_halves_that_predict_each_other(
+    factor: float, off_n: float
+) -> None:
     """The push is three times as large in one half: the error of each half is the difference."""
     problem, solution = solved(pushed_runs(0.0, factor), "pushed")
     parts = held_out_halves(problem, solution, 0)

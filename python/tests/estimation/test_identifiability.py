@@ -82,7 +82,7 @@ def test_viscous_coefficient_is_held_at_zero_if_friction_falls_with_speed() -> N
     assert not found["F_c"].held
 
 
-def test_asymmetry_ends_at_its_upper_bound_if_the_true_value_is_larger() -> None:
+def test_asymmetry_estimate_is_its_upper_bound_if_the_true_value_is_larger() -> None:
     runs = there_and_back(lambda t, v, a: np.where(v > 0, 10.0, 0.0), noise_rms=0.05)
     fixed = {"F_c": 5.0, "F_s": 6.0, "F_v": 0.0}
     found = fit(Rig(), runs, ["direction_asymmetry"], law="coulomb", fixed=fixed)
@@ -294,7 +294,7 @@ def test_fixed_parameter_is_at_its_null_only_if_equal_to_the_null() -> None:
     assert not at_null(PLAIN, 0.0, fixed=True)
 
 
-def test_effect_is_idle_if_all_its_parameters_with_a_null_are_at_it() -> None:
+def test_effect_is_idle_if_all_its_parameters_with_a_null_equal_the_null() -> None:
     pages = {
         "F_v": PLAIN,
         "one.F_d": DRAG,

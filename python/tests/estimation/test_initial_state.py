@@ -84,7 +84,7 @@ def two_starts() -> Campaign:
         ("journal", PLAY, True),
     ],
 )
-def test_models_with_a_film_contact_or_play_have_a_memory_of_the_initial_state(
+def test_models_with_a_film_contact_or_backlash_have_an_initial_state_memory(
     law: str, names: tuple[str, ...], directions: bool | None
 ) -> None:
     """A contact or a load cell depends on past directions of motion, a film only on past speeds."""
@@ -158,7 +158,7 @@ def test_fit_is_biased_by_the_initial_transient_unless_it_is_excluded() -> None:
     assert errors[1] > 3.0 * errors[0]
 
 
-def test_transient_that_agrees_with_the_model_is_excluded_without_a_finding() -> None:
+def test_initial_transient_is_excluded_without_a_finding_if_it_agrees_with_the_model() -> None:
     """The transient causes no finding; this requires residuals twice as large as usual."""
     runs = [after(journal_run("a", None), None, 0), after(journal_run("b", 2.0), None, 1)]
     settled = without_transients(Campaign.prepare(Rig.thesis(), runs), "journal", "journal")
@@ -242,7 +242,7 @@ def settled_play(runs: list[Run]) -> tuple[Problem, Array, Campaign | None]:
 
 
 @pytest.mark.parametrize("branch", [-1.0, 1.0], ids=["fallen", "risen"])
-def test_start_within_the_play_is_excluded_until_the_force_has_reversed(branch: float) -> None:
+def test_run_start_within_the_backlash_is_excluded_until_the_force_reverses(branch: float) -> None:
     problem, truth, settled = settled_play(play_runs(branch))
     residuals, every = problem.residuals(truth), problem.campaign.samples.counted
     for kept, whole, residual in zip(settled.samples.counted, every, residuals, strict=True):
@@ -267,7 +267,7 @@ def test_all_runs_are_kept_if_the_force_reverses_in_none_of_them() -> None:
     assert settled_play(runs)[2] is None
 
 
-def test_run_starts_are_excluded_only_if_the_play_of_the_model_has_a_width() -> None:
+def test_run_starts_are_excluded_only_if_the_backlash_of_the_model_is_positive() -> None:
     problem, values = play_problem(play_runs(1.0))
     every = problem.campaign.samples
     gone = [w & ~c for w, c in zip(every.counted, problem.samples_at(values).counted, strict=True)]
@@ -316,7 +316,9 @@ def test_samples_whose_film_depends_on_the_motion_in_a_gap_are_excluded(
 
 
 @pytest.mark.parametrize(("first_s", "last_s"), [(3.0, 4.0), (12.0, 13.0), (8.01, 8.05)])
-def test_gap_at_constant_speed_or_of_two_rows_is_ignored(first_s: float, last_s: float) -> None:
+def test_no_samples_are_excluded_after_a_gap_at_constant_speed_or_of_two_rows(
+    first_s: float, last_s: float
+) -> None:
     problem, values = journal_problem(with_gap(first_s, last_s))
     assert not samples_affected_by_gaps(problem, values, LEAST_N)[0].any()
 

@@ -65,7 +65,7 @@ def test_two_jumps_around_a_plateau_of_two_samples_are_both_detected() -> None:
     assert np.flatnonzero(jumps(force)).tolist() == [19, 20, 21, 22]
 
 
-def test_effects_are_classified_by_whether_they_move_or_blur_jumps() -> None:
+def test_effects_are_classified_by_whether_they_move_or_spread_jumps() -> None:
     assert moves_jumps(["sensor_offset", "time_delay"])
     assert moves_jumps(["backlash"])
     assert not moves_jumps(["sensor_lag", "drive_compliance"])
@@ -120,7 +120,7 @@ def test_weight_at_a_moved_jump_is_the_share_of_noise(noise_rms: float, before: 
     assert samples_near_jumps(samples, campaign_.prepared, [force], ["sensor_offset"]) is samples
 
 
-def test_weight_after_a_blurred_reversal_is_the_share_of_noise_in_the_total_error() -> None:
+def test_weight_after_a_spread_reversal_is_the_share_of_noise_in_the_total_error() -> None:
     """Tests exclude samples whose error from the uncertain instant exceeds half of the noise."""
     t = np.arange(0.0, 20.0, 0.02)
     random = np.random.default_rng(2)

@@ -57,7 +57,7 @@ def rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def test_fit_in_coloured_noise_is_generalised_least_squares_if_the_rms_hardly_rises() -> None:
+def test_fit_is_weighted_by_coloured_noise_only_if_the_rms_hardly_increases() -> None:
     weighted = 0
     for seed in (1, 3, 4, 6):
         noise = [autoregressive(10 * seed + i, 0.3, 0.5, 501) for i in range(4)]
@@ -74,7 +74,7 @@ def test_fit_in_coloured_noise_is_generalised_least_squares_if_the_rms_hardly_ri
 
 
 @pytest.mark.parametrize("height", [1.0, 3.0])
-def test_error_of_a_wrong_law_is_not_weighted_as_coloured_noise(height: float) -> None:
+def test_fit_of_a_wrong_law_is_not_weighted_by_the_coloured_noise_model(height: float) -> None:
     runs = runs_with(lambda i, r: height * np.sign(r.velocity) * np.exp(-r.time_s / 2.0))
     problem, found = fitted(runs)
     assert found.noise.colour > 0.0

@@ -41,7 +41,7 @@ def test_innovations_satisfy_the_arma_difference_equation(shape: tuple[int, ...]
     np.testing.assert_allclose(found, arma_innovations(values, STEP_S, noise), atol=1e-12)
 
 
-def test_noise_made_from_innovations_has_these_innovations() -> None:
+def test_whitening_inverts_the_colouring_of_innovations() -> None:
     noise = Noise(0.2, 0.3)
     kicks = np.random.default_rng(1).standard_normal((500, 2))
     made = noise.coloured(kicks, STEP_S)

@@ -140,7 +140,9 @@ def test_diagnosis_is_ambiguous_if_temperature_is_confounded_with_time() -> None
 
 @EXTENDED
 @pytest.mark.parametrize(("step_s", "also_warm"), [(0.08, True), (0.01, False)])
-def test_warm_run_or_dense_sampling_identifies_temperature(step_s: float, also_warm: bool) -> None:
+def test_temperature_effect_is_identified_if_one_run_is_warm_or_sampling_is_dense(
+    step_s: float, also_warm: bool
+) -> None:
     found = diagnose(Rig(), warming_slide(step_s, also_warm=also_warm), **COULOMB)
     assert (found.verdict, found.effects) == ("missing", (DRY,))
 

@@ -53,7 +53,9 @@ def coast_map() -> Map:
     )
 
 
-def test_free_swing_without_force_gives_friction_and_weight(tmp_path: Path) -> None:
+def test_friction_and_weight_are_recovered_from_a_free_swing_without_a_force(
+    tmp_path: Path,
+) -> None:
     files = swings(tmp_path, [1.5, -1.2, 2.0, -1.8], seed=21)
     found = import_files(files, coast_map())
     result = diagnose(found.rig, found.runs, law="coulomb")
@@ -65,7 +67,7 @@ def test_free_swing_without_force_gives_friction_and_weight(tmp_path: Path) -> N
         assert abs(parameter.value - true) < max(4.0 * parameter.stderr, 0.01 * true), name
 
 
-def test_look_at_a_record_without_force_reports_only_the_inertia_as_missing(
+def test_import_of_a_record_without_force_asks_only_for_the_inertia(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (file,) = swings(tmp_path, [1.0], seed=3)
@@ -155,7 +157,7 @@ def test_steady_states_without_time_give_the_stribeck_curve(tmp_path: Path) -> N
         assert parameter.stderr < 0.05 * value, name
 
 
-def test_steady_states_are_explained_by_laws_without_memory(tmp_path: Path) -> None:
+def test_law_without_memory_is_selected_and_adequate_for_steady_states(tmp_path: Path) -> None:
     file = stribeck_table(tmp_path / "curve.csv", np.random.default_rng(5))
     columns = {"speed_rpm": "speed [rpm]", "torque_n_m": "torque [Nm]"}
     rig = {"drive": {"motion": "rotary", "friction": "torque"}}
@@ -208,7 +210,7 @@ def test_steady_states_are_not_cut_at_rests_or_cycles(tmp_path: Path) -> None:
         import_files(file, mapping)
 
 
-def test_free_swing_is_not_explained_by_play(tmp_path: Path) -> None:
+def test_backlash_is_not_tried_in_a_diagnosis_of_a_free_swing(tmp_path: Path) -> None:
     files = swings(tmp_path, [1.5, -1.2, 2.0], seed=22)
     found = import_files(files, coast_map())
     result = diagnose(found.rig, found.runs, law="coulomb")

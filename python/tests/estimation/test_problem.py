@@ -34,7 +34,7 @@ def test_encode_takes_logarithms_of_scales_and_drops_fixed_parameters() -> None:
     np.testing.assert_allclose(problem.decode(problem.encode(values), values), values)
 
 
-def test_decode_takes_fixed_parameters_from_the_base_and_clips_at_bounds(problem: Problem) -> None:
+def test_decode_returns_fixed_parameters_of_the_base_and_clips_at_bounds(problem: Problem) -> None:
     values, base = values_of(problem), values_of(problem, F_s=9.0)
     x = problem.encode(values)
     back = problem.decode(x, base)

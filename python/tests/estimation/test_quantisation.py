@@ -68,14 +68,14 @@ def test_rms_of_the_quantisation_bias_is_that_of_its_first_harmonic(step: float)
 
 @pytest.mark.parametrize("step", [1e-3, 2.5, 40.0])
 @pytest.mark.parametrize("origin", [-0.4, 0.0, 0.25])
-def test_origin_of_readings_is_their_offset_from_integer_multiples_of_the_step(
+def test_zero_offset_of_readings_is_that_from_integer_multiples_of_the_step(
     step: float, origin: float
 ) -> None:
     readings = step * (np.array([-3.0, 0.0, 1.0, 7.0, np.nan]) + origin)
     assert zero_offset(step, readings) == pytest.approx(origin * step, abs=1e-9 * step)
 
 
-def test_origin_of_noisy_readings_is_their_circular_mean() -> None:
+def test_zero_offset_of_noisy_readings_is_their_circular_mean() -> None:
     readings = np.array([-40.1, 0.1, 3.1, 7.9, 50.0, 2e3 - 0.1, 2e3 + 0.1])
     assert zero_offset(1.0, readings) == pytest.approx(0.0, abs=1e-9)
     assert zero_offset(1.0, readings + 0.2) == pytest.approx(0.2)

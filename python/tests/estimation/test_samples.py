@@ -198,7 +198,9 @@ def test_predicted_random_effect_is_a_ridge_regression_over_weighted_samples(noi
 
 
 @NOISES
-def test_random_effects_give_the_cost_and_determinant_of_a_correlated_normal(noise: Noise) -> None:
+def test_cost_and_determinant_with_random_effects_are_those_of_a_correlated_normal(
+    noise: Noise,
+) -> None:
     between, weight = deviations(), weights()
     samples = Samples(("a", "b"), (STEP_S,) * 2, (weight > 0.0,) * 2, (weight,) * 2, between)
     residuals = list(np.random.default_rng(7).standard_normal((2, N)))

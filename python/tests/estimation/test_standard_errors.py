@@ -221,13 +221,13 @@ def bent() -> Bent:
     # (1 + b)^2 is 1.3 at b = 0.14; the other side (1 - b)^2 is 0.74.
     [(0.0, False), (0.12, False), (-0.12, False), (0.155, True), (-0.155, True), (0.9, True)],
 )
-def test_error_is_doubtful_if_the_cost_deviates_from_a_parabola(
+def test_standard_error_is_doubtful_if_the_cost_is_not_quadratic(
     bent: Bent, bend: float, doubtful: bool
 ) -> None:
     assert bent(bend) == (("p",) if doubtful else ())
 
 
-def test_no_error_is_doubtful_for_held_parameters_or_beyond_a_bound(bent: Bent) -> None:
+def test_standard_error_is_not_doubtful_for_held_parameters_or_beyond_a_bound(bent: Bent) -> None:
     """At b = 0.155 only the upper side deviates by more than three tenths."""
     half = 0.5 / np.sqrt(2 * N)
     assert bent(0.155, bounds=(-1e9, 5.0 + half)) == ()
@@ -237,7 +237,7 @@ def test_no_error_is_doubtful_for_held_parameters_or_beyond_a_bound(bent: Bent) 
     assert bent(0.5, held=True) == ()
 
 
-def test_errors_of_an_effect_with_many_likelihood_peaks_are_doubtful() -> None:
+def test_standard_errors_of_an_effect_with_many_likelihood_maxima_are_doubtful() -> None:
     """The likelihood of a drive with a resonance has many narrow maxima in its parameters."""
     campaign = Campaign.prepare(Rig(), four_runs(coulomb, noise_rms=0.1)[:2])
     problem = Problem(campaign, "coulomb", "journal", ("drive_compliance",))

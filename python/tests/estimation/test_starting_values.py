@@ -65,7 +65,7 @@ def on_bearing() -> Campaign:
     return Campaign.prepare(rig, runs[:2])
 
 
-def test_every_start_that_the_catalogue_names_has_a_rule() -> None:
+def test_every_starting_value_rule_named_in_the_catalogue_exists() -> None:
     rules = (RULES, LINEAR_RULES, CAMPAIGN_RULES, RULES_OF_ANY_LAW, RULES_BESIDE_THE_CATALOGUE)
     pages = [p for x in (*laws().values(), *effects().values()) for p in x.parameters]
     assert {p.start for p in pages} == {"catalogue", *(name for rule in rules for name in rule)}
@@ -92,7 +92,7 @@ def test_every_start_that_the_catalogue_names_has_a_rule() -> None:
         ("drive_damping", (80.0,)),
     ],
 )
-def test_starting_values_of_a_rule_follow_from_the_sizes_of_a_campaign(
+def test_starting_values_of_a_rule_follow_from_the_scales_of_a_campaign(
     rule: str, starts: tuple[float, ...]
 ) -> None:
     assert (RULES | LINEAR_RULES)[rule](SIZES) == pytest.approx(starts)
@@ -199,7 +199,9 @@ def strokes(*lengths_m: float) -> Run:
 
 @pytest.mark.parametrize("top", [0.01, 1.0])
 @pytest.mark.parametrize("force", [0.5, 50.0])
-def test_sizes_of_linear_friction_over_a_sine_follow_its_formula(top: float, force: float) -> None:
+def test_scales_of_linear_friction_in_a_sine_motion_are_the_analytical_ones(
+    top: float, force: float
+) -> None:
     viscous = force / top
     found = sizes_of(swinging(force, viscous, top))
     assert found.kinetic_n == pytest.approx(force, rel=0.02)
@@ -216,7 +218,7 @@ def test_sizes_of_linear_friction_over_a_sine_follow_its_formula(top: float, for
     assert found.resolved_m == pytest.approx(0.1 * found.slow_m_s * STEP_S, rel=1e-6)
 
 
-def test_viscous_size_is_zero_if_friction_falls_with_speed() -> None:
+def test_viscous_scale_is_zero_if_friction_falls_with_speed() -> None:
     found = sizes_of(swinging(5.0, -10.0))
     assert found.viscous_n_s_m == 0.0
     assert found.kinetic_n == pytest.approx(5.0 - 10.0 * 0.1 * np.sin(np.pi / 8.0), rel=0.02)
@@ -266,7 +268,7 @@ def test_rest_and_speeds_below_two_percent_of_the_top_do_not_count_as_motion() -
     assert moving(np.full(len(t), 0.0025)).mean() > 0.9
 
 
-def test_one_force_outlier_does_not_change_any_size_of_a_campaign() -> None:
+def test_one_force_outlier_does_not_change_the_scales_of_a_campaign() -> None:
     run = swinging()
     force = np.where(np.arange(len(run)) == 777, 1e5, run.friction)
     plain, found = sizes_of(run), sizes_of(replace(run, friction=force))

@@ -92,7 +92,7 @@ def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture)
     assert not Path("runs").exists()
 
 
-def test_second_look_keeps_an_edited_map_and_another_file_gets_a_separate_map(
+def test_edited_map_is_kept_by_a_second_import_and_another_file_gets_a_separate_map(
     capsys: Capture,
 ) -> None:
     # A map that was not written by a look must not be replaced.

@@ -124,7 +124,7 @@ def test_rate_and_state_prediction_agrees_with_a_scipy_integration() -> None:
     assert float(np.quantile(np.abs(difference[t > 4.0]), 0.99)) < 0.02
 
 
-def test_automatic_selection_leaves_out_the_rate_and_state_law() -> None:
+def test_automatic_law_selection_excludes_the_rate_and_state_law() -> None:
     assert "rate_and_state" not in allowed(jbf.Rig())
     assert "stribeck" in allowed(jbf.Rig())
 
@@ -209,7 +209,7 @@ def test_dahl_prediction_starts_at_the_sliding_force_if_the_run_starts_moving() 
 
 
 @pytest.mark.extended
-def test_runs_that_start_deflected_are_adequate_with_an_unsettled_start_finding() -> None:
+def test_diagnosis_of_runs_that_start_deflected_is_adequate_and_reports_the_initial_state() -> None:
     """The initial presliding deflection of each run is the final one of the previous run."""
     p = {"fc": 2.3, "s0": 6e4, "exponent": 0.5, "fv": 0.0}
 

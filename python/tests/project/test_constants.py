@@ -179,7 +179,7 @@ def test_every_number_of_the_policy_states_what_it_decides_and_its_source() -> N
     assert all(decides and source for _, decides, source in explained.values())
 
 
-def test_every_number_of_the_policy_is_used() -> None:
+def test_every_number_of_the_policy_is_read_by_a_module() -> None:
     read = {
         n.attr for _, tree in _modules() for n in ast.walk(tree) if isinstance(n, ast.Attribute)
     }

@@ -97,7 +97,7 @@ def test_import_refuses_a_pickle_or_map_without_running_its_code(hostile: Path, 
     assert not re.search("it ran|uid=", done.stdout + done.stderr)
 
 
-def test_file_given_with_effects_from_is_run_and_the_help_documents_this(hostile: Path) -> None:
+def test_effects_from_option_runs_the_given_file_and_its_help_states_this(hostile: Path) -> None:
     (hostile / "own.py").write_text("print('own code ran')\n")
     done = watched(hostile, "compare", "model.toml", "none.csv", "--effects-from", "own.py")
     assert "SystemExit: runs own.py" in done.stderr

@@ -36,7 +36,9 @@ def test_reading_errors_that_differ_between_runs_become_additional_starts(
     assert set(found) == {trapezoids.errors, other.errors}
 
 
-def test_bad_start_does_not_change_the_solution(trapezoids: Smoothed) -> None:
+def test_poor_additional_start_of_the_reading_errors_does_not_change_the_estimates(
+    trapezoids: Smoothed,
+) -> None:
     """A start with an exact velocity and a jerk that follows every reading."""
     bad = replace(trapezoids.errors, velocity_variance=1e-12, intensity=1e8)
     assert smooth(trapezoids.readings, [bad]).errors == trapezoids.errors

@@ -107,7 +107,9 @@ def test_simulated_pattern_is_attributed_to_the_hidden_effect_that_removes_it() 
         ("parameters", "disagree", "parameters", "Time (s)"),
     ],
 )
-def test_structure_card_has_plot_and_advice(axis: str, where: str, kind: str, label: str) -> None:
+def test_card_of_a_residual_structure_has_its_plot_share_and_advice(
+    axis: str, where: str, kind: str, label: str
+) -> None:
     remains = (Remainder(axis, where, 0.126),)
     (card,) = remainder_cards(replace(diagnosis_by_hand("unexplained"), residual_structure=remains))
     assert f">{label}</text>" in str(card.picture)

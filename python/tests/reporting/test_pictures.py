@@ -52,7 +52,7 @@ def loop() -> control.Result:
     return control.run(None, "observed", replace(control.TASKS["velocity sine"], seconds=8.0))
 
 
-def test_plots_use_given_or_new_axes_and_are_documented(
+def test_each_plot_draws_on_given_or_new_axes_and_is_named_in_the_documentation(
     diagnosis: Diagnosis, loop: control.Result, tmp_path: Path
 ) -> None:
     page = Path(__file__).resolve().parents[3] / "docs" / "pictures.md"

@@ -123,7 +123,7 @@ def test_marked_samples_of_a_failure_move_in_direction_of_worst_bin(fitted: Sess
         assert np.mean(np.sign(run.velocity[inside]) == np.sign(centre)) > 0.9
 
 
-def test_showing_the_parent_of_a_model_keeps_the_model(fitted: Session) -> None:
+def test_model_is_kept_if_its_parent_is_shown(fitted: Session) -> None:
     fitted.show(fitted.models.node()["parent"])
     assert fitted.models.current == 1
     assert set(fitted.models.nodes) == {1, 2}

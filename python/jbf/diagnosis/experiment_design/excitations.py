@@ -127,7 +127,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Excitation:
-    """A motion to play.
+    """A motion that the rig can execute.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ class Excitation:
     load_n
         Load, N; None for the usual load.
     temperature_c
-        Temperature, C; None where no temperature is varied.
+        Temperature, C; None if the temperature is not varied.
     """
 
     words: str
@@ -168,7 +168,7 @@ def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Itera
 
 def _motions(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tuple[str, Array]]:
     duration = float(t[-1]) if len(t) else 0.0
-    # The start lasts until its acceleration is within half of the limit.
+    # The start lasts long enough that its acceleration is at most half of the limit.
     start = np.clip(t * 0.5 * acceleration / top, 0.0, 1.0)
     for share in SHARES:
         for w in RATES_RAD_S:
@@ -204,7 +204,7 @@ def _stop_and_go(t: Array, speed: float, acceleration: float) -> tuple[Array, fl
 
 
 def _mixed(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tuple[str, Array]]:
-    """Combined motions: stop and go, a fast sine, and a short and fast sine in sequence.
+    """Combined motions: stop and go, a fast sine, and a fast sine of small stroke in sequence.
 
     Each part ends at rest, where the next part begins.
     """
@@ -235,14 +235,14 @@ def _mixed(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tup
 def runs_to_play(
     rig: Rig, limits: Limits, step_s: float, *, linear: bool
 ) -> Iterator[tuple[Excitation, Run, Driven]]:
-    """Generate every motion within complete limits, as a run to play and as input of a model."""
+    """Generate every motion within complete limits, as a run and as the input of a model."""
     for excitation in excitations(limits, step_s, rig.quantities.speed):
         run = run_from_motion(rig, excitation, step_s, linear=linear)
         yield excitation, run, core_motion(rig, run, known_motion(run, rig.radius_m))
 
 
 def run_from_motion(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:
-    """Convert a motion to a run to play, with the position of a slide or the angle of a shaft."""
+    """Convert a motion to a run, with the position of a slide or the angle of a shaft."""
     velocity = excitation.velocity
     time = np.arange(len(velocity)) * step_s
     path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * step_s)))

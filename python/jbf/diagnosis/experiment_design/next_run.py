@@ -1,6 +1,6 @@
 """Proposal of the next run.
 
-One kind of proposal discriminates between models with equal fits. The other shows effects that are
+A proposed run either discriminates between models that fit equally well, or shows effects that are
 not detectable in the present runs.
 """
 
@@ -51,7 +51,7 @@ class Experiment:
     words
         What to record and why, in one sentence.
     run
-        The motion to play: time, speed, angle or position, load; without friction.
+        The motion: time, speed, angle or position, load; without friction.
     separation_n
         RMS difference between the rival models in this run after a new fit, N.
     separation_sigma
@@ -78,7 +78,7 @@ class Experiment:
     evidence: float
 
     def write_csv(self, path: PathLike) -> None:
-        """Write the motion to play."""
+        """Write the motion as a CSV file."""
         self.run.write_csv(path)
 
 
@@ -93,10 +93,10 @@ class Rival:
         self.root_information: Array = np.asarray(np.linalg.qr(j, mode="r"), dtype=np.float64)
 
     def separation(self, prediction: tuple[Array, Array], truth: Array, step_s: float) -> float:
-        """Misfit to the friction of another model after refitting, in noise variances.
+        """Sum of squared differences from another model after a refit, in noise variances.
 
-        The refit uses the new motion and the old runs (T-optimality, Atkinson & Fedorov 1975; here
-        to first order). The part that the parameters can reproduce is not evidence.
+        The refit uses the new motion and the present runs (T-optimality, Atkinson & Fedorov 1975;
+        here to first order). The part that the parameters can reproduce is not evidence.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ Rank = tuple[float, ...]
 def _best_motion(
     candidates: Candidates, limits: Limits, step_s: float, rank: Callable[[Driven], Rank]
 ) -> tuple[Rank, Excitation, Run, Driven] | None:
-    """The motion with the largest rank, the first of equal ones; None where all ranks are zero."""
+    """Motion with the largest rank, the first of equal ones; None if all ranks are zero."""
     best: tuple[Rank, Excitation, Run, Driven] | None = None
     for excitation, run, motion in motions(candidates, limits, step_s):
         value = rank(motion)
@@ -147,7 +147,7 @@ def _best_motion(
 def propose(
     candidates: Candidates, rivals: Sequence[Sequence[Names]], limits: Limits | None = None
 ) -> Experiment | str:
-    """Propose the run that best discriminates between rival models, or return the reason for none.
+    """Propose the run that best discriminates between rival models, or state why there is none.
 
     Parameters
     ----------
@@ -210,8 +210,8 @@ def _names(rivals: Sequence[Sequence[Names]]) -> str:
 def undetectable_effects(candidates: Candidates, present: Names, powers: Iterable[Power]) -> Names:
     """Candidates that are not detectable in these runs at their usual strength.
 
-    The law's own parameters can absorb them, the noise covers them, or they show only in samples
-    that are not counted.
+    The parameters of the law can reproduce them, they are small compared with the noise, or they
+    affect only samples that do not count.
     """
     hidden = {p.effect for p in powers if p.hidden}
     return tuple(
@@ -219,7 +219,7 @@ def undetectable_effects(candidates: Candidates, present: Names, powers: Iterabl
         for name in candidates.names
         if name in hidden
         and not missing_columns([name])
-        # Without a transmitted load such an effect has no influence, whatever the motion.
+        # Without a transmitted load, such an effect has no influence in any motion.
         and ("transmitted" not in find_effect(name).needs or _changes(candidates, present, name))
     )
 

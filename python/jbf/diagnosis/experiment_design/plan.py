@@ -1,12 +1,12 @@
-"""Design of runs: the motions of a rig that best show and discriminate possible missing effects.
+"""Design of runs: motions of a rig that best show and discriminate possible missing effects.
 
-The Fisher information of each motion about the law's parameters, and about each effect at its usual
-strength, adds up over runs. Runs are chosen one after the other (a greedy exact design: Atkinson,
-Donev & Tobias 2007, ch. 12).
+The Fisher information on the parameters of the law, and on each effect at its usual strength, is
+the sum over the runs. Runs are chosen one after the other (a greedy exact design: Atkinson, Donev &
+Tobias 2007, ch. 12).
 
-The criterion is the information about every effect, apart from the law and from the most similar
-effect, in multiples of its threshold. It is also maximised without any single run, since a
-diagnosis requires confirmation by held-out runs.
+The criterion is the information on every effect, in multiples of its threshold. Information shared
+with the law and with the most similar effect is excluded. The criterion without the most
+informative run is also maximised, since a diagnosis requires confirmation by held-out runs.
 """
 
 from __future__ import annotations
@@ -66,8 +66,7 @@ class Plan(Result):
     Attributes
     ----------
     runs
-        Motions to play, most informative first: time, speed, position or angle, load; without
-        friction.
+        Motions, most informative first: time, speed, position or angle, load; without friction.
     words
         Description of each motion.
     planned
@@ -120,7 +119,7 @@ def plan(
     step_s
         Sampling interval, s.
     policy
-        Numbers by which an effect will be named.
+        Policy of the later diagnosis, with the thresholds from which an effect is named.
 
     Returns
     -------
@@ -130,8 +129,8 @@ def plan(
     Raises
     ------
     InputError
-        No speed is given, a number is not above zero, or the time is too short for three runs or
-        too long.
+        The speed is missing, a number is not positive, or the total duration is too short for
+        three runs or too long.
 
     Examples
     --------
@@ -169,7 +168,7 @@ def plan(
     rig = model.rig
     linear = rig.bearing is None and (rig.drive is None or rig.drive.motion == "linear")
     motions = list(runs_to_play(rig, limits, step_s, linear=linear))
-    # A few of the motions, slow and fast, at each load and temperature, determine the effects.
+    # The effects are determined with some slow and fast motions at each load and temperature.
     few = motions[:: max(len(motions) // 7, 1)]
     named = [replace(run, name=f"{i}") for i, (_, run, _) in enumerate(few)]
     candidates = as_recorded(model, named, noise_rms, policy)
@@ -186,7 +185,7 @@ def plan(
 
 
 def _effects(candidates: Candidates, model: Model) -> list[Strength]:
-    """Effects that motions could show."""
+    """Effects that at least one of the motions can show."""
     return [
         strength
         for name in candidates.names
@@ -207,7 +206,7 @@ def _motion_information(
     friction, slopes = fitted.predict(motion)
     changes = [e.problem.chain.predict(e.values(1.0), [motion])[0] - friction for e in effects]
     rows = np.column_stack([slopes, *changes])
-    # In an autocorrelated residual a sample carries less information.
+    # A sample of an autocorrelated residual contains less information.
     rows *= np.sqrt(effective_share(fitted.current_solution())) / noise_rms
     product: Array = rows.T @ rows
     return product

@@ -1,6 +1,6 @@
 """Power of runs: the strength from which an effect is detectable and distinguishable.
 
-An effect of given strength changes the friction. The law's own parameters can reproduce a part of
+An effect of given strength changes the friction. The parameters of the law can reproduce a part of
 this change. The sum of squares of the other part, in units of the noise variance, is the
 non-centrality of the likelihood ratio (Wald 1943). The power of the test is the probability that
 the likelihood ratio exceeds the threshold. The part that another effect can also reproduce does not
@@ -9,9 +9,9 @@ help to distinguish the two.
 The change is evaluated at each strength and not extrapolated from the null; the rest of the model
 is linearised.
 
-Modules: `strength` is an effect as a function of its strength. `distinction` compares its change
-with those of other effects. `detection_limits` searches the strengths of all effects in recorded
-runs, and `planned_runs` in runs that are not yet recorded.
+Modules: `strength` computes the change of the friction by an effect as a function of its strength.
+`distinction` compares this change with those of other effects. `detection_limits` computes the
+detectable strengths of all effects in recorded runs, and `planned_runs` in planned runs.
 """
 
 from jbf.diagnosis.power.detection_limits import Power, power

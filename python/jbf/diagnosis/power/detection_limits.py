@@ -62,28 +62,28 @@ It limits the effort only.
 
 @dataclass(frozen=True)
 class Power:
-    """Power of runs like these for one effect.
+    """Power of the test for one effect in runs of the same design.
 
     Attributes
     ----------
     effect, parameter, unit
         The effect, the parameter whose distance from its null is its strength, and its unit.
     detectable_80, detectable_95
-        Parameter value from which the effect is detected with 80 % and 95 % power; None where no
-        value within its bounds is detected.
+        Parameter value from which the effect is detected with 80 % and 95 % power; None if no value
+        within the bounds is detectable.
     always
-        True for an effect that is detectable at any strength (a contact that holds at rest): the
-        values are the weakest of the catalogue.
+        True for an effect that is detectable at any strength (presliding in runs with rests); the
+        values are then the weakest of the catalogue.
     share_80
         RMS change of the friction at `detectable_80`, as a share of the friction's RMS.
     distinguishable_80
         Parameter value from which, with 80 % power, the effect is detected and no other effect fits
-        as well; None where it is always confounded.
+        as well; None if the effect is confounded at any strength.
     confounded_with
-        Effects with which it is confounded at `detectable_80`, the least distinguishable first.
+        Effects that are confounded with this one at `detectable_80`, the least distinguishable
+        first.
     hidden
-        True where an effect of the catalogue's usual strength would be detected with less than 80 %
-        power.
+        True if the power is below 80 % at the usual strength of the catalogue.
     """
 
     effect: str
@@ -105,7 +105,7 @@ class Power:
 def power(
     candidates: Candidates, present: Names, names: Iterable[str] | None = None
 ) -> tuple[Power, ...]:
-    """Power of these runs for each effect that is not in the model.
+    """Compute the power of the runs for each effect that is not in the model.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def power(
     present
         Effects of the model.
     names
-        Effects to evaluate; by default all that were tried.
+        Effects to evaluate; by default all candidates.
     """
     wanted = set(candidates.names if names is None else names) - set(present)
     runs = PresentRuns(candidates, present)
@@ -142,7 +142,7 @@ class _Detectable:
     model, parameters, price
         The effect, its number of parameters, and the threshold for its gain.
     times
-        Detectable strength for each of `LEVELS`, in multiples of the usual strength; nan where no
+        Detectable strength for each of `LEVELS`, in multiples of the usual strength; nan if no
         strength is sufficient.
     change
         Change of the record at the first strength.
@@ -181,7 +181,7 @@ class _Detectable:
         return Change.of(runs, self.model, factor * _finite_or_one(self.times[0]))
 
     def parameter_value(self, times: float) -> float | None:
-        """Value of the parameter at a multiple of the usual strength; None where not finite."""
+        """Value of the parameter at a multiple of the usual strength; None if it is not finite."""
         return float(self.model.values(times)[self.model.which]) if np.isfinite(times) else None
 
 
@@ -229,11 +229,11 @@ def non_centrality(
 
 
 def _sufficient_multiple(runs: PresentRuns, model: Strength, wanted: float, times: float) -> float:
-    """Multiple of the usual strength that gives a required non-centrality; nan where none does.
+    """Multiple of the usual strength that gives a required non-centrality; nan if there is none.
 
-    The search assumes a power law, at first of exponent two and then as observed between successive
-    strengths. Where the non-centrality rises abruptly (a lag within a sample has no effect) the
-    search bisects between too small and sufficient strengths.
+    The search assumes a power law, at first with exponent two and then with the exponent observed
+    between successive strengths. If the non-centrality increases abruptly (a lag below one sampling
+    interval has no effect), the search bisects between insufficient and sufficient strengths.
     """
     too_small, sufficient = 0.0, np.inf
     exponent, before = 2.0, None
@@ -310,8 +310,8 @@ def _sizes_at(
 ) -> dict[str, float]:
     """Unexplained parts, per unit of strength, at a multiple of the detectable strength.
 
-    Only rivals are evaluated for which one of the two effects moves jumps, so that the changes are
-    not proportional to the strength.
+    A rival is evaluated only if it or the effect moves jumps, because the changes are then not
+    proportional to the strength.
     """
     change = effect.change_at(runs, factor)
     return {

@@ -1,12 +1,13 @@
 """Strength from which an effect is distinguishable from every other effect.
 
-The unexplained part of an effect is the change of the record that a rival's parameters cannot
+The unexplained part of an effect is the change of the record that the parameters of a rival cannot
 reproduce. Its sum of squares, in units of the noise variance, is the expected difference between
 the two gains. The difference of the gains is normally distributed with a variance of four times its
-mean. An effect is distinguishable where it is detected and no rival comes close to its gain.
+mean. An effect is distinguishable if it is detected and its gain exceeds that of every rival by the
+required difference.
 
-Where one of the two effects moves jumps, the samples next to these jumps do not distinguish them.
-Both effects are then compared on the samples that both use.
+If one of the two effects moves jumps, the samples next to these jumps do not distinguish them. Both
+effects are then compared at the samples that both models use.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ class Change:
         `FURTHER` times the strength, and the derivative with respect to each parameter. Samples
         next to jumps that the effect moves are scaled by their weights.
     shares
-        Weights of the samples, one (n,) array per run; None where the effect does not change them.
+        Weights of the samples, one (n,) array per run; None if the effect does not change them.
     unexplained
         The part of `columns` that the rest of the model cannot reproduce, in units of the noise.
     """
@@ -164,7 +165,8 @@ def distinction_factor(
     """
 
     def surplus(times: float) -> float:
-        # Close rivals leave the same part unexplained: only the closest one matters.
+        # The rivals that are hard to distinguish have a common unexplained part: only the least
+        # distinguishable one is used.
         distinguished = min(
             (distinction_probability(times * size, least) for size, least in rivals.values()),
             default=1.0,

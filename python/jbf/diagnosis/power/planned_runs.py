@@ -1,4 +1,4 @@
-"""Power of planned runs, before anything is recorded."""
+"""Power of planned runs before they are recorded."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class PlannedPower(Result):
 
 
 def as_recorded(model: Model, runs: Sequence[Run], noise_rms: float, policy: Policy) -> Candidates:
-    """Candidates for a model in runs that it would record with white noise of `noise_rms`, N."""
+    """Candidates for runs simulated by a model with white noise of RMS `noise_rms`, N."""
     random = np.random.default_rng(0)
     recorded = [
         replace(run, friction=friction + noise_rms * random.standard_normal(len(run)))
@@ -93,8 +93,8 @@ def as_recorded(model: Model, runs: Sequence[Run], noise_rms: float, policy: Pol
 def _as_read(motion: EstimatedMotion) -> EstimatedMotion:
     """Treat a planned motion like a recorded one.
 
-    For samples next to a reversal the side is unknown. If it were known exactly, these samples
-    would show the smallest backlash or delay.
+    The sign of the motion is unknown at samples next to a reversal. With an exactly known sign,
+    these samples would show an arbitrarily small backlash or delay.
     """
     direction = np.sign(motion.velocity)
     reversals = np.flatnonzero(direction[1:] != direction[:-1])
@@ -107,7 +107,7 @@ def _as_read(motion: EstimatedMotion) -> EstimatedMotion:
 def planned_power(
     model: Model, runs: Iterable[Run], *, noise_rms: float, policy: Policy = DEFAULT
 ) -> PlannedPower:
-    """Strength from which each effect is detectable in planned runs.
+    """Compute the strength from which each effect is detectable in planned runs.
 
     The simulated record is the model's friction under the runs' motion, with white noise.
 
@@ -116,11 +116,11 @@ def planned_power(
     model
         Assumed model of the machine: from a fit, or a `Model` with values of a data sheet.
     runs
-        Motions to play; friction in them is ignored.
+        Planned motions; their friction is ignored.
     noise_rms
         Standard deviation of the noise on the friction, N (for a rotary drive N m).
     policy
-        Numbers by which an effect will be named.
+        Policy of the later diagnosis, with the thresholds from which an effect is named.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def planned_power(
     Raises
     ------
     InputError
-        The noise is not above zero, nothing moves in a run, or a column that the model needs is
+        The noise is not positive, a run contains no motion, or a column that the model needs is
         missing.
 
     Examples

@@ -1,6 +1,7 @@
 """Change of the friction of the present runs by an effect of given strength.
 
-Its unexplained part is the part that the rest of the model cannot reproduce, in units of the noise.
+The unexplained part of a change is the part that the parameters of the model without the effect
+cannot reproduce, in units of the noise.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ class Strength:
 
 
 class PresentRuns:
-    """The present runs under the model without the effect, for the unexplained part of a change."""
+    """Present runs with the model without the effect; computes unexplained parts of changes."""
 
     def __init__(self, candidates: Candidates, present: Names) -> None:
         self.base = candidates.converge(present)
@@ -79,7 +80,7 @@ class PresentRuns:
         self.samples, self.noise = samples, solution.noise
         self.solution = solution
         r, self.slopes = solution.stacked()
-        # Scale for the runs that the thinned records do not include.
+        # Scale to the number of samples of all runs, including those that a search omits.
         more = self.base.samples.count / max(samples.count, 1)
         level = float(r @ r) / max(len(r), 1) / max(effective_share(solution), 1e-3)
         self.scale = np.sqrt(more / max(level, 1e-300))
@@ -98,7 +99,7 @@ class PresentRuns:
     def shares(self, model: Strength, times: float) -> list[Array] | None:
         """Sample weights with an effect relative to those without it, 0 to 1, one array per run.
 
-        None where the effect does not change the weights; effects that move jumps do.
+        None if the effect does not change the weights. Effects that move jumps change them.
         """
         return self._at(model, times)[1]
 
@@ -138,7 +139,7 @@ class PresentRuns:
     def share_after_noise_refit(self, changes: Sequence[Array]) -> float:
         """Share of the gain of a change that remains after the noise model is refitted, 0 to 1.
 
-        A refitted noise model takes a smooth change for coloured noise.
+        A refitted noise model describes a part of a smooth change as coloured noise.
         """
         empty = [np.zeros((len(c), 0)) for c in changes]
         change, _ = self.samples.stacked(changes, empty, self.noise)
@@ -166,8 +167,8 @@ class PresentRuns:
     def discounts(self, change: Array) -> tuple[float, ...]:
         """Discount factors of a gain along `change`, one per white-noise draw.
 
-        They vary in white noise because the long-run variance is estimated, with the variance of
-        white noise as its lower limit.
+        The factors vary between draws because the long-run variance is an estimate. Its lower limit
+        is the variance of white noise.
         """
         counts = [int(np.count_nonzero(w > 0.0)) for w in self.samples.weight]
         ends = np.cumsum(counts)[:-1]

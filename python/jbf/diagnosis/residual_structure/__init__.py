@@ -1,11 +1,12 @@
 """Tests for residual structure (lack of fit) that no effect of the catalogue explains.
 
-This module tests patterns along an axis and combines all tests. `periodic` tests for tones, ripples
-over the travel, and errors that repeat with the motion. `bursts` tests isolated instants.
-`constancy` tests whether all runs have the same parameters, and all strokes the same level.
+This module tests for patterns along an axis and combines all tests. `periodic` tests for tones,
+ripples over the travel, and errors that repeat with the motion. `bursts` tests for structure at
+isolated instants. `constancy` tests whether all runs have the same parameters, and all strokes the
+same friction level.
 
-All tests use innovations, the residual less its prediction by the noise's autocorrelation, so that
-coloured noise is not taken for structure. A pattern must be both significant and large enough to be
+All tests use innovations, the residuals whitened by the noise model, so that coloured noise is not
+reported as structure. A pattern is reported if it is both significant and large enough to be
 relevant. Sizes in newtons refer to the residual: record minus model.
 """
 
@@ -64,7 +65,7 @@ def find_patterns(
 ) -> list[Failure]:
     """Find axes along which the means of the innovations differ significantly and relevantly.
 
-    The means of the residuals are reported with them.
+    The means of the residuals along these axes are reported.
     """
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))
@@ -83,9 +84,9 @@ def find_patterns(
 def _likeliest_forces(problem: Problem, solution: Solution) -> tuple[list[Array], float]:
     """Estimate the force of each sample from model and record, and its median standard error.
 
-    Both are weighted by their precisions. The error of this mean is uncorrelated with the residual;
-    in bins of the prediction alone, the errors of the motion would have a nonzero mean. Without
-    errors of the motion, the estimate is the prediction.
+    The estimate is the mean of both, weighted by precision. Its error is uncorrelated with the
+    residual. In bins of the prediction alone, the errors of the motion would have a nonzero mean.
+    Without errors of the motion, the estimate is the prediction.
     """
     predicted, samples = problem.predict(solution.values), solution.samples
     motion = samples.motion

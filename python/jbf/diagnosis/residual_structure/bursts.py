@@ -2,8 +2,9 @@
 
 Single large innovations are heavy-tailed noise or recording glitches and are independent of their
 neighbours. A burst of friction lasts for several samples: the neighbours of its largest innovation
-have the same sign. The statistic is the correlation of large innovations with their neighbours, all
-clipped to limit the influence of a single value. Without bursts it is standard normal.
+have the same sign. The statistic is the correlation of large innovations with their neighbours,
+clipped to limit the influence of a single value. Its distribution without bursts is standard
+normal.
 """
 
 from __future__ import annotations
@@ -48,8 +49,8 @@ def find_bursts(
     flat = samples.flat(innovations)
     if not len(flat):
         return []
-    # The median is robust: bursts do not hide behind the variance that they cause.
-    # Without any noise, half of the innovations are zero.
+    # The scale is the median absolute value, which bursts hardly increase.
+    # In a record without noise, half of the innovations are zero.
     sizes = np.abs(flat)
     sigma = max(float(np.median(sizes)) / 0.6745, NO_NOISE * float(np.max(sizes)))
     if sigma == 0.0:
@@ -79,7 +80,7 @@ def find_bursts(
 def _lasting_chance(
     innovations: Sequence[Array], samples: Samples, sigma: float, policy: Policy
 ) -> float:
-    """Probability by chance of such sign agreement of large innovations with neighbours."""
+    """P-value of the sign agreement of large innovations with their neighbours."""
     product, square, clip = 0.0, 0.0, policy.bursts.clip_sigma
     clipped = np.clip(samples.flat(innovations) / sigma, -clip, clip)
     usual = float(np.mean(clipped**2))

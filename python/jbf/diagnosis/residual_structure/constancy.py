@@ -1,18 +1,18 @@
 """Tests of constancy: the same parameters in all runs, and the same friction level in all strokes.
 
-A correct model has one set of parameters. With a confounder, each run requires its own. The test
-for runs is the score test of parameter constancy (Nyblom 1989, with runs as groups). At the fit to
-all runs, the statistic is the gain of one Gauss-Newton step for each run separately. It is
-chi-square distributed. Its degrees of freedom are the number of run-specific parameters less the
-number of shared parameters. Scores are in units of each run's own long-run variance. The test
-requires no additional fit.
+The parameters of a correct model are equal in all runs. With a confounder, they differ between
+runs. The test for runs is the score test of parameter constancy (Nyblom 1989, with runs as groups).
+The statistic is the sum of the gains of one Gauss-Newton step for each run from the fit to all
+runs. It has a chi-square distribution. The degrees of freedom are the number of run-specific
+parameters less the number of shared parameters. Scores are divided by the long-run standard
+deviation of their run. The test requires no additional fit.
 
-With a surface that wears, sheds debris or is relubricated, each stroke has its own level, which no
-parameter of a law describes. The test for strokes is an analysis of variance. Between strokes of a
-run it uses the ratio of recorded and predicted friction; within strokes, the difference between
-their two halves. For a correct model, and for a wrong model with equal errors in all strokes, both
-estimate the same variance, whatever the memory of the noise. Their ratio has Fisher's F
-distribution.
+If a surface wears, sheds debris or is relubricated, the friction level differs between strokes,
+which no parameter of a law describes. The test for strokes is an analysis of variance. The variance
+between the strokes of a run is computed from the ratio of recorded and predicted friction, and the
+variance within strokes from the difference between their two halves. For a correct model, and for a
+wrong model with equal errors in all strokes, both estimate the same variance for any correlation
+time of the noise. Their ratio has Fisher's F distribution.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Disagreement:
     gain
         Gain of run-specific parameters, in twice the log likelihood.
     degrees
-        Expected gain by chance (degrees of freedom); zero where there is only one run.
+        Expected gain by chance (degrees of freedom); zero for a single run.
     by_run
         Gain of each run divided by its degrees of freedom, largest first.
     """
@@ -66,7 +66,7 @@ class Disagreement:
     by_run: dict[str, float]
 
     def beyond_chance(self, policy: Policy = DEFAULT) -> bool:
-        """True where one set of parameters is rejected for all runs."""
+        """Whether the hypothesis of equal parameters in all runs is rejected."""
         if self.degrees == 0 or self.gain <= policy.constancy.min_ratio * self.degrees:
             return False
         return bool(special.chdtrc(self.degrees, self.gain) < policy.constancy.chance)
@@ -78,7 +78,7 @@ def disagreement(
     effect: str | None = None,
     policy: Policy = DEFAULT,
 ) -> Disagreement:
-    """Compute how far the runs disagree on the parameters of a solution.
+    """Compute the gain of run-specific parameters over the common ones of a solution.
 
     Parameters
     ----------
@@ -87,11 +87,11 @@ def disagreement(
         explain is projected out. By default all parameters are tested except those of effects with
         many peaks.
     """
-    # Samples next to a jump whose instant is fitted carry errors of that instant.
+    # Samples next to a jump with a fitted time contain the error of this time; they are excluded.
     samples = solution.samples.tested()
     aside = _of_many_peaks(problem) if effect is None else ~_of(problem, {effect})
     if samples.between is not None:
-        # Parameters with known between-run variance differ beyond the first order.
+        # Parameters with a known variance between runs are not tested.
         varying = set(samples.between.names)
         if varying & OIL:
             varying |= OIL
@@ -120,8 +120,8 @@ def disagreement(
     ranked = dict(sorted(by_run.items(), key=lambda item: -item[1]))
     if len(together) < 2:
         return Disagreement(0.0, 0, ranked)
-    # A gain of common parameters is not a disagreement. It is not zero at a bound, or where the
-    # noise colour is only partly accounted for, because the fit is not at the maximum.
+    # A gain of common parameters is not a disagreement. It is nonzero if an estimate is at a bound,
+    # or if the noise model differs from that of the fit, because the score is then not zero.
     r, j = (np.concatenate(a) for a in zip(*together, strict=True))
     common = float(np.sum((_directions(j, least).T @ r) ** 2))
     shared = int(np.sum(size > 0.0))
@@ -139,16 +139,17 @@ def _of_many_peaks(problem: Problem) -> Mask:
 
 
 def _directions(j: Array, least: float) -> Array:
-    """Orthonormal directions of the record in which the parameters change it."""
+    """Orthonormal basis of the changes of the record by the parameters."""
     directions, size, _ = np.linalg.svd(j, full_matrices=False)
     effective: Array = directions[:, size > least * max(float(size.max(initial=0.0)), 1e-300)]
     return effective
 
 
 def _set_aside(r: Array, j: Array, aside: Mask, least: float) -> tuple[Array, Array]:
-    """Project out of residuals and derivatives what the parameters set aside could explain.
+    """Project the derivatives of the parameters in `aside` out of residuals and other derivatives.
 
-    For an effect with many peaks, each run may select its own peak according to its motion errors.
+    The errors of the motion may lead to a different maximum of the likelihood in each run if an
+    effect has many maxima.
     """
     if not aside.any():
         return r, j
@@ -158,7 +159,7 @@ def _set_aside(r: Array, j: Array, aside: Mask, least: float) -> tuple[Array, Ar
 
 
 def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
-    """Report that the runs require different parameters, where they do."""
+    """Report a significant disagreement of the runs on the parameters."""
     test = disagreement(problem, solution, policy=policy)
     if not test.beyond_chance(policy):
         return []
@@ -179,7 +180,7 @@ def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> l
 def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
     """Describe the run-specific parameter with the largest gain for one run.
 
-    The difference is that of one Gauss-Newton step of this parameter alone.
+    The reported difference is one Gauss-Newton step in this parameter alone.
     """
     samples = solution.samples.tested()
     i = samples.runs.index(run)
@@ -196,14 +197,14 @@ def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
     if problem.log[place]:
         part = float(np.expm1(np.clip(step, -MOST_REPORTED, MOST_REPORTED)))
         if abs(step) > MOST_REPORTED:
-            # One step gives no more information about a value so far away.
+            # A single Gauss-Newton step is not accurate for a difference of this size.
             return f"{name} much {'larger' if step > 0.0 else 'smaller'}"
         return f"{name} {100.0 * abs(part):.3g} % {more}"
     return f"{name} {abs(step):.2g}{'' if unit == '-' else f' {unit}'} {more}"
 
 
 def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
-    """Report that the level of the friction differs between strokes, where it does."""
+    """Report a friction level that differs significantly between strokes."""
     friction = problem.predict(solution.values)
     counted = solution.samples.counted
     residuals = solution.samples.without_deviations(solution.residuals, solution.noise)

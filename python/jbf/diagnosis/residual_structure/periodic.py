@@ -1,14 +1,14 @@
 """Tests for periodic structure of the residual: in time, over the travel, and with the motion.
 
 - `find_tones`: spectral lines above the white spectrum of the innovations (Fisher 1929).
-- `find_ripples`: the same over the travel, with a different phase in each run. A drive may be
-  logged set point by set point, with its counter reset to zero each time. Every run then shows the
-  pitch of the screw or of the teeth, each at another phase. The phases of the present runs do not
-  predict that of the next run, so a model with such phases has no predictive value. Where the runs
-  share a phase, the effects `cogging` and `pitch_ripple` describe the ripple.
+- `find_ripples`: spectral lines over the travel, with a different phase in each run. If the
+  position counter of a drive is reset to zero before each run, all runs contain the pitch of the
+  screw or of the teeth, at different phases. The phases of the present runs do not predict that of
+  the next run, so that a model with such phases has no predictive value. If the runs have a common
+  phase, the effects `cogging` and `pitch_ripple` describe the ripple.
 - `find_replicates`: errors that repeat with a repeated motion (a lack-of-fit test with replicates).
   Noise is independent between periods; a model error is not. The autocorrelation of the residual at
-  a lag of one period is therefore the share of its mean square that is not noise.
+  a lag of one period is therefore the share of the mean square that is not noise.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def find_tones(
 
 
 def _describe_tones(lines: list[tuple[float, float, str]], runs: int, unit: str) -> str:
-    """Describe one common tone, or the tone of each run."""
+    """Describe a tone that all runs have, or the tone of each run."""
     middle = float(np.median([x[0] for x in lines]))
     same = [x for x in lines if abs(x[0] - middle) < 0.02 * middle + 0.02]
     scope = "in all runs" if len(lines) == runs else "in " + ", ".join(x[2] for x in lines)
@@ -104,8 +104,8 @@ def _describe_tones(lines: list[tuple[float, float, str]], runs: int, unit: str)
 def _refine(time: Array, r: Array, counted: Mask, near: float, width: float) -> tuple[float, float]:
     """Frequency and amplitude of the best-fitting sine near a spectral line.
 
-    The frequency is kept at least half a line width from zero and from the Nyquist frequency.
-    Closer than that, a sine cannot be distinguished from a constant or from its alias.
+    The distance of the frequency from zero and from the Nyquist frequency is at least half a line
+    width. At a smaller distance, a sine cannot be distinguished from a constant or from its alias.
     """
     nyquist = 0.5 / float(np.median(np.diff(time)))
     grid = near + width * np.linspace(-1.0, 1.0, 41)
@@ -164,7 +164,7 @@ def _is_a_tone(
     share: float,
     policy: Policy,
 ) -> bool:
-    """Whether one frequency explains about as much as one pitch, as it does at constant speed."""
+    """Whether one frequency explains about as much as one pitch, as for constant speed."""
     times = [p.run.time_s - p.run.time_s[0] for p in campaign.prepared]
     period = _significant_pitch(times, innovations, samples, policy)
     least = policy.ripples.max_tone_share * share
@@ -174,7 +174,7 @@ def _is_a_tone(
 def _significant_pitch(
     travels: Sequence[Array], innovations: Sequence[Array], samples: Samples, policy: Policy
 ) -> float | None:
-    """Return the pitch (m) of a significant line in the summed periodograms; None without one."""
+    """Return the pitch, m, of a significant line in the summed periodograms, otherwise None."""
     ripples, spans = policy.ripples, np.array([float(np.ptp(w)) for w in travels])
     longest = float(np.max(spans))
     steps = np.concatenate([np.abs(np.diff(w)) for w in travels])
@@ -199,7 +199,7 @@ def _significant_pitch(
     if not band.any():
         return None
     chance = np.ones(len(waves))
-    # Upper tail of chi-square; where it underflows, the excess over the expectation decides.
+    # Upper tail of chi-square. If it underflows, select the largest excess over the expectation.
     chance[band] = special.gammaincc(0.5 * degrees[band], 0.5 * total[band])
     k = int(np.argmax(np.where(chance <= chance.min(), total - degrees, -np.inf)))
     if chance[k] * band.sum() > policy.tones.chance:
@@ -282,7 +282,7 @@ def find_replicates(
         if len(first) < policy.replicates.min_pairs:
             continue
         level = float(first @ first + second @ second) / (2.0 * len(first))
-        # Noise with a long memory is correlated over a period, and more over half a period.
+        # Noise with a long correlation time is correlated over a period, and more over half of it.
         memory = _memory_of_noise(residual, counted, shift, policy.replicates.memory_lags)
         repeated = float(first @ second) - len(first) * memory
         product += repeated
@@ -305,10 +305,10 @@ def find_replicates(
 
 
 def _memory_of_noise(residual: Array, counted: Mask, shift: int, lags: Sequence[float]) -> float:
-    """Mean product one period apart that is due to the noise's memory, N^2.
+    """Autocovariance of the noise at a lag of one period, N^2.
 
-    It is the smallest mean product at lags between half a period and a whole one, where a repeating
-    error has both signs.
+    It is estimated by the smallest autocovariance at lags between half a period and one period,
+    where that of a repeating error has both signs.
     """
     products = []
     for share in lags:

@@ -52,8 +52,8 @@ _results.presented_by(
 )
 _results.presented_by("jbf.reporting.pictures", "plot", "page")
 
-# All names are imported at first use. numpy takes a tenth of a second to import and scipy most of a
-# second: `jbf --help` needs neither, and a prediction does not need scipy.
+# All names are imported lazily, at first access. The import of numpy takes about 0.1 s and that of
+# scipy nearly 1 s; `jbf --help` needs neither, and a prediction does not need scipy.
 _LATER = {
     "batch": "jbf.models.batch",
     "Parameter": "jbf.models.catalogue",

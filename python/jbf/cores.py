@@ -1,7 +1,7 @@
 """Limits on the number of threads and processes.
 
-The threads of the core read their number at first use. With thousands of threads most would wait,
-and a machine may not be able to start them.
+The thread pool of the core reads its size from the environment at first use. Threads beyond the
+number of cores are idle, and the operating system may fail to create thousands of threads.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def check_jobs(asked: int | None) -> None:
 def processes(asked: int | None, tasks: int) -> int:
     """Return the number of parallel processes.
 
-    It is the requested number (None: the number of cores), limited to the number of tasks. All of
-    them start at once, however little there is to do.
+    The result is the requested number (None: the number of cores), limited to the number of tasks.
+    All processes are started at once, even for short tasks.
     """
     return max(min(asked or os.cpu_count() or 1, tasks), 1)

@@ -1,8 +1,8 @@
-"""Demonstration on shipped data: a measurement, a model that misses an effect, and its diagnosis.
+"""Demonstration on shipped data: measurements, a model that lacks an effect, and a diagnosis.
 
-It shows the missing effect and the lower error of the completed model. The data come from a
-simulator that shares no code with the models (`simulator/` in the source tree). The true effects
-are in `truth.json`, which is opened only after the diagnosis.
+The diagnosis identifies the missing effect, and the completed model has a lower error. The data
+come from a simulator that shares no code with the models (`simulator/` in the source tree). The
+true effects are in `truth.json`, which is opened only after the diagnosis.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Demo:
         Parameters
         ----------
         full
-            Contain the complete report of the diagnosis in place of its summary.
+            True to return the complete report of the diagnosis instead of its summary.
         command
             Shell command that starts jbf, for the suggested next commands.
         """
@@ -91,7 +91,7 @@ class Demo:
 
 
 def run(directory: PathLike = "jbf-demo", progress: Progress | None = None) -> Demo:
-    """Copy the shipped data into `directory`, and diagnose them.
+    """Copy the shipped data into `directory`, and run the diagnosis.
 
     Writes `report.html` and `model.toml` there, next to the data.
     """

@@ -1,6 +1,6 @@
-"""Errors that a user can act on.
+"""Exceptions and warnings of the package, with messages for users.
 
-Every invalid input is reported in one line that names the file, the place in it, and the remedy.
+A message about invalid input is one line that names the file, the location and the remedy.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 class JbfError(Exception):
-    """Base of all errors that jbf raises deliberately.
+    """Base class of all exceptions defined by jbf.
 
     Examples
     --------
@@ -30,7 +30,7 @@ class JbfError(Exception):
 
 
 class FilmWarning(UserWarning):
-    """A film is too fast for a prediction to follow: see :meth:`jbf.Model.predict`.
+    """Warning that a lubricant film is too fast to integrate; see :meth:`jbf.Model.predict`.
 
     Examples
     --------
@@ -41,7 +41,7 @@ class FilmWarning(UserWarning):
 
 
 class Stopped(KeyboardInterrupt):
-    """A fit or a diagnosis was interrupted (Ctrl-C) before it was finished.
+    """Exception for a fit or a diagnosis that was interrupted (Ctrl-C).
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class Stopped(KeyboardInterrupt):
 
 
 class InputError(JbfError, ValueError):
-    """Invalid input; ``str(error)`` is one line.
+    """Exception for invalid input; ``str(error)`` is one line.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class InputError(JbfError, ValueError):
     file : path, optional
         The file, or the name of the object if there is no file.
     row : int, optional
-        Line in the file as an editor counts, the header being line 1.
+        Line number in the file; the header is line 1.
     column, key : str, optional
         The CSV column, or the dotted TOML key.
 
@@ -120,7 +120,7 @@ class InputError(JbfError, ValueError):
     def within(
         self, *, file: str | os.PathLike[str] | None = None, key_prefix: str = ""
     ) -> InputError:
-        """Return a copy of the error with a more precise place.
+        """Return a copy of the error with a more precise location.
 
         Parameters
         ----------
@@ -145,7 +145,7 @@ class InputError(JbfError, ValueError):
 
 
 class Unfinished(InputError):
-    """A fit or a diagnosis was aborted because it would have taken too long.
+    """Exception for a fit or a diagnosis that was aborted because it would take too long.
 
     Parameters
     ----------
@@ -179,12 +179,12 @@ class Unfinished(InputError):
 
 
 def printable(text: str) -> str:
-    """Escape control characters, so that the text does not control a terminal."""
+    """Escape control characters, which a terminal would otherwise interpret."""
     return _CONTROLS.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def quoted(text: object) -> str:
-    """Return external text in double quotes, with unprintable characters escaped, cut if long."""
+    """Return external text in double quotes, with control characters escaped, truncated if long."""
     shown = str(text)
     if not shown.isprintable():
         shown = shown.encode("unicode_escape").decode("ascii")
@@ -201,7 +201,7 @@ def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
 
 
 def did_you_mean(word: object, known: Iterable[str]) -> str:
-    """Return a remedy for an unknown word: the nearest known one, else the list of known ones."""
+    """Return a remedy for an unknown word: the most similar known word, or all known words."""
     names = list(known)
     guess = closest(word, names) if isinstance(word, str) else None
     if guess is not None:

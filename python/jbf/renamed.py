@@ -1,4 +1,4 @@
-"""Names of effects, parameters and options before version 0.1.0, which are still read.
+"""Names of effects, parameters and options from before version 0.1.0, accepted as aliases.
 
 Files and arguments with an old name are accepted with a warning that states the current name.
 """
@@ -50,7 +50,7 @@ PARAMETERS = {
     "viscous_load_dependence.c_s_m": "viscous_load_dependence.c",
     "viscous_thinning.w_s_m": "viscous_thinning.w",
 }
-"""Parameters of laws, and those of effects by dotted name."""
+"""Current names of parameters by old name; those of effects are dotted."""
 
 OPTIONS = {
     "--clean-recording": "--no-artefact-margin",
@@ -61,7 +61,7 @@ OPTIONS = {
     "--max-velocity-m-s": "--max-velocity",
     "--noise-n": "--noise",
 }
-"""Options of the command line."""
+"""Current names of command-line options by old name."""
 
 
 def current_effect(name: str, known: Collection[str] = ()) -> str:

@@ -1,8 +1,8 @@
 """Common methods of results, and the registry of the functions that present them.
 
-A result holds numbers and does not depend on their presentation. Presenters are registered by
-operation and type with `register`. A module that registers them is named by `presented_by` and
-imported at the first call, because texts and plots take long to import.
+The class of a result contains numerical data and does not depend on presentation code. Presenters
+are registered by operation and type with `register`. A module that registers them is named by
+`presented_by` and imported at the first call, because texts and plots take long to import.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def optional(module: str, what: str) -> Any:
 
 
 class Shown:
-    """Base of objects with a notebook representation."""
+    """Base class of objects with an HTML representation in notebooks."""
 
     def _repr_html_(self) -> str:
         table: str = present("small_table", self)
@@ -99,10 +99,10 @@ class Shown:
 
 
 class Result(Shown):
-    """Methods that all results share."""
+    """Base class of results, with the methods common to all of them."""
 
     def summary(self) -> str:
-        """Return the result in words, as text for a terminal."""
+        """Return a summary of the result as plain text for a terminal."""
         text: str = present("summary", self)
         return text
 
@@ -112,7 +112,8 @@ class Result(Shown):
         Parameters
         ----------
         axes
-            As many axes as the plot returns. Default: those of a new figure.
+            Axes to draw on; their number must be that of the returned axes. Default: those of a new
+            figure.
 
         Returns
         -------
@@ -125,18 +126,18 @@ class Result(Shown):
         InputError
             The number of axes is wrong, or the result has nothing to plot.
         """
-        import numpy as np  # most of the time of `import jbf`
+        import numpy as np  # a large part of the import time of jbf
 
         drawn = np.ravel(np.asarray(present("plot", self, axes), dtype=object))
         single: Axes = drawn[0]
         return drawn if len(drawn) > 1 else single
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result as data for JSON; every result implements its own."""
+        """Return the result as JSON-serializable data; implemented by each subclass."""
         raise TypeError(f"{type(self).__name__} cannot be converted to JSON")
 
     def to_frame(self) -> Any:
-        """Return a `pandas.DataFrame`; pandas is not a dependency of jbf and must be installed.
+        """Return the result as a `pandas.DataFrame`; pandas is an optional dependency.
 
         Raises
         ------

@@ -18,7 +18,7 @@ PIPE_BYTES = 1 << 30
 LARGEST_BYTES = 1 << 29
 """Largest size of a text that is read at once.
 
-As a table it would take fourteen times as much memory.
+A table parsed from the text requires about fourteen times as much memory.
 """
 _PACKED = {
     b"\x1f\x8b": ("is compressed (gzip), not text", "unpack it"),
@@ -31,7 +31,7 @@ _PACKED = {
 
 
 def os_error(path: Path, error: OSError, doing: str) -> InputError:
-    """Return the error to raise for a file that cannot be `doing` ("read", "written")."""
+    """Return the error for a failed file operation; `doing` is "read" or "written"."""
     if isinstance(error, FileNotFoundError):
         try:
             guess = closest(path.name, (entry.name for entry in path.parent.iterdir()), 0.8)
@@ -191,9 +191,9 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 def write_texts(texts: Mapping[str | os.PathLike[str], str]) -> None:
     """Write UTF-8 files, each of them atomically.
 
-    A reader sees the old file or the new one, never a part. Each text is first written to a
-    temporary file in the same folder. Once all are complete, they are renamed. If one text cannot
-    be staged, no file is replaced. A pipe or device is written to directly.
+    A concurrent reader sees the complete old file or the complete new one. Each text is first
+    written to a temporary file in the same folder. Once all are complete, they are renamed. If one
+    text cannot be staged, no file is replaced. A pipe or device is written to directly.
 
     Raises
     ------
@@ -215,7 +215,7 @@ def write_texts(texts: Mapping[str | os.PathLike[str], str]) -> None:
 
 
 def _stage(path: Path, data: bytes, staged: list[tuple[Path, Path]]) -> None:
-    """Write to a temporary file, which is added to `staged` before it is created."""
+    """Write `data` to a temporary file, which is added to `staged` before its creation."""
     try:
         if path.exists() and not path.is_file():
             path.write_bytes(data)

@@ -1,8 +1,9 @@
 """Restriction of BLAS to one thread while fits run.
 
-The core uses all cores. The matrices of a fit are long and narrow, so a second BLAS thread gains
-nothing. However, OpenBLAS threads keep spinning for about 20 ms after each call, on the cores that
-the core needs. Fits took twice as long with them, and four times as long on a busy machine.
+`jbf._core` uses all processor cores. The matrices of a fit are tall and narrow, so that additional
+BLAS threads do not accelerate it. However, idle OpenBLAS threads busy-wait for about 20 ms after
+each call and occupy processor cores. They doubled the duration of fits, and quadrupled it on a
+loaded machine.
 """
 
 from __future__ import annotations

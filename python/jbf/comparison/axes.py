@@ -1,7 +1,7 @@
 """Axes along which a residual is examined: each function assigns a bin to each sample.
 
-An axis shows where the model fails. It sorts samples into few bins; a residual whose mean differs
-between bins fails along that axis.
+An axis shows where the model fails. It sorts samples into few bins; the model fails along an axis
+if the mean residual differs between its bins.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
-    """Lubrication regimes of a law with a film; thirds of the recorded speeds for any other law."""
+    """Bin by lubrication regime for a law with a film, else by thirds of the recorded speeds."""
     speeds = [np.abs(p.motion.velocity) for p in campaign.prepared]
     axis: Axis = "regime"
     if u_tr is not None:
@@ -102,8 +102,8 @@ def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
     for p in campaign.prepared:
         turned = np.mod(p.motion.angle_rad, 2.0 * np.pi)
         kind = np.minimum((turned / width).astype(np.intp), ANGLE_BINS - 1)
-        # Friction that depends on angle changes sign with the motion: two sets of bins show the sum
-        # and the difference.
+        # Angle-dependent friction changes sign with the motion, other angle-dependent forces do
+        # not: bins per direction distinguish both.
         signed = np.where(p.motion.velocity < 0, kind, kind + ANGLE_BINS)
         places.append(np.where(p.motion.resting, -1, signed).astype(np.intp))
     return Binned("angle", _both_directions([Bin(centre=m, unit="deg") for m in middles]), places)
@@ -139,7 +139,7 @@ def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array])
 
 
 def _after_events(p: Prepared, event: npt.NDArray[np.bool_], measure: Array) -> Array:
-    """Increase of `measure` since the last event; NaN before the first."""
+    """Return the increase of `measure` since the last event; NaN before the first event."""
     index = np.where(event, np.arange(len(event)), -1)
     last = np.maximum.accumulate(index)
     since = measure - measure[np.maximum(last, 0)]
@@ -167,14 +167,15 @@ def _run(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def force_axis(forces: Sequence[Array], error: float = 0.0, unit: str = "N") -> Binned:
-    """Bin samples by a force: this axis shows the nonlinearity of a load cell.
+    """Bin samples by a force; this axis reveals the nonlinearity of a load cell.
 
     Parameters
     ----------
     error
         Standard error of these forces. Edges are removed until few samples are close to each edge.
         At most half as many samples as in the smaller neighbouring bin may lie within two standard
-        errors of an edge. Otherwise the bins would separate the signs of the error.
+        errors of an edge. Otherwise the assignment to bins would be correlated with the sign of the
+        error.
     """
     every = np.concatenate(list(forces))
     edges = np.unique(np.quantile(every, np.linspace(0, 1, FORCE_BINS + 1)[1:-1]))

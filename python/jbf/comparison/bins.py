@@ -52,7 +52,7 @@ class Bin:
     direction
         Direction of motion of its samples.
     with_rest
-        Whether a backward bin also contains samples at rest.
+        True if a backward bin also contains samples at rest.
     """
 
     name: str = ""
@@ -74,7 +74,7 @@ class Bin:
 class Binned:
     """Samples of every run sorted into bins.
 
-    `places` holds the bin index of each sample, one array a run; -1 means no bin. `force_unit` is
+    `places` holds the bin index of each sample, one array per run; -1 means no bin. `force_unit` is
     the unit of the residuals.
     """
 

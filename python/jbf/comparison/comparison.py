@@ -43,11 +43,11 @@ class Comparison(Result):
     rms
         Root mean square of record minus prediction over the samples that count, N.
     noise_rms
-        Noise floor of the record, from the data only, N; zero where it is not known.
+        Noise floor of the record, from the data only, N; zero if unknown.
     failures
         Axes along which the residual has a pattern, strongest first.
     predictions, residuals
-        One array a run, N; residual is record minus prediction.
+        One array per run, N; the residual is record minus prediction.
 
     Examples
     --------
@@ -94,7 +94,7 @@ class Comparison(Result):
 
 
 def predicted(model: Model, campaign: Campaign) -> list[Array]:
-    """Predictions of a model for prepared runs, N, one array a run."""
+    """Return the predictions of a model for prepared runs, N, one array per run."""
     motions = campaign.motions
     core = chain(model.rig, model.law, model.clock, model.effects)
     warn_of_fast_film(core, model.values, motions)

@@ -33,7 +33,7 @@ class ModelError:
     difference
         `rms` minus that of the best model.
     stderr
-        Standard error of the difference; nan for the best model and where there is only one unit.
+        Standard error of the difference; nan for the best model, and if there is only one unit.
     """
 
     name: str
@@ -69,13 +69,14 @@ class ModelComparison(Result):
 
     Notes
     -----
-    The errors of two models in the same run are correlated, so that their difference is better
-    known than either. With the sums of squares S_iu of model i in the units u, the difference
-    ``sqrt(sum(S_iu)/n) - sqrt(sum(S_bu)/n)`` is computed again without each of the m units. Its
-    standard error is ``sqrt((m - 1)/m sum((d_u - mean(d))^2))`` (delete-one jackknife; Efron &
-    Tibshirani, An Introduction to the Bootstrap, 1993, ch. 11). The units are the runs, or their
-    strokes where there are fewer than six runs. A model that was fitted to these runs has an
-    advantage over one that was not: compare on runs that no fit used.
+    The errors of two models in the same run are correlated, so that the standard error of their
+    difference is generally smaller than that of either error. With the sums of squares S_iu of
+    model i in the units u, the difference ``sqrt(sum(S_iu)/n) - sqrt(sum(S_bu)/n)`` is computed
+    again without each of the m units. Its standard error is ``sqrt((m - 1)/m sum((d_u -
+    mean(d))^2))`` (delete-one jackknife; Efron & Tibshirani, An Introduction to the Bootstrap,
+    1993, ch. 11). The units are the runs, or their strokes if there are fewer than six runs. The
+    error of a model that was fitted to these runs is biased downwards: use runs that were not used
+    in any fit.
 
     Examples
     --------
@@ -167,7 +168,7 @@ def compare_models(comparisons: Mapping[str, Comparison]) -> ModelComparison:
 
 
 def difference_error(a: Array, b: Array, sizes: npt.NDArray[np.int_]) -> float:
-    """Jackknife standard error of the difference of two RMS values over common units.
+    """Compute the jackknife standard error of the difference of two RMS values over common units.
 
     Parameters
     ----------

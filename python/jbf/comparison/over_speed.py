@@ -44,7 +44,7 @@ class OverSpeed:
 
 
 def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
-    """Mean friction by speed over all samples that count, for each direction with motion."""
+    """Compute the mean friction by speed over all counted samples, for each direction of motion."""
     rest = added_by(comparison, non_friction_effects(comparison))
     prepared, samples = comparison.campaign.prepared, comparison.samples
     speed = samples.flat([p.motion.velocity for p in prepared])

@@ -38,7 +38,7 @@ def without(model: Model, effects: Collection[str]) -> Model:
 
 
 def added_by(comparison: Comparison, effects: Collection[str]) -> list[Array]:
-    """Contribution of effects to the model's friction in each run, N.
+    """Return the contribution of effects to the model's friction in each run, N.
 
     It is zero for effects that the model does not have.
     """
@@ -60,7 +60,7 @@ def non_friction_effects(comparison: Comparison) -> tuple[str, ...]:
 def explained_residual(before: Comparison, after: Comparison) -> dict[str, list[Array]]:
     """Part of a model's residual explained by each new effect of a larger model, N.
 
-    There is one array a run. The part is the contribution that the parameters of the first model
+    There is one array per run. The part is the contribution that the parameters of the first model
     cannot compensate: the contribution minus its projection on the derivatives of that model.
     """
     model, campaign = before.model, before.campaign

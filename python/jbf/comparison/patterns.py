@@ -69,14 +69,14 @@ def find_failures(
     u_tr: float | None,
     noise_rms: float,
 ) -> tuple[Failure, ...]:
-    """Axes along which record minus prediction has a pattern, strongest first."""
+    """Find the axes along which record minus prediction has a pattern, strongest first."""
     axes = all_axes(campaign, u_tr)
     patterns = (pattern_along(axis, samples, residuals, noise_rms) for axis in axes)
     return tuple(sorted((f for f in patterns if f is not None), key=lambda f: -f.share))
 
 
 def bin_means(axis: Binned, samples: Samples, residuals: Sequence[Array]) -> tuple[Array, Counts]:
-    """Mean of the residuals in each bin, N, and the number of its samples."""
+    """Return the mean residual in each bin, N, and the number of samples."""
     r, places = samples.flat(residuals), samples.flat(axis.places)
     known = places >= 0
     counts = np.bincount(places[known], minlength=len(axis.bins))
@@ -93,7 +93,7 @@ def pattern_along(
     significance: float = SIGNIFICANCE,
     told_of: Sequence[Array] | None = None,
 ) -> Failure | None:
-    """Pattern of residuals (record minus prediction, N) along an axis; None if not significant.
+    """Return the pattern of residuals (N) along an axis; None if it is not significant.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def pattern_along(
     means, counts = bin_means(axis, samples, residuals)
     used = int(np.count_nonzero(counts))
     explained = float(np.sum(counts * means**2))
-    # By chance, the mean of each bin explains one noise variance.
+    # Under the null hypothesis, the mean of each bin explains one noise variance.
     chance = used * noise_rms**2
     spread = np.sqrt(2.0 * used) * noise_rms**2
     share = (explained - chance) / total if total > 0 else 0.0
@@ -124,13 +124,13 @@ def pattern_along(
 
 
 def pattern_words(axis: Binned, means: Array, counts: Counts, found: Array | None = None) -> str:
-    """Text for a pattern of the means.
+    """Return the text that describes a pattern of the means.
 
     `found` holds the means that select the bins, if they differ.
     """
     weight = counts * (means if found is None else found) ** 2
     unit = axis.force_unit
-    # With very many bins, even the strongest has a small fraction.
+    # With very many bins, even the largest fraction of a bin is small.
     strong = (weight > STRONG_SHARE * weight.sum()) | (weight == weight.max())
     ways = np.array([b.direction for b in axis.bins])
     both_ways = bool(np.all(ways != 0)) and strong.sum() > 1

@@ -62,7 +62,7 @@ def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[st
 def on_the_journal_clock(report: Report | None = None) -> float:
     """Return the largest deviation of the ratios without compensation.
 
-    The film of the bench has the journal clock.
+    The film of the simulated bench then has the journal clock.
     """
     model, bench = fit_friction(clock="journal", report=report)
     schemes = {"none": standard_schemes(model)["none"]}

@@ -20,7 +20,7 @@ from jbf.records.rig import Rig
 
 @dataclass(frozen=True)
 class Bench:
-    """Plant `v' = -a v + b (u - F)` with an encoder, a counter that rolls over, and noise.
+    """Plant `v' = -a v + b (u - F)` with an encoder, a counter that wraps around, and noise.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Bench:
     seed : int
         Seed of the noise.
     stood_s : float
-        Time that the shaft has been at rest before the run, s; its film has been squeezed out.
+        Duration of the rest before the run, s, in which the film is squeezed out.
     dt_s : float
         Step of the loop, s; the plant takes `inner_steps` steps in each.
     """
@@ -156,7 +156,7 @@ ELASTIC: Mapping[str, Mapping[str, float]] = {
         "drive_compliance.c": 0.5,
         "drive_compliance.J": 1.8e-4,
     },
-    # The shaft turns by one encoder count before it slides.
+    # The presliding displacement is one encoder count.
     "contact": {"presliding.sigma": 0.26 * COUNTS_PER_RAD / _core.thesis_bearing()["radius_m"]},
     "nothing": {},
 }

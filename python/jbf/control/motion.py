@@ -37,7 +37,7 @@ def follow(
     recorded
         Run whose speed or angle is followed. Its load, if recorded, acts on the bench.
     rig
-        Rig whose journal radius converts m/s to rad/s. Without a bearing, m are used as rad.
+        Rig whose journal radius converts m/s to rad/s. Without a bearing, 1 m is taken as 1 rad.
     control
         Controlled quantity.
     bench

@@ -1,9 +1,8 @@
 """Robustness of a compensator against errors of its model.
 
-Every effect of the catalogue is hidden in the plant, one at a time, while the compensator carries
-the base law. An effect of the instrument does not act on the shaft; it is hidden in the records to
-which the law is fitted. Further cases are a wrong load, viscosity, friction and motor, and more
-noise.
+Every effect of the catalogue is added to the plant, one at a time, while the compensator uses the
+base law. An effect of the instrument does not act on the shaft; it is added to the records to which
+the law is fitted. Further cases are a wrong load, viscosity, friction and motor, and more noise.
 """
 
 from __future__ import annotations
@@ -51,7 +50,7 @@ STRONG: Mapping[str, Mapping[str, float]] = {
     "inertia": {"m_e": 2.0},
     "sensor_offset": {"b": 5.0},
 }
-"""Parameters of hidden effects that change friction by tens of percent.
+"""Parameters of the added effects, which change friction by tens of percent.
 
 Effects that are not listed have the catalogue's first starting value.
 """
@@ -70,7 +69,7 @@ class Case:
     bench: Bench
     load_factor: float = 1.0
     carried: Model | None = None
-    """Model that the compensator carries, if it is not the base model of all cases."""
+    """Model used by the compensator, if it is not the base model of all cases."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +109,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
         if page.stage == "instrument":
             yield Case(f"hidden {name}", base, bench, carried=fit_to_simulated_records(base, plant))
             continue
-        # An effect of the load appears only under a load that differs from the rig's.
+        # An effect of the load is observable only under a load that differs from that of the rig.
         yield Case(f"hidden {name}", plant, bench, 1.5 if "loads" in page.needs else 1.0)
     yield Case("load doubled", base, bench, 2.0)
     yield Case("load halved", base, bench, 0.5)
@@ -157,7 +156,7 @@ def robustness(
     scheme: Scheme | None = None,
     report: Report | None = None,
 ) -> list[Outcome]:
-    """Compute the error ratios for every case of `cases`; the compensator carries `base`.
+    """Compute the error ratios for every case of `cases`; the compensator uses `base`.
 
     `scheme` replaces the observed compensator. It and the control law know only the undisturbed
     bench.

@@ -174,7 +174,7 @@ def run(
     assumed
         Bench assumed by control law, observer and compensator. Default: the true one.
     carried
-        Model that the compensator carries. Default: the true one.
+        Model used by the compensator. Default: the true one.
     settings
         Settings of the observed compensator. Default: `tune(carried, assumed)`.
     guard
@@ -227,7 +227,7 @@ def run(
 
 
 def _mend(problem: str) -> str:
-    """Return the advice for an input that the core's loop rejects."""
+    """Return the remedy for an input that the core's loop rejects."""
     if problem.startswith("top_speed_rad_s"):
         return "decrease counts_per_rad, or limit_v and input_rad_s2_v, or use a wider counter"
     return "correct the value"

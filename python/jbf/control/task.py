@@ -83,9 +83,8 @@ class Task:
         return span * (0.5 if self.wave == "sine" else 1.0 / math.pi) * self.frequency_rad_s
 
 
-# The velocity programs start up to 2 rad/s off their reference, but no printed peak contains this
-# error. The thesis therefore excluded the start. In position control its peaks are those of the
-# start.
+# In velocity control the initial error is up to 2 rad/s, but no printed peak contains this error:
+# the thesis must have excluded the start. In position control the printed peaks occur at the start.
 _LEFT_OUT_S = 2.0
 
 

@@ -102,7 +102,7 @@ class Tables:
 
     @property
     def predicted(self) -> list[Cell]:
-        """The thirteen cells that are printed and were not fitted."""
+        """The thirteen cells with a printed value that were not fitted."""
         return [c for c in self.cells.values() if c.column in COLUMNS[1:] and c.ratio is not None]
 
     def within(self, factor: float) -> int:
@@ -182,10 +182,11 @@ def tables(
 ) -> Tables:
     """Compute both tables on a bench with a friction model.
 
-    `schemes` fill the columns of their names.
+    `schemes` maps the names of columns to schemes.
 
-    A cell is the root mean square over several seeds of the noise. Where the shaft reverses within
-    one encoder count, the noise decides when, and a single run is not representative.
+    A cell is the root mean square over several seeds of the noise. If the shaft reverses within one
+    encoder count, the instant of the reversal depends on the noise, and a single run is not
+    representative.
     """
     columns = standard_schemes(model) if schemes is None else schemes
     cells = {}

@@ -18,7 +18,7 @@ from jbf.models.model import Model, the_model
 from jbf.records.run import Run
 
 _SHARE_OF_SAMPLING = 0.12
-"""Bandwidth of the observer times the step; the delay of half a step then costs 3.4 degrees."""
+"""Bandwidth of the observer times the step; a delay of half a step is 3.4 deg of phase."""
 
 _MOTOR_SHARE = 0.1
 """Tolerance of the motor, as a share of the largest voltage."""
@@ -105,7 +105,7 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
         level_limit_v=level_v,
         rest_limit_v=level_v + _MOTOR_SHARE * bench.limit_v,
         slow_rad_s=max(5.0 * speed_noise, 2.0 * count_rad * bandwidth),
-        # Do not soften the loop if the encoder is too coarse for a stiffer one.
+        # Do not reduce the loop gain if the encoder resolution is too low for a higher gain.
         loop_rad_s=max(bandwidth / 2.0, LAW_RAD_S),
         breakaway=1.0,
         moving_v=min(2.5 * level_v, bench.limit_v),

@@ -15,7 +15,7 @@ BEARING_FIELDS = ("radius_m", "length_m", "clearance_m", "mass_kg", "viscosity_p
 class Block:
     """Template of a multi-line constant: opening, repeated line, closing.
 
-    A closing `;` is appended to the last line; any other closing has a line of its own.
+    A closing `;` is appended to the last line; any other closing is a separate line.
     """
 
     opening: str
@@ -59,7 +59,7 @@ class Language:
     check: Callable[[Group, str], list[str]]
 
     def number(self, value: float) -> str:
-        """Return the shortest text that is read back as the same value."""
+        """Return the shortest text that is parsed as the same value."""
         if math.isinf(value):
             return self.infinity if value > 0 else f"-{self.infinity}"
         return repr(float(value))

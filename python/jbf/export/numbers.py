@@ -94,7 +94,7 @@ class Numbers:
 
 
 def _units_note(model: Model) -> str:
-    """Describe the units of names with unit suffixes; empty if the suffixes are true."""
+    """Describe the units of names with unit suffixes; empty if the suffixes are correct."""
     quantities = model.rig.quantities
     if quantities.force == "N" and quantities.motion != "rotary":
         return ""

@@ -92,7 +92,7 @@ def rust(model: Model, source: str = "a model") -> str:
 
 
 def _path(group: Group) -> str:
-    """Return the Rust type of a law, or of an effect at its place."""
+    """Return the Rust type of a law, or of an effect at its stage."""
     if isinstance(group.page, Law):
         return f"jbf_core::law::{group.name}::{group.page.rust_type}<T>"
     effect = f"jbf_core::effect::{group.name}::{group.page.rust_type}<T>"

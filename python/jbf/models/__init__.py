@@ -1,4 +1,4 @@
-"""Models: a law, effects and parameters; predict the friction from the motion of a run.
+"""Models: prediction of friction from the motion of a run by a law with effects and parameters.
 
 Input: a `Rig`, names from the catalogue, parameter values, and runs to predict. Output: predictions
 and their derivatives, model files, trajectories and batches of the base law. All physics is

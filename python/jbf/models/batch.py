@@ -37,7 +37,7 @@ def _column(value: npt.ArrayLike, key: str) -> npt.NDArray[np.float64]:
 
 
 def _sets(columns: dict[str, npt.ArrayLike]) -> npt.NDArray[np.float64]:
-    """Return one row per set; scalars are repeated."""
+    """Return the parameters as an array with one row per set; scalars are broadcast."""
     arrays = {key: _column(value, key) for key, value in columns.items()}
     count = max((a.size for a in arrays.values() if a.ndim), default=1)
     for key, a in arrays.items():
@@ -77,15 +77,16 @@ def batch(
 ) -> Array:
     """Compute the friction coefficients of many parameter sets, or their sums of squared errors.
 
-    Sets run in parallel in the lanes of the best instruction set of the machine, on all cores. The
-    result is bitwise equal on all of them. Films start at the transition eccentricity.
+    Sets are evaluated in parallel on all cores, with the best SIMD instruction set of the machine.
+    The results are bitwise identical for all instruction sets. Films start at the transition
+    eccentricity.
 
     Parameters
     ----------
     rig : Rig
         Bearing, lubricant and load.
     velocity : array, shape (n,) or (n, sets)
-        Surface speed, m/s, at samples `dt_s` apart: one motion for all sets, or one per set.
+        Surface speed, m/s, at samples with spacing `dt_s`: one motion for all sets, or one per set.
     dt_s : float
         Step, s; there are no substeps.
     f_m, U_tr_m_s, K0, gamma, load_n : float or array of shape (sets,)
@@ -99,7 +100,7 @@ def batch(
     dtype : dtype
         ``np.float64`` or ``np.float32``: the precision of steps and result.
     out : array, optional
-        Array for the coefficients: reusing one is faster than allocating a new one.
+        Array in which to store the coefficients, which avoids an allocation.
 
     Returns
     -------

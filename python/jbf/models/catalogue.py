@@ -1,4 +1,4 @@
-"""Laws and effects of the core, and registered ones: names, forms, bounds, starting values."""
+"""Catalogue of built-in and user-defined laws and effects, with their parameters."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ class _Summed(Protocol):
 BESIDE = ("other friction", "instrument")
 """Stages whose effects can be combined with a user-defined law.
 
-They add to its force, or act on the sum. Effects of the other stages change parts of a law that are
-unknown for a user-defined one.
+The effects add to the force of the law, or act on the sum. Effects of the other stages modify
+internal terms of a law, which are unknown for a user-defined law.
 """
 CARRIER = "coulomb"
-"""Law of the core that carries the effects of a user-defined law; its own force is nearly zero."""
+"""Built-in law with nearly zero force, to which the effects of a user-defined law are attached."""
 
 Page = TypeVar("Page", bound=_Summed)
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One parameter of a law or an effect; `name` carries the unit.
+    """Description of a parameter of a law or an effect.
 
     Attributes
     ----------
@@ -49,21 +49,22 @@ class Parameter:
     lower, upper
         Bounds, in the unit.
     null
-        The value at which the effect vanishes, if there is one.
+        Value at which the effect vanishes; None if there is no such value.
     starts
-        Starting values of a fit, likeliest first.
+        Starting values of a fit, the most likely first.
     log
-        True if a fit should use the logarithm.
+        True if a fit should use the logarithm of the parameter.
     period
         The period of an angle, for parameters that wrap.
     start
-        Quantity in the data that gives a starting value, for a law in newtons. "catalogue" if
-        `starts` always apply.
+        Quantity of the data from which the starting value is derived, for a law in newtons.
+        "catalogue" if `starts` always apply.
     bound
-        Quantity in the data that bounds it from above: "transition_speed" is the highest recorded
+        Quantity of the data that is an upper bound: "transition_speed" is the highest recorded
         speed, "catalogue" means no such bound.
     stated
-        True for a number that no fit estimates: it is held at its start, or is fixed elsewhere.
+        True if the parameter is not estimated by a fit: it is held at its starting value, or
+        determined by other means.
 
     Examples
     --------
@@ -87,7 +88,7 @@ class Parameter:
 
 
 class Pages(dict[str, Page]):
-    """Catalogue pages by name, displayed as a short table."""
+    """Mapping of names to catalogue entries, displayed as a short table."""
 
     def __repr__(self) -> str:
         widest = max(map(len, self), default=0)
@@ -99,27 +100,27 @@ class Pages(dict[str, Page]):
 
 @dataclass(frozen=True, repr=False)
 class Effect:
-    """The catalogue page of one effect.
+    """Catalogue entry of an effect.
 
     Attributes
     ----------
     needs
         Requirements on the law and the record.
     refused
-        For each law that the effect cannot be combined with, the reason: "the law ...".
+        Laws with which the effect cannot be combined, each with the reason ("the law ...").
     moves_jumps
         True if a parameter shifts the instants at which friction jumps.
     spreads_jumps
-        True if the reading of a jump takes time.
+        True if the effect distributes the reading of a jump over time.
     peaks
-        The parameter along which a likelihood has many peaks; None for most effects.
+        Parameter in which the likelihood is multimodal; None for most effects.
     further_of
-        The effect of which this is a further instance; None for most effects.
+        Effect of which this one is an additional instance; None for most effects.
     unknown_start
-        True if the first sample of a run does not determine the initial state, and its influence
-        does not decay.
+        True if the initial state is not determined by the first sample of a run, and the influence
+        of that state does not decay.
     rust_place, rust_type
-        Names of its types in the core; empty for a user-defined effect.
+        Rust types of the stage and of the effect in the core; empty for a user-defined effect.
     columns
         Columns that a user-defined effect requires.
     """
@@ -149,10 +150,10 @@ class Effect:
 
 @dataclass(frozen=True, repr=False)
 class Law:
-    """The catalogue page of one base law.
+    """Catalogue entry of a base law.
 
-    A law that does not need a bearing returns newtons and needs no load. `rust_type` is the name of
-    its type in the core.
+    A law that does not need a bearing returns a force, N, and does not need a load. `rust_type` is
+    the Rust type of the law in the core.
     """
 
     name: str
@@ -179,7 +180,7 @@ def _parameter(page: _core.ParameterPage) -> Parameter:
 
 @cache
 def built_in() -> dict[str, Effect]:
-    """The effects of the core by name, in the order of the signal chain."""
+    """Return the built-in effects by name, in the order of the signal chain."""
     pages = {}
     for page in _core.effects():
         fields = dict(page)
@@ -193,7 +194,7 @@ _user_effects: dict[str, Effect] = {}
 
 
 def user_effects() -> dict[str, Effect]:
-    """The currently registered user-defined effects."""
+    """Return the currently registered user-defined effects."""
     return _user_effects
 
 
@@ -210,7 +211,7 @@ def drop(name: str) -> bool:
 
 
 def effects() -> Pages[Effect]:
-    """All effects by name, in the order of the signal chain; user-defined ones come last.
+    """Return all effects by name, in the order of the signal chain; user-defined effects are last.
 
     Returns
     -------
@@ -227,7 +228,7 @@ def effects() -> Pages[Effect]:
 
 @cache
 def built_in_laws() -> Pages[Law]:
-    """The laws of the core by name."""
+    """Return the built-in laws by name."""
     pages = Pages[Law]()
     for page in _core.laws():
         fields = dict(page)
@@ -240,7 +241,7 @@ _user_laws: dict[str, Law] = {}
 
 
 def user_laws() -> dict[str, Law]:
-    """The currently registered user-defined laws."""
+    """Return the currently registered user-defined laws."""
     return _user_laws
 
 
@@ -257,7 +258,7 @@ def drop_law(name: str) -> bool:
 
 
 def laws() -> Pages[Law]:
-    """All base laws by name; user-defined ones come last.
+    """Return all base laws by name; user-defined laws are last.
 
     Returns
     -------
@@ -278,7 +279,7 @@ def find_effect(name: str) -> Effect:
     Raises
     ------
     InputError
-        The effect is unknown; the message suggests the nearest known one.
+        The effect is unknown; the message suggests the most similar name.
     """
     known = effects()
     if isinstance(name, str):
@@ -292,13 +293,13 @@ def find_effect(name: str) -> Effect:
 
 
 def find_law(name: str) -> Law:
-    """Return the law of the given name; an InputError names an unknown one."""
+    """Return the law of the given name; raise an InputError if it is unknown."""
     known = laws()
     return known[one_of(name, known, "law")]
 
 
 def find_clock(name: str) -> Clock:
-    """Return the clock of the given name; an InputError names an unknown one."""
+    """Return the clock of the given name; raise an InputError if it is unknown."""
     return one_of(name, CLOCKS, "clock")
 
 
@@ -327,28 +328,28 @@ def check_applies(law: str, names: Iterable[str]) -> None:
 
 
 def transition_speed(law: str, values: Sequence[float]) -> float | None:
-    """Speed (m/s) above which the film carries the full load; None for a law without a film."""
+    """Return the speed, m/s, above which the film carries the full load; None without a film."""
     pages = zip(find_law(law).parameters, values, strict=False)
     return next((float(v) for p, v in pages if p.bound == "transition_speed"), None)
 
 
 def can_be_added(name: str, present: Collection[str]) -> bool:
-    """Return True if an effect may be added to those present.
+    """Return True if an effect can be added to the effects in `present`.
 
-    A further instance of an effect requires that effect.
+    An additional instance of an effect requires the first instance.
     """
     page = effects().get(name)
     return page is None or page.further_of is None or page.further_of in present
 
 
 def can_be_removed(name: str, present: Collection[str]) -> bool:
-    """Return True if none of the effects present is a further instance of the given one."""
+    """Return True if `present` contains no additional instance of the effect."""
     pages = effects()
     return not any(e in pages and pages[e].further_of == name for e in present)
 
 
 def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:
-    """Return the effects in the order of the signal chain, without repeats."""
+    """Return the effects in the order of the signal chain, without duplicates."""
     chosen = {find_effect(name).name for name in checked_names(names, "effects")}
     return tuple(name for name in effects() if name in chosen)
 
@@ -364,8 +365,8 @@ def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
 def find_parameter(name: str, known: Collection[str]) -> str:
     """Return the full dotted name of a parameter given with or without its unit.
 
-    `warm_up.tau` finds `warm_up.tau_s`, and an earlier name the current one; an InputError names an
-    unknown one.
+    For example, `warm_up.tau` yields `warm_up.tau_s`. An old name yields the current one. An
+    InputError is raised for an unknown name.
     """
     name = current_parameter(name, known)
     if name in known:
@@ -378,7 +379,7 @@ def find_parameter(name: str, known: Collection[str]) -> str:
 
 @cache
 def vocabulary() -> Vocabulary:
-    """Names and bounds that are valid in a model file."""
+    """Return the names and bounds that are valid in a model file."""
 
     def bounds(parameters: tuple[Parameter, ...]) -> dict[str, tuple[float, float]]:
         return {p.name: (min(p.lower, _null(p)), max(p.upper, _null(p))) for p in parameters}

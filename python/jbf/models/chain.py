@@ -1,4 +1,4 @@
-"""Construction of the core's signal chain for a rig, and of the motion that drives it."""
+"""Construction of the signal chain of a rig, and of its input motion, as objects of the core."""
 
 from __future__ import annotations
 
@@ -41,19 +41,19 @@ Array = npt.NDArray[np.float64]
 MAX_STEP_S = 0.02
 """Longest inner step of a prediction, s.
 
-The core ends a step at every reversal and takes shorter steps if the law or an effect requires
-them. At 0.02 s the error of the base law is about 1e-5 of its peak.
+The core ends a step at every reversal, and reduces the step if the law or an effect requires it. At
+0.02 s the error of the base law is about 1e-5 of its peak.
 """
 
 
 @contextmanager
 def core_refusals(mend: str | Callable[[str], str] = "correct the value") -> Iterator[None]:
-    """Convert errors of the core to an InputError, the only error type that users receive.
+    """Convert exceptions of the core to an InputError.
 
     Parameters
     ----------
     mend
-        The remedy, or a function that returns it for the message of the core.
+        The remedy, or a function that maps the message of the core to the remedy.
     """
     try:
         yield
@@ -87,7 +87,7 @@ def check_rig(rig: Rig, law: str) -> None:
 
 
 def core_bearing(rig: Rig) -> _core.BearingSizes | None:
-    """Sizes of the bearing in the form of the core; None without a bearing."""
+    """Return the dimensions of the bearing as an object of the core; None without a bearing."""
     b = rig.bearing
     if b is None:
         return None
@@ -97,13 +97,13 @@ def core_bearing(rig: Rig) -> _core.BearingSizes | None:
         "clearance_m": b.clearance_m,
         "mass_kg": b.mass_kg,
         "count": b.count,
-        # Laws with a film have been rejected before; any other law uses the radius only.
+        # A law with a film has been rejected by `check_rig`; any other law uses the radius only.
         "viscosity_pa_s": 1.0 if rig.lubricant is None else rig.lubricant.viscosity_pa_s,
     }
 
 
 def core_load_n(rig: Rig) -> float | None:
-    """Load on one bearing, N; None without a load."""
+    """Return the load on one bearing, N; None without a load."""
     return None if rig.load is None else rig.load.normal_n
 
 
@@ -163,8 +163,8 @@ def sampled_motion(
 ) -> tuple[Array, EstimatedMotion]:
     """Estimate the motion, and return the instants at which it was sampled, s.
 
-    These are the instants of the motion's own clock, if it has one. `starts` is as in
-    :func:`jbf.records.motion.estimated_motion.estimate_motion`.
+    If the motion was recorded with a separate clock, the instants are those of that clock. `starts`
+    is as in :func:`jbf.records.motion.estimated_motion.estimate_motion`.
     """
     run = as_read(run_on(rig, one_run(run)))
     there = of_motion(run.read)
@@ -177,15 +177,15 @@ def sampled_motion(
 def core_motion(
     rig: Rig, run: Run, motion: EstimatedMotion, before: tuple[float, float] | None = None
 ) -> Driven:
-    """Convert the motion and load of a run to the form of the core.
+    """Convert the motion and load of a run to an object of the core.
 
     A law in newtons does not use the load.
 
     Parameters
     ----------
     before
-        A hypothetical motion before the run: its constant speed, as a share of the largest speed of
-        the run, in the direction of the first motion, and its duration, s.
+        Speed and duration (s) of a hypothetical motion before the run. The speed is constant, in
+        the direction of the first motion, as a fraction of the largest speed of the run.
     """
     recorded = recorded_load(rig, run)
     if recorded is not None:
@@ -219,15 +219,15 @@ def core_motion(
             None if celsius is None else np.ascontiguousarray(columns["temperature_c"]),
             None if offset is None else np.ascontiguousarray(columns["weight_offset_rad"]),
         )
-    # User-defined effects see the record with the motion that drives the models, also under the
-    # names of its columns in a file.
+    # User-defined effects receive the record with the estimated motion, which is also available
+    # under the column names of a file.
     columns |= {column: columns[name] for column, name in MOTION_COLUMNS.items()}
     made.columns = columns
     return Driven(made, kept)
 
 
 def _from_rest(run: Run, velocity: Array) -> Array:
-    """Speed, m/s, with the first sample at rest if the run begins with noise at standstill."""
+    """Return the speed, m/s, starting with zero if the run begins with noise at standstill."""
     if not begins_with_oscillation(run.time_s, velocity):
         return velocity
     return np.concatenate(([0.0], velocity[1:]))
@@ -236,7 +236,7 @@ def _from_rest(run: Run, velocity: Array) -> Array:
 def _with_motion_before(
     columns: dict[str, Array], rig: Rig, share: float, duration_s: float
 ) -> tuple[int, dict[str, Array]]:
-    """Number of samples of a hypothetical motion, and the columns with it prepended."""
+    """Prepend a hypothetical motion to columns; return its number of samples and the columns."""
     speed, time = columns["velocity"], columns["time_s"]
     step_s = float(np.median(np.diff(time)))
     count = int(duration_s / step_s)
@@ -254,7 +254,7 @@ def _with_motion_before(
 
 
 def warn_of_fast_film(core: DrivenChain, values: Array, motions: Sequence[Driven]) -> None:
-    """Warn if a prediction does not follow the film."""
+    """Warn if the film is too fast to be integrated by a prediction."""
     rate = core.film_rate_1_s(values, motions)
     if rate > _core.FASTEST_FILM_1_S:
         warnings.warn(

@@ -1,9 +1,9 @@
-"""Readings of a force with a time delay: a chain that is read earlier than it is recorded.
+"""Readings of a force with a time delay, by evaluation of the chain at earlier instants.
 
-The motion is smooth, but the force has jumps. The delay is therefore exact if it shifts the
-instants at which the chain is read; interpolation of the force is not exact. A sample close to a
-reversal is read on one side of it or on the other. The errors of the instant of the reversal and of
-the delay leave open on which side. The expected value is a weighted mean of both sides.
+The motion is smooth, but the force has jumps. The delay is therefore applied to the instants at
+which the chain is evaluated, which is exact; interpolation of the force is not. Due to the errors
+of the delay and of the instant of a reversal, a sample close to the reversal may precede or follow
+the jump. The expected value is the mean of both readings, weighted by their probabilities.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ DELAY = "time_delay"
 TAU = "time_delay.tau_s"
 DRIFT = "sensor_drift.d"
 BESIDE = 1e-3
-"""Distance from a jump, as a share of a step, at which the force on either side is read."""
+"""Distance from a jump at which the force is evaluated on both sides, as a fraction of a step."""
 
 
 @dataclass(frozen=True)
@@ -54,9 +54,9 @@ class DelayedReading:
 
 
 class DelayedChain:
-    """A law with effects whose friction is recorded with a time delay.
+    """Signal chain whose friction is recorded with a time delay.
 
-    The chain itself excludes the delay.
+    The chain is evaluated without the delay, at shifted instants.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class DelayedChain:
         sd_s
             Standard error of the delay, s.
         """
-        # Imported here, so that a model without a delay does not load scipy.
+        # Imported here because a model without a delay does not need scipy.
         from scipy.special import ndtr
 
         tau_s = float(values[self.tau])
@@ -120,6 +120,6 @@ class DelayedChain:
 
 
 def _nearest(places: Array, instants: Array) -> npt.NDArray[np.intp]:
-    """Index of the nearest of some sorted instants to each instant."""
+    """Return the index of the nearest of the sorted `places` for each of the `instants`."""
     middles = 0.5 * (places[1:] + places[:-1])
     return np.searchsorted(middles, instants)

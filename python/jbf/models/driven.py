@@ -1,4 +1,4 @@
-"""A signal chain driven along runs.
+"""Evaluation of a signal chain for the motion of runs.
 
 The core may receive more instants than a run has samples, such as those of a hypothetical motion
 before it. Readings are returned at the samples only.
@@ -20,7 +20,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Driven:
-    """A motion in the form of the core; `kept` are the indices of the samples of the run in it."""
+    """Motion as an object of the core; `kept` holds the indices of the samples of the run."""
 
     motion: _core.Motion
     kept: npt.NDArray[np.intp] | None = None
@@ -31,32 +31,32 @@ class Driven:
 
 
 class DrivenChain:
-    """Measuring chain of the core, or with user-defined effects, evaluated along driven motions."""
+    """Signal chain, with or without user-defined effects, evaluated for `Driven` motions."""
 
     def __init__(self, core: _core.Chain | UserChain) -> None:
         self.core = core
 
     @property
     def parameter_names(self) -> list[str]:
-        """Dotted names of the parameters, in the order of every array here."""
+        """Dotted names of the parameters, in the order of `parameters`."""
         return self.core.parameter_names
 
     def predict(self, parameters: Array, driven: Sequence[Driven]) -> list[Array]:
-        """Friction readings, N, one array per run."""
+        """Return the friction readings, N, one array per run."""
         found = self.core.predict(parameters, [d.motion for d in driven])
         return [d.at_samples(f) for d, f in zip(driven, found, strict=True)]
 
     def jacobian(
         self, parameters: Array, driven: Sequence[Driven], which: Sequence[int]
     ) -> list[tuple[Array, Array]]:
-        """Readings and their derivatives by the parameters `which`."""
+        """Return the readings and their derivatives with respect to the parameters `which`."""
         rows = self.core.jacobian(parameters, [d.motion for d in driven], which)
         return [(d.at_samples(f), d.at_samples(j)) for d, (f, j) in zip(driven, rows, strict=True)]
 
     def inner_steps(self, parameters: Array, driven: Sequence[Driven]) -> float:
-        """Number of inner steps of a prediction."""
+        """Return the number of inner steps of a prediction."""
         return self.core.inner_steps(parameters, [d.motion for d in driven])
 
     def film_rate_1_s(self, parameters: Array, driven: Sequence[Driven]) -> float:
-        """Fastest rate of the film of the law, 1/s."""
+        """Return the largest rate of the film of the law, 1/s."""
         return self.core.film_rate_1_s(parameters, [d.motion for d in driven])

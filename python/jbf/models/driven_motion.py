@@ -1,7 +1,7 @@
-"""The motion of a run for the core, with additional instants where friction jumps.
+"""Motion of a run as an object of the core, with additional instants at jumps of the friction.
 
-A motion starts and ends between two samples. The instant follows from its acceleration, and a step
-of the core ends there.
+A motion starts and stops between two samples. The instant is computed from the acceleration, and an
+integration step of the core ends at that instant.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class Reversals:
     sd_s
         Their standard errors, s.
     between
-        True where the motion starts or stops between two samples.
+        True for a start or stop of the motion between two samples.
     interval
-        Indices of the samples before them.
+        Index of the sample before each instant.
     """
 
     at_s: Array
@@ -58,12 +58,12 @@ def with_instants(
 ) -> tuple[Array, Driven]:
     """Convert the motion of a run to the form of the core, with additional instants.
 
-    Also returns all instants of the core, s.
+    All instants of the core, s, are returned too.
 
     Parameters
     ----------
     more_s
-        Instants in addition to those of the run, s; the speed is interpolated linearly there.
+        Additional instants, s, at which the speed is interpolated linearly.
     """
     time, v = run.time_s, motion.velocity
     turns = reversals(time, motion)
@@ -98,7 +98,7 @@ def with_instants(
 
 
 def reversals(time_s: Array, motion: EstimatedMotion) -> Reversals:
-    """Find where a motion reverses, starts or stops.
+    """Find the instants at which a motion reverses, starts or stops.
 
     The error of an instant is the error of the speed divided by the acceleration.
     """

@@ -1,4 +1,4 @@
-"""A model for prediction: a rig, a law, effects and their parameters."""
+"""Friction model for predictions: a rig, a law, effects and their parameters."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ NONE: Mapping[str, Any] = MappingProxyType({})
 
 @dataclass(frozen=True, init=False, repr=False)
 class Model(Shown):
-    """A law with effects, for prediction.
+    """Friction model: a law with effects, for the prediction of readings.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ class Model(Shown):
     effects
         Names of effects, in any order; they act in the order of the signal chain.
     parameters
-        Dotted name (`f_m`, `presliding.sigma`; the unit may be omitted) to a value, or to a
-        value with its error. Missing parameters of the law take the starting value of the
+        Mapping of dotted names (`f_m`, `presliding.sigma`; the unit may be omitted) to values with
+        or without standard errors. Missing parameters of the law take the starting value of the
         catalogue. Those of effects take their null value, or the starting value if they have no
         null.
     clock
@@ -94,8 +94,8 @@ class Model(Shown):
     clock: Clock
     fit: Mapping[str, float | int | str]
 
-    # Explicit, because the arguments differ from the attributes: effects in any order, plain
-    # numbers, parameters without their unit.
+    # Explicit constructor, because the arguments differ from the attributes: effects in any order,
+    # plain numbers, parameter names without units.
     def __init__(
         self,
         rig: Rig,
@@ -148,8 +148,8 @@ class Model(Shown):
         and after it. The weights follow from the errors of the instant of the reversal and of the
         delay.
 
-        Warns (:class:`jbf.FilmWarning`) if the film is faster than 28,000 1/s. It is then held
-        inside the bearing, and the friction is not reliable.
+        A :class:`jbf.FilmWarning` is issued if the rate of the film exceeds 28,000 1/s. The journal
+        is then confined to the bearing clearance, and the predicted friction is not reliable.
         """
         return self.predict_many([one_run(run)])[0]
 

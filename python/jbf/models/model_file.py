@@ -48,7 +48,8 @@ def _parameter(entry: object, key: str) -> ParameterValue:
 def _parameters(content: Mapping[str, Any], effects: Collection[str]) -> dict[str, ParameterValue]:
     found = {}
     for name, entry in content.items():
-        # A table of tables belongs to an effect, even if the list of effects omits it.
+        # A nested table contains parameters of an effect, even of one missing in the list of
+        # effects.
         inner = isinstance(entry, Mapping) and entry and not _FIELDS & set(entry)
         effect = current_effect(name) if inner else name
         if effect in effects or inner:
@@ -99,7 +100,7 @@ def read_model_file(path: PathLike, vocabulary: Vocabulary | None = None) -> Mod
 
 def _inline(parameter: ParameterValue, unit: str) -> tomlkit.items.InlineTable:
     entry = tomlkit.inline_table()
-    # tomlkit writes the repr of a float, which reads back to the same bits.
+    # tomlkit writes the repr of a float, which is read back without a rounding error.
     entry.update({k: v for k, v in asdict(parameter).items() if v is not None and v is not False})
     if unit:
         entry.comment(unit)

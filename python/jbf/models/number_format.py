@@ -1,4 +1,4 @@
-"""Formatting of numbers and of model steps for readers.
+"""Formatting of numbers and of model steps as text.
 
 Numbers have a few significant digits; a value and its error end at the same decimal.
 """
@@ -16,7 +16,7 @@ BARE = "base law"
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Format a number with the given significant digits, in plain notation if that is short."""
+    """Format a number with the given significant digits, without an exponent if that is short."""
     if value == 0.0 or not math.isfinite(value):
         return f"{value:g}"
     size = math.floor(math.log10(abs(value)))
@@ -40,7 +40,7 @@ def measured(value: float, stderr: float | None) -> tuple[str, str]:
 
 
 def value_and_error(p: ParameterValue) -> tuple[str, str]:
-    """Format the value and error of a parameter; a held one is marked, and its error is empty."""
+    """Format the value and error of a parameter; held parameters are marked and have no error."""
     if p.held:
         return f"held at {number(p.value, 5)}", ""
     return measured(p.value, p.stderr)

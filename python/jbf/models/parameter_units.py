@@ -6,11 +6,11 @@ from jbf.models.catalogue import Parameter, find_law, parameters_of
 from jbf.records.quantities import Quantities
 
 FORCES = {"presliding.sigma": "N/m", "stribeck_excess.a": "N", "dwell_stiction.a": "N"}
-"""Parameters over the load that are forces in a law in newtons, whose load is one newton."""
+"""Parameters normalized by the load, which are forces in a law in newtons (load of 1 N)."""
 ALONG = ("backlash.gap",)
-"""Angles of the drive that are displacements on a linear axis."""
+"""Parameters that are angles on a rotary drive and displacements on a linear axis."""
 OVER_LOAD = ("dry_load_dependence.mu", "zero_load_dependence.k", "viscous_load_dependence.c")
-"""Parameters over a load whose unit stays N (or bar), whatever the motion is."""
+"""Parameters per unit of load; the load is in N (or bar) for every kind of motion."""
 
 
 def unit_of(name: str, page: Parameter, law: str, quantities: Quantities) -> str:

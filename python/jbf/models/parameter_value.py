@@ -12,7 +12,7 @@ from jbf.records.toml_file import number
 
 @dataclass(frozen=True)
 class ParameterValue:
-    """One parameter.
+    """Value of a parameter with its standard error.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Requirements of effects on a record: columns, the shaft angle, the path of the drive."""
+"""Requirements of effects on a record: columns, shaft angle, displacement of the drive."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jbf.records.run_requirements import require
 
 
 def has_angle(rig: Rig, run: Run) -> bool:
-    """Return True if the run has a shaft angle, which does not exist on a linear axis."""
+    """Return True if the run has a shaft angle; always False for a linear axis."""
     return run.angle_rad is not None and (rig.bearing is not None or run.position_m is None)
 
 
@@ -23,7 +23,7 @@ def has_path(rig: Rig, run: Run) -> bool:
 
 
 def has_position(run: Run) -> bool:
-    """Return True if the run has the position of the drive, as an angle or on a line."""
+    """Return True if the run has the angle or the linear position of the drive."""
     return run.position_m is not None or run.angle_rad is not None
 
 

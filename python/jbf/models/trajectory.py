@@ -1,7 +1,7 @@
-"""Trajectories to a tolerance: the base law, reduced or with inertia, along a motion.
+"""Trajectories of the base law, reduced or with the journal mass, integrated to a tolerance.
 
 For the prediction of a complete rig with its effects use :class:`jbf.Model`. This module is for the
-analysis of the law itself, with a specified error.
+analysis of the law alone, with a specified error.
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ _NAMES = {"f_m": "f_m", "U_tr_m_s": "u_tr_m_s", "K0": "k0", "gamma": "gamma"}
 
 @dataclass(frozen=True)
 class Trajectory:
-    """State of the film at each sample.
+    """State of the film and friction coefficient at each sample.
 
     Attributes
     ----------
     time_s : array, shape (n,)
         Sample times, s.
     friction_coefficient : array, shape (n,)
-        With the sign of the speed; at rest without the part of the asperities, which is set-valued
-        there.
+        Friction coefficient with the sign of the speed. At rest it excludes the contribution of the
+        asperities, which is set-valued.
     x, y : arrays, shape (n,)
         ``eps cos(phi)`` and ``eps sin(phi)``.
     steps : int
         Number of steps of the integrator.
     derivatives : array, shape (n, 4), or None
-        Derivatives of the friction coefficient by ``f_m``, ``U_tr_m_s`` (also through eps_tr),
-        ``K0`` and ``gamma``, if they were requested.
+        Derivatives of the friction coefficient with respect to ``f_m``, ``U_tr_m_s`` (including the
+        dependence of eps_tr), ``K0`` and ``gamma``, if they were requested.
 
     Examples
     --------
@@ -100,10 +100,10 @@ def trajectory(
     time_s : array, shape (n,)
         Sample times, increasing, s.
     velocity : array, shape (n,)
-        Surface speed at those times, m/s, interpolated linearly between them. The run starts at the
-        first one.
+        Surface speed at `time_s`, m/s, interpolated linearly. The run starts at the first sample.
     sine : (amplitude in m/s, omega in rad/s[, bias in m/s])
-        Replaces `velocity_m_s`: ``U = bias + amplitude sin(omega t)``. The run starts at time zero.
+        Sinusoidal motion instead of `velocity`: ``U = bias + amplitude sin(omega t)``. The run
+        starts at time zero.
     model
         ``journal`` (reduced) or ``journal_full`` (with the mass of the journal).
     clock
@@ -113,9 +113,9 @@ def trajectory(
     eps, phi_rad
         Initial state of the film: by default eps_tr and 0.15 rad.
     derivatives
-        True to compute the derivatives of the friction coefficient by the parameters. They are
-        exact for the steps taken (dual numbers, not differences), so a fit that uses them
-        converges.
+        True to compute the derivatives of the friction coefficient with respect to the parameters.
+        They are the exact derivatives of the discrete solution (automatic differentiation with dual
+        numbers), as required for the convergence of a fit.
 
     Returns
     -------
@@ -258,7 +258,7 @@ def is_record(motion: npt.ArrayLike | tuple[float, float, float]) -> bool:
 def motions_of(
     runs: object,
 ) -> list[tuple[Array, npt.ArrayLike | tuple[float, float, float]]]:
-    """Return pairs of times and motion as arrays and numbers; errors name the invalid run."""
+    """Return pairs of times and motion, converted to arrays and numbers; errors name the run."""
     if isinstance(runs, str) or not isinstance(runs, Iterable):
         raise InputError(
             problem=f"runs is {described(runs)}", mend="give a list of pairs (times, motion)"

@@ -1,10 +1,9 @@
-"""The chain of the core with user-defined effects, or a user-defined law.
+"""Signal chain of the core with user-defined effects, or with a user-defined law.
 
-A user-defined force in addition to that of the bearing passes through the instrument. If its
-effects are linear in the force, their responses to both forces add. If one is nonlinear
-(`BENDING`), the additional force is superposed on that of the bearing before the instrument. A
-user-defined law is treated likewise: the chain of the core then carries the effects, with a law
-that is held at nearly zero.
+The instrument measures the sum of the bearing force and a user-defined force. If the effects of the
+instrument are linear in the force, the responses to both forces are added. If an effect is
+nonlinear (`BENDING`), the forces are added before the instrument. A user-defined law is treated
+likewise: the effects then belong to a chain of the core whose law is held at nearly zero.
 """
 
 from __future__ import annotations
@@ -21,34 +20,34 @@ from jbf.models.user_effects import UserEffect
 Array = npt.NDArray[np.float64]
 
 BENDING = ("sensor_hysteresis", "sensor_nonlinearity")
-"""Effects of the instrument that are nonlinear: their response to a sum is not the sum."""
+"""Nonlinear effects of the instrument, for which superposition does not hold."""
 SMALL = 1e-6
-"""Step of a directional difference quotient, as a share of the largest force."""
+"""Step of a directional difference quotient, as a fraction of the largest force."""
 
 
 Read = tuple[Array, Array]
-"""A reading, and its derivatives by the parameters of the instrument, shape (n, parameters)."""
+"""Reading, and its derivatives with respect to the instrument parameters, shape (n, parameters)."""
 
 
 class UserChain:
-    """Chain with the interface of `_core.Chain`, and user-defined effects after the others.
+    """Signal chain with user-defined effects or law, and with the interface of `_core.Chain`.
 
     Parameters
     ----------
     core
-        The chain without them.
+        The chain of the core, without user-defined effects.
     instrument
-        Names of the effects of the instrument in it, each with the indices of its parameters.
+        Names of the effects of the instrument in `core`, each with the indices of its parameters.
     own
         The user-defined effects; their parameters follow those of the core.
     law
         A user-defined law; its parameters come first, and those of the law of the core are omitted.
     held
-        Values of the parameters of the law of the core, if there is a user-defined law.
+        Parameter values of the law of `core`, if there is a user-defined law.
     carrier
-        The law of the core without effects, in that case.
+        The chain of the law of `core` without effects, if there is a user-defined law.
     bare
-        The chain of the core without the instrument, if that has an effect of `BENDING`.
+        The chain of the core without the instrument, if the instrument has an effect of `BENDING`.
     """
 
     def __init__(
@@ -76,29 +75,29 @@ class UserChain:
 
     @property
     def parameter_names(self) -> list[str]:
-        """Dotted names of the parameters, in the order of every array here."""
+        """Dotted names of the parameters, in the order of `parameters`."""
         first = [] if self.law is None else [p.name for p in self.law.parameters]
         effects = self.own if self.law is None else self.own[1:]
         theirs = [f"{e.name}.{p.name}" for e in effects for p in e.parameters]
         return [*first, *self.core.parameter_names[len(self.held) :], *theirs]
 
     def predict(self, parameters: Array, motions: Sequence[_core.Motion]) -> list[Array]:
-        """Friction readings, N, one array per run."""
+        """Return the friction readings, N, one array per run."""
         inner = self.core.predict(self._inner(parameters), motions)
         return [f + self._added(parameters, m)[0] for f, m in zip(inner, motions, strict=True)]
 
     def film_rate_1_s(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
-        """Fastest rate of the film of the law, 1/s."""
+        """Return the largest rate of the film of the law, 1/s."""
         return self.core.film_rate_1_s(self._inner(parameters), motions)
 
     def inner_steps(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
-        """Number of inner steps of a prediction."""
+        """Return the number of inner steps of a prediction."""
         return self.core.inner_steps(self._inner(parameters), motions)
 
     def jacobian(
         self, parameters: Array, motions: Sequence[_core.Motion], which: Sequence[int]
     ) -> list[tuple[Array, Array]]:
-        """Readings and their derivatives by the parameters `which`."""
+        """Return the readings and their derivatives with respect to the parameters `which`."""
         of_core = [w for w in which if w in self.of_core]
         shift = len(self.held) - self.of_core.start
         inner = [w + shift for w in of_core]
@@ -126,9 +125,9 @@ class UserChain:
         return found
 
     def _added(self, parameters: Array, motion: _core.Motion) -> tuple[Array, dict[int, Array]]:
-        """Contribution of user-defined effects to the reading.
+        """Return the contribution of user-defined effects to the reading.
 
-        Also returns its derivatives by the parameters of the instrument, by their index.
+        Its derivatives with respect to the instrument parameters are returned too, by index.
         """
         before, after = self._user_forces(parameters, motion)
         if not self.instrument:
@@ -140,7 +139,7 @@ class UserChain:
         return loaded[0] - empty[0] + after, by_place
 
     def _user_forces(self, parameters: Array, motion: _core.Motion) -> tuple[Array, Array]:
-        """Forces of the user-defined effects before the instrument and after it, N."""
+        """Return the forces of the user-defined effects before and after the instrument, N."""
         n = len(motion.columns["time_s"])
         before, after = np.zeros(n), np.zeros(n)
         for i, effect in enumerate(self.own):
@@ -150,7 +149,7 @@ class UserChain:
             else:
                 before += force
         if self.law is not None:
-            # Subtract the small force of the law of the core at its bounds.
+            # Subtract the small force of the built-in law, whose parameters are at their bounds.
             assert self.carrier is not None
             before -= self.carrier.predict(self.held, [motion])[0]
         return before, after
@@ -168,7 +167,7 @@ class UserChain:
         return self._along(parameters, motion, self._borne(parameters, motion) + added, slope)
 
     def _read(self, parameters: Array, motion: _core.Motion, force: Array) -> tuple[Read, Read]:
-        """Instrument readings of the bearing force with and without an additional force.
+        """Return the instrument readings of the bearing force with and without an additional force.
 
         The bearing force is set to zero if the instrument is linear.
         """
@@ -179,26 +178,26 @@ class UserChain:
         )
 
     def _through(self, parameters: Array, motion: _core.Motion, force: Array) -> Read:
-        """Instrument reading of a force, and its derivatives by the instrument parameters."""
+        """Return the reading of a force, and its derivatives by the instrument parameters."""
         effects = [(name, parameters[list(places)].tolist()) for name, places in self.instrument]
         time = np.ascontiguousarray(motion.columns["time_s"])
         return _core.read_force(effects, time, np.ascontiguousarray(force))
 
     def _borne(self, parameters: Array, motion: _core.Motion) -> Array:
-        """Force of the bearing, N, if the instrument is nonlinear; otherwise zeros."""
+        """Return the force of the bearing, N, if the instrument is nonlinear; otherwise zeros."""
         if self.bare is None:
             return np.zeros(len(motion.columns["time_s"]))
         found: Array = self.bare.predict(self._before_instrument(parameters), [motion])[0]
         return found
 
     def _before_instrument(self, parameters: Array) -> Array:
-        """Parameters of the chain of the core without those of the instrument."""
+        """Return the parameters of the chain of the core, without those of the instrument."""
         instrument = {place for _, places in self.instrument for place in places}
         kept = [place for place in self.of_core if place not in instrument]
         return np.ascontiguousarray(np.concatenate((self.held, parameters[kept])))
 
     def _along(self, parameters: Array, motion: _core.Motion, force: Array, slope: Array) -> Array:
-        """Directional derivative of the reading for a change of the force along `slope`."""
+        """Return the directional derivative of the reading for a change of force along `slope`."""
         largest = float(np.max(np.abs(slope)))
         if largest == 0.0:
             return slope
@@ -212,9 +211,9 @@ class UserChain:
     def _bent(
         self, parameters: Array, motion: _core.Motion, which: Sequence[int]
     ) -> dict[int, Array]:
-        """Change of the derivatives with respect to core parameters due to the user-defined force.
+        """Return the change of derivatives by core parameters due to user-defined forces.
 
-        The change is due to a nonlinear instrument; empty for a linear one.
+        The result is empty for a linear instrument.
         """
         if self.bare is None:
             return {}

@@ -1,4 +1,4 @@
-"""User-defined effects: a function of recorded columns, in addition to those of the catalogue.
+"""User-defined effects: forces computed from recorded columns by a Python function.
 
 >>> import numpy as np
 >>> import jbf
@@ -32,27 +32,27 @@ from jbf.records.run import PathLike
 Array = npt.NDArray[np.float64]
 
 MOTION_COLUMNS = {"velocity_m_s": "velocity", "acceleration_m_s2": "acceleration"}
-"""Arguments of a function under the names of columns in a file."""
+"""Argument names that are column names of a file, each with the equivalent argument name."""
 ALWAYS = ("time_s", "velocity", "acceleration", "load_n", *MOTION_COLUMNS)
-"""Columns that every run has: recorded, estimated, or from the rig."""
+"""Columns available for every run: recorded, estimated, or from the rig."""
 STAGES: dict[str, Stage] = {"other": "other friction", "instrument": "instrument"}
 AGREEMENT = 1e-5
 """Largest relative difference between a complex step and a difference quotient.
 
-With a larger one, the complex step is not used.
+If the difference is larger, the complex step is not used.
 """
 
 
 @dataclass(frozen=True, repr=False)
 class UserEffect(Effect):
-    """A user-defined effect: its catalogue page and its function."""
+    """User-defined effect: its catalogue entry and its function."""
 
     function: Callable[..., Any] = field(default=lambda: 0.0, compare=False)
     analytic: dict[str, bool] = field(default_factory=dict, compare=False)
     called: str = "effect"
 
     def force(self, columns: Mapping[str, Array], values: Sequence[float]) -> Array:
-        """Force at every sample, N, shape (n,).
+        """Return the force at every sample, N, shape (n,).
 
         Raises
         ------
@@ -62,10 +62,10 @@ class UserEffect(Effect):
         return self._checked(self._call(columns, values), len(columns["time_s"]), values)
 
     def slope(self, columns: Mapping[str, Array], values: Sequence[float], which: int) -> Array:
-        """Derivative of the force with respect to parameter number `which`, shape (n,).
+        """Return the derivative of the force with respect to parameter number `which`, shape (n,).
 
-        By a complex step if the function accepts complex numbers, otherwise by differences of the
-        fourth order that stay within the bounds.
+        Computed with a complex step if the function accepts complex numbers, otherwise with
+        fourth-order finite differences within the bounds.
         """
         page = self.parameters[which]
         if self.analytic.get(page.name) is None:
@@ -91,7 +91,7 @@ class UserEffect(Effect):
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(self.function(**self._arguments(columns, moved)))
-        except Exception:  # any error of a function of real numbers with a complex argument
+        except Exception:  # a function of real numbers may raise any error for complex ones
             return None
         if found.dtype.kind != "c":
             return None
@@ -172,8 +172,8 @@ def register_effect(
 ) -> Effect:
     """Register a user-defined effect.
 
-    It then takes part in fits, comparisons, predictions, diagnoses and `jbf.effects()` under its
-    name, until the process ends. A second effect of the same name replaces the first one.
+    The effect is available under its name in fits, comparisons, predictions, diagnoses and
+    `jbf.effects()` until the process ends. A second effect of the same name replaces the first one.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def register_effect(
     Raises
     ------
     InputError
-        A name is taken or not an identifier, the stage is unknown, or a parameter lacks bounds,
+        A name is in use or not an identifier, the stage is unknown, or a parameter lacks bounds,
         start or null. Also if an argument of the function is neither a parameter nor a column name.
 
     Examples
@@ -257,7 +257,7 @@ def register_effect(
 
 
 def forget_effect(name: str) -> None:
-    """Unregister a user-defined effect; an InputError names one that is not registered.
+    """Unregister a user-defined effect.
 
     Parameters
     ----------
@@ -284,7 +284,7 @@ def forget_effect(name: str) -> None:
 
 
 def check_pages(pages: Sequence[Parameter], wrong: Callable[[str, str], InputError]) -> None:
-    """Raise the error of `wrong` if a parameter lacks a valid name, bounds or start."""
+    """Raise the error built by `wrong` if a parameter lacks a valid name, bounds or start."""
     names = [p.name for p in pages]
     if len(set(names)) < len(names):
         raise wrong("has two parameters of the same name", "rename one")

@@ -1,4 +1,4 @@
-"""User-defined laws: a function of recorded columns that replaces a law of the catalogue.
+"""User-defined laws: friction computed from recorded columns by a Python function.
 
 >>> import numpy as np
 >>> import jbf
@@ -37,12 +37,12 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, repr=False)
 class UserLaw(Law):
-    """A user-defined law: its catalogue page and its force."""
+    """User-defined law: its catalogue entry and its function."""
 
     force: UserEffect | None = None
 
     def steady_n(self, velocity: Array, values: Sequence[float], load_n: float | None) -> Array:
-        """Force at steady speeds, N, for a law that depends on speed, load and time only."""
+        """Return the force at steady speeds, N, for laws of speed, load and time only."""
         assert self.force is not None
         zero = np.zeros_like(velocity)
         columns = {"time_s": zero, "velocity": velocity, "acceleration": zero}
@@ -64,10 +64,10 @@ def register_law(
 ) -> Law:
     """Register a user-defined law, for machines without a journal bearing.
 
-    It is then available under its name (`law=`, `--law`, `--law auto`, model files) until the
-    process ends. A second law of the same name replaces the first one. Effects that add to the
-    force of a law or act on the sum (the stages `other friction` and `instrument`) can be combined
-    with it.
+    The law is available under its name (`law=`, `--law`, `--law auto`, model files) until the
+    process ends. A second law of the same name replaces the first one. The law can be combined with
+    effects that add to the force of a law or act on the sum (the stages `other friction` and
+    `instrument`).
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def register_law(
     Raises
     ------
     InputError
-        A name is taken or not an identifier, a parameter lacks bounds or start, or an argument of
+        A name is in use or not an identifier, a parameter lacks bounds or start, or an argument of
         the function is neither a parameter nor a column name.
 
     Examples
@@ -155,7 +155,7 @@ def register_law(
 
 
 def forget_law(name: str) -> None:
-    """Unregister a user-defined law; an InputError names one that is not registered.
+    """Unregister a user-defined law.
 
     Parameters
     ----------

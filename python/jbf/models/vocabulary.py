@@ -1,4 +1,4 @@
-"""Content of a model file, and the names that it may use; contains no physics."""
+"""Content of a model file, and the names and bounds that are valid in the file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CLOCKS: tuple[Clock, ...] = get_args(Clock)
 
 
 def _plain(value: object, key: str) -> float | int | str:
-    """Convert to a value that TOML can hold; numpy scalars become Python scalars."""
+    """Convert to a type that TOML can represent; numpy scalars become Python scalars."""
     if isinstance(value, str):
         return str(value)
     if isinstance(value, numbers.Integral) and not isinstance(value, bool):
@@ -45,7 +45,7 @@ class ModelFile:
     rig : Rig
         The rig that the model was fitted for.
     fit : dict of str to float, int or str
-        Information on the fit, for readers of the file.
+        Metadata of the fit.
     """
 
     law: str
@@ -77,7 +77,7 @@ Bounds = tuple[float, float]
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """Names that a model file may use, with the bounds of each parameter.
+    """Names that are valid in a model file, with the bounds of each parameter.
 
     The bounds are (lower, upper), both inclusive.
     """

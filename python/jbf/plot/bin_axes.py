@@ -81,7 +81,7 @@ def _series(b: Bin, axis: Axis) -> str:
 
 
 def _tick(b: Bin, axis: Axis) -> str:
-    """Return the tick label of a bin, on two lines where that helps.
+    """Return the tick label of a bin; the label of an interval has two lines.
 
     The unit is in the axis label.
     """

@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
     """Plot fit and held-out error of each step of the ledger, one row each.
 
-    On the logarithmic scale equal factors have equal lengths, so that the last steps
-    remain visible next to the first.
+    The error axis is logarithmic, so that the last steps remain visible next to the first.
     """
     steps = diagnosis.steps
     ax = one_axes(ax, (9.0, 1.3 + 0.42 * len(steps)))
@@ -74,7 +73,7 @@ def _falls(held: Sequence[float], unit: str) -> list[str]:
     words = [f"{number(held[0])} {unit}"]
     for last, now in pairwise(held):
         change = 100.0 * (now / last - 1.0) if last > 0.0 else 0.0
-        # A typographic minus is as wide as a plus.
+        # The typographic minus sign has the width of the plus sign.
         words.append(f"{number(now)} {unit}  ({change:+.2g} %)".replace("-", "−"))
     return words
 

@@ -75,7 +75,7 @@ def draw_model(
     colour: str = MODEL,
     label: str = "model",
 ) -> None:
-    """Plot the model's loop of a run, less `rest`, on axes that show the measured values."""
+    """Plot the model's loop of a run, minus `rest`, on axes that show the measured values."""
     speed = comparison.campaign.prepared[index].motion.velocity
     # The instant of a reversal lies between samples. A line through it would show a slope that the
     # model does not have.

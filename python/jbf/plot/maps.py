@@ -24,7 +24,7 @@ CELLS = 120
 ROWS = 40
 MOST_NAMES = 24
 BEYOND = 0.0005
-"""Share of the samples on either side that may lie outside a map."""
+"""Fraction of the samples that may lie outside a map on each side."""
 
 
 def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None = None) -> Axes:

@@ -28,7 +28,7 @@ def power(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """Plot the probability that such runs show an effect, over its share of the friction.
+    """Plot the detection probability of effects in such runs, against their share of the friction.
 
     Each curve passes through the strengths that are detected in 80 % and 95 % of campaigns. The
     log-likelihood gain of an effect grows as the square of its strength. The probability is the

@@ -35,7 +35,7 @@ def ranking_height(step: Step) -> float:
 
 
 def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> Axes:
-    """Plot the candidates tried at a step of the ledger, strongest first.
+    """Plot the candidates tested at a step of the ledger, strongest first.
 
     Long lists are truncated.
 
@@ -47,7 +47,7 @@ def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> A
     Raises
     ------
     InputError
-        There is no such step, or nothing was tried at it.
+        There is no such step, or the step has no candidates.
     """
     if not -len(diagnosis.steps) <= step < len(diagnosis.steps):
         raise InputError(

@@ -111,9 +111,9 @@ def draw_means(ax: Axes, failure: Failure, colour: str, said: Quantities, label:
 
 
 def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[Array, Array]:
-    """Sort the bins and merge those that coincide on the page.
+    """Sort the bins and merge those that coincide in the plot.
 
-    A speed that is held contributes many such bins.
+    Motion at constant speed yields many coinciding bins.
     """
     order = np.argsort(x, kind="stable")
     x, means, counts = x[order], means[order], counts[order]
@@ -123,7 +123,7 @@ def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[A
 
 
 def _ticks(ax: Axes, ticks: tuple[str, ...]) -> None:
-    """Label the bins; of many labels only every n-th is shown."""
+    """Label the bins; if there are many labels, only every n-th is shown."""
     every = -(-len(ticks) // MOST_TICKS)
     shown = [plain(shortened(t, 24)) for t in ticks[::every]]
     longest = max(len(line) for tick in shown for line in tick.split("\n"))
@@ -156,7 +156,7 @@ def residual_in_time(
         label="record minus model",
         rasterized=True,
     )
-    # A few distant samples would compress all others.
+    # Otherwise a few outliers would determine the scale.
     size = np.abs(shown[np.isfinite(shown)])
     reach = max(1.4 * float(np.quantile(size, NEARLY_ALL)), 3.0 * comparison.noise_rms)
     if reach > 0.0:

@@ -84,7 +84,7 @@ def noise_band(ax: Axes, noise_rms: float, name: str = "noise", unit: str = "N")
 
 
 def legend_on_top(ax: Axes, columns: int = 2) -> None:
-    """Add a legend inside the axes, with space made for it above the data."""
+    """Add a legend inside the axes, in additional space above the data."""
     low, high = ax.get_ylim()
     ax.set_ylim(low, high + 0.28 * (high - low))
     ax.legend(loc="upper left", frameon=False, fontsize="small", ncols=columns)
@@ -105,7 +105,7 @@ def legend_above(ax: Axes, columns: int = 3) -> None:
 
 
 def save(ax: AxesOrArray, path: str | os.PathLike[str]) -> None:
-    """Save the figure of the axes; `.svg` and `.pdf` are vector formats, `.png` is not.
+    """Save the figure of the axes in the format of the suffix, such as `.svg`, `.pdf` or `.png`.
 
     Raises
     ------

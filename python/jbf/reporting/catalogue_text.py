@@ -96,5 +96,5 @@ def _parameter_row(p: Parameter) -> tuple[str, str, str, str, str, str]:
 
 
 def meaning_of(p: Parameter) -> str:
-    """Return the meaning of a parameter, marked if it is stated by the user and not fitted."""
+    """Return the description of a parameter, marked if its value is provided by the user."""
     return f"{p.meaning} (specified, not fitted)" if p.stated else p.meaning

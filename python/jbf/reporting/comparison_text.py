@@ -18,7 +18,7 @@ def _run_lines(comparison: Comparison) -> list[str]:
 
 
 def comparison_report(comparison: Comparison) -> str:
-    """Format the overall error, the axes along which the model fails, and the error of each run."""
+    """Format the overall error, the axes with residual structure, and the error of each run."""
     lines = [comparison_sentence(comparison)]
     if comparison.failures:
         lines += [

@@ -13,7 +13,7 @@ from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE, dress
 
 
 def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
-    """Plot the RMS errors of the bench and of the thesis for every cell of the tables.
+    """Plot the simulated RMS errors and those of the thesis for every cell of the tables.
 
     Columns that the thesis does not have, such as the observed compensator, show the true error.
     """

@@ -19,7 +19,7 @@ _MOST_NAMED = 40
 def plot_cut(found: Import, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
     """Plot each channel of each recording in time.
 
-    Runs are shaded in alternating colours. Pieces that were left out are hatched.
+    Runs are shaded in alternating colours. Excluded pieces are hatched.
     """
     rows = [(view, key) for view in found.overviews for key in view.curves]
     drawn = axes_or_new(axes, len(rows), 1, (11.0, 0.8 + 1.7 * len(rows)))
@@ -56,7 +56,7 @@ def _shade(ax: Axes, found: Import, view: Overview) -> None:
 
 
 def save_cut(found: Import, path: str | os.PathLike[str]) -> None:
-    """Save the figure of the cut.
+    """Save the figure of recordings and pieces.
 
     Raises
     ------

@@ -50,7 +50,7 @@ from jbf.reporting.words import (
 )
 
 WIDTH = 10.0
-"""Width of a full-width figure in inches, chosen so that its text is as large as that of the page.
+"""Width of a full-width figure, inches; the font size of the figure is then that of the page.
 """
 
 
@@ -146,7 +146,7 @@ def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[st
 
 @dataclass(frozen=True)
 class Round:
-    """Candidates tried in one step of the selection.
+    """Candidates tested in one step of the selection.
 
     Attributes
     ----------

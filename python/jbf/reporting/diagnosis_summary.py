@@ -37,7 +37,7 @@ def diagnosis_summary(diagnosis: Diagnosis, most_lines: int = MOST_LINES) -> str
     Parameters
     ----------
     most_lines
-        Maximum number of lines; the last recommendations are left out first.
+        Maximum number of lines; the last recommendations are omitted first.
     """
     conclusions = f"{conclusion(diagnosis, '')}{law_sentence(diagnosis)}"
     above = [_cut(verdict_line(diagnosis)), *_paragraph("", conclusions, 4), "", *_steps(diagnosis)]

@@ -43,7 +43,7 @@ def limits_of(effect: Effect, said: Quantities) -> str:
 
 
 def _here(words: str, said: Quantities) -> str:
-    """Replace the terms of a bearing rig in a catalogue text."""
+    """Replace the terms of a bearing rig in a catalogue text by those of the machine."""
     for of_bearing, here in (
         ("the journal", "the load"),
         ("which gamma represents", "which the viscous friction of the law represents"),

@@ -34,11 +34,11 @@ Array = npt.NDArray[np.float64]
 
 SIZE = (4.7, 3.0)
 LEAST_SHARE = 0.08
-"""Smallest share of a pattern from which an effect is named as its cause."""
+"""Minimum share of a pattern that an effect must explain to be named as its cause."""
 UNCONFIRMED = "does not improve the held-out prediction"
 """Wording of the reason for a candidate that fits better but is rejected."""
 CONFIRMED = 0.6
-"""Total share of a pattern from which the effects are named as its full cause, not a part."""
+"""Minimum total share of a pattern at which effects are named as its full, not partial, cause."""
 SEEN_ALONG = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
 
 TITLES = {
@@ -51,7 +51,7 @@ TITLES = {
     "effects": "More effects than the limit",
     "unconfirmed": "Effects without held-out confirmation",
 }
-"""Titles of residual structure that lies along no axis."""
+"""Titles of residual structure that is not associated with an axis."""
 
 
 @dataclass(frozen=True)

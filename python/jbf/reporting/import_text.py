@@ -21,7 +21,7 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
     Parameters
     ----------
     kept
-        Whether a map from an earlier inspection exists and was not overwritten.
+        True if a map from an earlier inspection exists and was not overwritten.
     """
     held = []
     for table in guess.tables:
@@ -61,7 +61,7 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
 
 
 def import_report(found: Import) -> str:
-    """List the runs, their columns, the clock alignments, and the pieces left out."""
+    """List the runs, their columns, the clock alignments, and the excluded pieces."""
     runs = [piece for piece in found.pieces if piece.keep]
     out = [piece for piece in found.pieces if not piece.keep]
     seconds = sum(piece.to_s - piece.from_s for piece in runs)
@@ -130,7 +130,7 @@ def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
 
 
 def skipped_row_lines(ledger: Mapping[str, Any]) -> list[str]:
-    """List the rows left out of each file, and the notes on it."""
+    """List the excluded rows of each file, and the notes on the file."""
     said = []
     for page in ledger["files"]:
         for dropped in page["dropped"]:

@@ -18,7 +18,7 @@ from jbf.reporting.words import against_noise, number, value_and_error
 LONGEST = 120
 """Maximum length in characters of a list that grows with the model.
 
-A line has at most two of them.
+A line contains at most two such lists.
 """
 
 

@@ -137,7 +137,7 @@ def check_table(found: Check) -> str:
 
 
 def import_table(found: Import) -> str:
-    """Tabulate the runs and the pieces that were left out."""
+    """Tabulate the runs and the excluded pieces."""
     rows = [
         (p.name or f"left out: {p.why}", p.file, f"{p.from_s:.3f}", f"{p.to_s:.3f}")
         for p in found.pieces

@@ -1,4 +1,4 @@
-"""Figures as inline SVG whose text stays text and whose colours follow the page's theme."""
+"""Figures as inline SVG with selectable text and the colours of the page's theme."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DOTS_PER_INCH = 120
-"""Resolution of rasterized parts, which replace lines where there are too many points."""
+"""Resolution of rasterized parts, which replace lines with too many points."""
 _NAMED = {INK: "ink", MODEL: "model", BEFORE: "before", NOISE: "noise", MEASURED: "measured",
           OTHER: "other", "#ffffff": "paper"}  # fmt: skip
 _COLOUR = re.compile(r"(?<=: )(" + "|".join(_NAMED) + r")\b")

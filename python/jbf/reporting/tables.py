@@ -131,9 +131,9 @@ def power_rows(
 ) -> list[tuple[str, str, str, str, str]]:
     """Return the detection limits of each effect.
 
-    The columns are the effect, the smallest strength at which it is found, and this strength as
-    a share of the friction. They are followed by the smallest strength at which it is named
-    alone, and the effects confounded with it.
+    The columns are the effect, the smallest strength at which it is detected, and this strength as
+    a share of the friction. Further columns are the smallest strength at which the effect is
+    identified uniquely, and the effects confounded with it.
     """
     rows = []
     for p in power:

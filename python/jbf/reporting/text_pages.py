@@ -78,7 +78,7 @@ def plan_page(plan: Plan) -> str:
 
 
 def _power_axes(planned: PlannedPower) -> list[Axes]:
-    """Axes of the power curves; none where no effect has one."""
+    """Return the axes of the power curves; an empty list if no effect has a curve."""
     try:
         return plot_planned_power(planned)
     except InputError:

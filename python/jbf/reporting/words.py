@@ -77,7 +77,7 @@ def comparison_sentence(comparison: Comparison) -> str:
 
 
 def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
-    """State the result of the diagnosis with everything that qualifies it.
+    """State the result of the diagnosis with all its qualifications.
 
     Parameters
     ----------

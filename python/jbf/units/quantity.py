@@ -18,7 +18,7 @@ _LONGEST = 60
 
 
 def quantities(section: Mapping[str, Any], prefix: str) -> dict[str, Any]:
-    """Convert each quantity in a section of a rig to a number in the unit of its key.
+    """Convert the quantities in a section of a rig to numbers in the units of their keys.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def quantities(section: Mapping[str, Any], prefix: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If the unit is unknown or has other dimensions than that of the key.
+        The unit is unknown, or its dimensions differ from those of the unit of the key.
     """
     return {key: _converted(key, value, prefix) for key, value in section.items()}
 
@@ -60,7 +60,7 @@ def number_in(unit: str, text: str, option: str) -> float:
     Parameters
     ----------
     unit
-        The unit of the rig: of a plain number, and of the result.
+        Unit of the result, and of a number without a unit.
     text
         Value of the option, such as ``"0.2"`` or ``"12 deg/s"``.
     option
@@ -69,7 +69,7 @@ def number_in(unit: str, text: str, option: str) -> float:
     Raises
     ------
     InputError
-        The text is not a number, or its unit is unknown or of other dimensions.
+        The text is not a number, or its unit is unknown or has different dimensions.
     """
     try:
         return float(text)

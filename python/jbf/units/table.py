@@ -1,8 +1,8 @@
-"""Units of recordings by their names in loggers, with exact sizes in SI units.
+"""Units of recordings by their names in loggers, with exact conversion factors to SI units.
 
-A size is a ratio of integers times a power of pi, so that a conversion is rounded only once.
-Milliseconds are divided by 1000, not multiplied by a rounded 0.001. Angles and counts have
-dimensions of their own, so that a missing revolution (a factor of 2 pi) is an error.
+A factor is a ratio of integers times a power of pi, so that a conversion is rounded only once. For
+example, milliseconds are divided by 1000, not multiplied by a rounded 0.001. Angles and counts are
+separate dimensions, so that a missing factor of 2 pi per revolution is an error.
 """
 
 from __future__ import annotations

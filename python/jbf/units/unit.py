@@ -73,7 +73,7 @@ class Unit:
     def fits(self, wanted: Unit) -> bool:
         """Return whether values in this unit can be converted to `wanted`.
 
-        Radians of this unit may be dropped (rad m is m) but not added.
+        A radian in this unit may be omitted (rad m is m) but not added.
         """
         if self.dimensions == wanted.dimensions:
             return True

@@ -20,8 +20,8 @@ Parameters = dict[str, Any]
 DEMO_PLACES = ("hidden", "jbf-demo/hidden", "jbf-demo")
 """Folders that may contain the data of `jbf demo`, relative to the session's folder.
 
-The first two are seen from the demo's folder and from its parent. The last is where the page
-copies the data.
+The first two apply if the session's folder is that of the demo or its parent. The page copies the
+data into the last.
 """
 MOST_PIXELS = 4000
 

@@ -25,7 +25,7 @@ from jbf.workbench.session import Session
 TICK_S = 0.1
 """Interval between checks for changes."""
 PULSE_S = 10.0
-"""Interval without changes after which a comment line is sent, so that a closed page is noticed."""
+"""Interval without changes after which a comment line is sent, to detect a closed page."""
 
 Parameters = dict[str, Any]
 Action = Callable[[Session, Parameters], Any]
@@ -39,7 +39,7 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
     session
         Session that the page displays.
     token
-        Secret that each request under `/api/` must carry.
+        Secret that each request under `/api/` must contain.
     port
         Port of the server; part of the accepted host names.
     largest

@@ -168,7 +168,7 @@ class Bench:
 
 
 def _imported(folder: Folder, here: PurePosixPath) -> tuple[str, ...]:
-    """Return the recordings from which a campaign was imported, if they lie next to its folder."""
+    """Return the recordings from which a campaign was imported, if located next to its folder."""
     try:
         ledger = json.loads(read_text(folder.path((here / LEDGER).as_posix())))
         names = [(here.parent / str(file["file"])).as_posix() for file in ledger["files"]]

@@ -14,7 +14,7 @@ WIDTH = 88
 
 @dataclass(frozen=True)
 class Steps:
-    """Steps in the session before any model was made.
+    """Steps in the session before the first model was created.
 
     Attributes
     ----------
@@ -23,7 +23,7 @@ class Steps:
     imported
         Recordings from which the runs were imported; empty if they were opened directly.
     map
-        Map of that import. `out` is the folder that it filled.
+        Map of that import. `out` is the output folder.
     trims
         Used interval of each trimmed run, s.
     """

@@ -67,7 +67,7 @@ class Folder:
     def new_file(self, name: str) -> Path:
         """Return the path of a new uploaded file.
 
-        The name must be a bare name of a supported kind that is not in use.
+        The name must be a file name without a folder, of a supported kind, that is not in use.
 
         Raises
         ------

@@ -1,8 +1,9 @@
 """Access control: only the page of this server with its token may send requests.
 
-The loopback interface alone does not protect: any page in the user's browser can send requests to
-it. A page whose name is made to resolve to it (DNS rebinding) can read the responses. Therefore
-host name, origin and a secret are checked independently.
+The loopback interface alone is not an access control: any page in the user's browser can send
+requests to the server. A page whose host name is made to resolve to the loopback address (DNS
+rebinding) can read the responses. Therefore host name, origin and a secret are checked
+independently.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ class Guard:
         if scope["type"] == "lifespan":
             await self.app(scope, receive, send)
             return
-        if scope["type"] != "http":  # no web sockets: nothing here uses one
+        if scope["type"] != "http":  # web sockets are not used
             await send({"type": "websocket.close", "code": 1008})
             return
         headers = {k.decode("latin-1"): v.decode("latin-1") for k, v in scope["headers"]}

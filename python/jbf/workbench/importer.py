@@ -128,7 +128,7 @@ def _cut_file(folder: Folder, text: str) -> Path | None:
 
 
 def _additional_files(folder: Folder, text: str) -> list[Path] | None:
-    """Return the additional files named by a map; they must be in the folder, too."""
+    """Return the additional files named by a map; the files must be in the folder."""
     return [folder.path(name) for name in additional_names(text)] or None
 
 

@@ -1,4 +1,4 @@
-"""One job at a time in a process of its own, which can be stopped and outlives a closed page."""
+"""Execution of one job at a time in a separate process that can be stopped."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Ending = Literal["done", "error", "stopped"]
 Ended = Callable[[Ending, Any], None]
 Part = Callable[[Any], None]
 PATIENCE_S = 20.0
-"""Time in seconds between the request to stop and the kill of a process without a result."""
+"""Time between the request to stop a process and its termination without a result, s."""
 
 
 @dataclass
@@ -74,7 +74,7 @@ class Jobs:
         with self._lock:
             if self.job is not None:
                 raise InputError(problem="a fit is running", mend="wait for it, or cancel it")
-            # Not forked because the server has threads.
+            # Spawned, not forked, because the server is multithreaded.
             context = multiprocessing.get_context("spawn")
             mine, theirs = context.Pipe()
             process = context.Process(target=main, args=(theirs, order), daemon=True)
@@ -101,7 +101,7 @@ class Jobs:
                 process.kill()
                 return True
             self._cancelled, self.job.message = True, "stopping; cancel again to abort"
-            with contextlib.suppress(OSError):  # it has just ended
+            with contextlib.suppress(OSError):  # the process has just ended
                 self._connection.send(STOP)
         patience = threading.Timer(PATIENCE_S, process.kill)
         patience.daemon = True
@@ -133,7 +133,7 @@ class Jobs:
             if self._cancelled:
                 ending, answer = "stopped", {}
         process.join()
-        # Clear the job last: those who wait for its end then find the result.
+        # Clear the job last, so that the result is available to callers that wait for the end.
         try:
             ended(ending, answer)
         finally:

@@ -26,10 +26,10 @@ from jbf.importing.targets import KNOWN, wanted_unit
 from jbf.units.unit import parse_unit
 
 FIRST = 3
-"""Number of a column's values that are shown as in the file."""
+"""Number of values of a column that are shown as in the file."""
 _PLAIN = re.compile(r"\s*(?P<sign>-?)\s*`(?P<column>[^`]+)`\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
 _ANSWERED = re.compile(r"^# Open:\n(?:#   .*\n)+\n?", re.MULTILINE)
-"""Questions of the guess in a map; removed because the form shows those still open."""
+"""Comments with open questions in a guessed map; removed because the form shows them."""
 _LINE = re.compile(r"\w+\s*=")
 WORDS = {
     "time_s": "time",

@@ -20,7 +20,7 @@ def model_text(session: Session) -> str:
 
 
 def report_text(session: Session) -> str:
-    """Return the report: of a diagnosis its page, of a fit its comparison with the runs."""
+    """Return the report: the page of a diagnosis, or the comparison of a fit with the runs."""
     node = session.models.node()
     if "report" in node:
         return str(node["report"])

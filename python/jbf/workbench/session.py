@@ -115,7 +115,7 @@ class Session:
         Raises
         ------
         InputError
-            No rig is open, a fit is running, or the law does not go with the rig.
+            No rig is open, a fit is running, or the law cannot be used with the rig.
         """
         with self.lock:
             bench = self.on_bench()
@@ -191,7 +191,7 @@ class Session:
             return self.models.add(parent, f"{how}{named}", content)
 
     def _ranked(self, ending: Ending, answer: Any, number: int) -> None:
-        """Add the ranking of the candidates to a model that was added when its fit was done."""
+        """Add the ranking of the candidates to a model that was added after its fit."""
         node = self.models.node(number)
         unit = self.on_bench().rig.quantities.force
         if ending == "done":

@@ -1,6 +1,6 @@
 """Reduction of a record to the resolution of a screen: smallest and largest value per pixel.
 
-No excursion is lost, however short, because the drawn range covers all measured values.
+Short peaks are preserved, because the drawn range contains all measured values.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stretch:
-    """Samples from `first` to before `end`, in `pixels` groups of `stride`."""
+    """Samples `first` to `end` (exclusive), in `pixels` groups of `stride`."""
 
     first: int
     end: int

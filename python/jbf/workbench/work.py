@@ -114,7 +114,7 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
             if connection.recv() == STOP:
                 stop_requested.set()
                 _thread.interrupt_main()
-        except (EOFError, OSError):  # the server has ended, or the work is done
+        except (EOFError, OSError):  # the server has ended, or the order is completed
             pass
 
     signal.signal(signal.SIGINT, interrupt)

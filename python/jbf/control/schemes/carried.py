@@ -1,4 +1,4 @@
-"""Schemes that carry a friction model."""
+"""Schemes with a friction model."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ test-extended: $(TOOLS) $(MUTANTS)
 	$(VENV)/bin/python -m pytest -n auto -m extended
 
 # Fuzz targets and firmware are not part of the workspace: rustfmt is given every file. COMMITS is the
-# range whose messages are checked; the default is the last commit.
+# range of commits whose messages are checked, such as main..HEAD; without it none is.
 lint: $(TOOLS)
 	$(RUSTFMT) --check $$($(RUST_FILES))
 	cargo clippy --workspace --all-targets -- -D warnings
@@ -116,7 +116,7 @@ lint: $(TOOLS)
 	$(VENV)/bin/ruff check $(PYTHON_CODE)
 	$(VENV)/bin/ruff format --check $(PYTHON_CODE)
 	$(VENV)/bin/codespell
-	$(VENV)/bin/gitlint $(if $(COMMITS),--commits $(COMMITS))
+	$(if $(COMMITS),$(VENV)/bin/gitlint --commits $(COMMITS))
 	$(VENV)/bin/mypy
 	$(VENV)/bin/stubtest jbf._core
 	$(VENV)/bin/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml

@@ -112,8 +112,8 @@ def effects_without_estimate(
 
     def estimated(name: str, page: Parameter) -> bool:
         value = parameters.get(name)
-        if value is None or value.held or value.stderr is None:
-            return False
+        if value is None or value.stderr is None:
+            return False  # a held parameter has no standard error
         null = 0.0 if page.null is None or not math.isfinite(page.null) else page.null
         return abs(value.value - null) > policy.selection.min_estimate_sigma * value.stderr
 

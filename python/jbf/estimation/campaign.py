@@ -247,7 +247,7 @@ class Campaign:
 
     @property
     def step_n(self) -> float:
-        """Largest quantisation step that is comparable with the noise, N; zero if there is none."""
+        """Largest quantisation step that is comparable with the noise, N, or zero."""
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
 
     def steps_rms(self, residual_rms: float) -> float:

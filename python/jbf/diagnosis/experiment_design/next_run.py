@@ -147,7 +147,7 @@ def _best_motion(
 def propose(
     candidates: Candidates, rivals: Sequence[Sequence[Names]], limits: Limits | None = None
 ) -> Experiment | str:
-    """Propose the run that best discriminates between rival models, or state why there is none.
+    """Propose the run that best discriminates between rival models, or explain the lack of one.
 
     Parameters
     ----------

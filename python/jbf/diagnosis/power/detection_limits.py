@@ -229,7 +229,7 @@ def non_centrality(
 
 
 def _sufficient_multiple(runs: PresentRuns, model: Strength, wanted: float, times: float) -> float:
-    """Multiple of the usual strength that gives a required non-centrality; nan if there is none.
+    """Multiple of the usual strength that gives a required non-centrality, or nan.
 
     The search assumes a power law, at first with exponent two and then with the exponent observed
     between successive strengths. If the non-centrality increases abruptly (a lag below one sampling

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "import.md"
-BENCH_MAP, _, DRIVE_MAP, SEAL_MAP, SIDE_BY_SIDE_MAP = re.findall(
-    r"```toml[^\n]*\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL
+MAPS = dict(
+    re.findall(
+        r'```toml title="([^"]+)"\n(.*?)```', PAGE.read_text(encoding="utf-8"), flags=re.DOTALL
+    )
 )
 
 
@@ -22,7 +24,7 @@ def test_map_with_units_and_run_numbers_imports_two_runs_in_si_units(tmp_path: P
     ]
     header = "Zeit [s];Reibkraft [N];Weg [mm];Geschwindigkeit [mm/s];Normalkraft [N];Versuch"
     (tmp_path / "log.csv").write_text("\n".join([header, *rows]).replace(".", ",") + "\n")
-    (tmp_path / "map.toml").write_text(BENCH_MAP)
+    (tmp_path / "map.toml").write_text(MAPS["map.toml"])
     _, (first, second) = jbf.read_recording(tmp_path / "log.csv", tmp_path / "map.toml")
     for run in (first, second):
         np.testing.assert_allclose(run.position_m, 0.06 * np.sin(time), atol=1e-7)
@@ -40,7 +42,7 @@ def test_torque_in_percent_is_converted_with_the_rated_torque_of_the_drive(tmp_p
             torque = np.sign(rpm) * 30.0 + 0.025 * rpm + rng.normal()
             lines.append(f"{-rpm},{12.8 * i:.4f},{rpm + rng.integers(-1, 2)},{torque:.1f}")
     (tmp_path / "drive.csv").write_text("\n".join(lines) + "\n")
-    (tmp_path / "map.toml").write_text(DRIVE_MAP)
+    (tmp_path / "map.toml").write_text(MAPS["screw.toml"])
     rig, runs = jbf.read_recording(tmp_path / "drive.csv", tmp_path / "map.toml")
     assert [len(r) for r in runs] == [300] * len(speeds)
     assert runs[0].time_s[1] == 0.0128
@@ -61,7 +63,7 @@ def test_fit_of_imported_strokes_recovers_the_friction_per_pressure(tmp_path: Pa
         table = np.column_stack((time, position, speed, force, np.full(len(time), bar * 1e5)))
         header = "time_s,position_m,velocity_m_s,friction_n,pressure_pa"
         np.savetxt(tmp_path / f"s_{bar}.csv", table, "%.7g", ",", header=header, comments="")
-    (tmp_path / "map.toml").write_text(SEAL_MAP)
+    (tmp_path / "map.toml").write_text(MAPS["seal.toml"])
     files = sorted(tmp_path.glob("s_*.csv"))
     imported = jbf.import_files(files, tmp_path / "map.toml")
     assert [run.name for run in imported.runs] == ["s_1", "s_3", "s_5"]
@@ -94,7 +96,7 @@ def test_files_recorded_side_by_side_are_aligned_by_their_position(tmp_path: Pat
     seconds = np.arange(60.0)
     write("temp.csv", "time [s],temperature [°C],pos [mm]", seconds + 11.9, 20.0 + 0.0 * seconds,
           position(seconds))  # fmt: skip
-    (tmp_path / "map.toml").write_text(SIDE_BY_SIDE_MAP, encoding="utf-8")
+    (tmp_path / "map.toml").write_text(MAPS["side_by_side.toml"], encoding="utf-8")
     result = jbf.import_files(tmp_path / "drive.csv", tmp_path / "map.toml")
     of_force, of_temperature = result.ledger["files"][0]["beside"]
     assert of_force["alignment"]["offset_s"] == pytest.approx(2.0, abs=0.002)

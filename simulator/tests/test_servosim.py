@@ -63,7 +63,7 @@ def moving_samples(campaign: servosim.Campaign) -> tuple[Any, Any]:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_parameters_follow_from_the_true_motion_where_the_force_is_on_time(seed: int) -> None:
+def test_parameters_of_a_drive_are_recovered_if_the_force_has_no_delay(seed: int) -> None:
     if draw(seed).logger.force_late:
         return
     campaign = servosim.simulate(seed)
@@ -123,7 +123,7 @@ def test_warm_up_decreases_all_friction_with_time() -> None:
     assert velocity[1] == pytest.approx(1.0, rel=1e-3)
 
 
-def test_hidden_effects_leave_the_drawn_drive_and_logger_as_they_are() -> None:
+def test_hidden_effects_do_not_change_the_drawn_drive_and_logger() -> None:
     for seed in range(1, 6):
         plain, other = draw(seed), draw(seed, ("cogging",))
         assert plain.logger == other.logger

@@ -40,7 +40,7 @@ fn jump_of_the_counter_is_reported_and_ignored() {
 }
 
 #[test]
-fn top_speed_that_hides_an_overflow_is_refused() {
+fn top_speed_at_which_a_counter_overflow_is_ambiguous_is_refused() {
     let error = Encoder::<f64>::new(COUNTS_PER_RAD, 8, 68.0, DT_S).unwrap_err();
     assert_eq!(error.name(), "top_speed_rad_s");
 }

@@ -106,7 +106,7 @@ fn transition_eccentricities_agree_with_the_printed_tables() {
 
 /// A given eps_tr applies to the constructor's load, and returns with it.
 #[test]
-fn given_transition_eccentricity_returns_with_its_load() {
+fn given_transition_eccentricity_applies_again_after_a_return_to_its_load() {
     let law = law(4.2).with_eps_tr(0.9727).expect("inside the bearing");
     let mut state = law.start(104.0);
     law.set_load(&mut state, 50.0);

@@ -271,7 +271,7 @@ fn motion_is_finite_with_one_reading_or_none() {
 }
 
 #[test]
-fn exact_velocities_with_fine_steps_between_them_give_the_motion_between() {
+fn motion_between_exact_velocity_readings_is_recovered_at_fine_steps() {
     fn of_order<const N: usize>() {
         let n = 401;
         let time: Vec<f64> = (0..n).map(|k| 0.0025 * k as f64).collect();

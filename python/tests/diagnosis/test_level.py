@@ -303,7 +303,7 @@ def test_effect_is_named_only_if_its_gain_exceeds_the_threshold(name: str, at_ga
     assert getattr(strict.policy, name) == strict.to_dict()["policy"][name]
 
 
-def test_search_reports_a_further_effect_beyond_the_largest_number() -> None:
+def test_candidate_beyond_the_effect_limit_is_reported_as_residual_structure() -> None:
     found = diagnosis_with("offset and drag", **{"selection.max_effects": 1})
     assert (found.verdict, len(found.model.effects)) == ("unexplained", 1)
     assert "effects" in [remainder.axis for remainder in found.residual_structure]
@@ -321,7 +321,7 @@ def test_alternative_below_the_minimum_weight_of_the_policy_is_not_reported() ->
     assert dropped.alternatives == {dropped.effects[0]: ()}
 
 
-def test_candidate_on_fewer_samples_counts_as_one_without_a_direction() -> None:
+def test_candidate_with_fewer_samples_keeps_its_share_of_the_significance_level() -> None:
     one = _one_direction(np.full(4, 0.5), np.array([1.0, 1.0, -1.0, -1.0]), [0, 2])
     fewer = _one_direction(np.full(3, 0.577), np.array([1.0, 1.0, -1.0]), [0, 2])
     level = Level(false_alarm_rate=0.01, candidates=3, chance=1.0)

@@ -52,7 +52,7 @@ def test_run_that_is_given_twice_is_used_once_and_reported() -> None:
     assert [f.kind for f in campaign.findings].count("repeated_run") == 1
 
 
-def test_campaign_only_selects_runs_and_campaign_without_excludes_samples() -> None:
+def test_part_of_a_campaign_contains_the_selected_runs_or_excludes_the_masked_samples() -> None:
     campaign = prepared(run("a"), other("b"), run("c", 7.0 * SPEED))
     some = campaign.only([2, 0])
     assert [p.run.name for p in some.prepared] == ["c", "a"]

@@ -54,7 +54,7 @@ def test_rms_is_over_counted_samples_and_sum_of_squares_over_weighted_samples() 
     assert empty.cost(VALUES, WHITE) == 0.0
 
 
-def test_samples_only_selects_all_properties_of_the_given_runs() -> None:
+def test_selection_of_runs_keeps_all_properties_of_their_samples() -> None:
     level = tuple(0.5 * np.ones(len(w)) for w in WEIGHT)
     between = RandomEffects(("zero",), (np.ones((4, 1)), 2.0 * np.ones((3, 1))), 0.7)
     one = replace(SAMPLES, level=level, between=between).only([1])
@@ -67,7 +67,7 @@ def test_samples_only_selects_all_properties_of_the_given_runs() -> None:
     assert SAMPLES.only([0]).between is None
 
 
-def test_samples_weighed_multiplies_weights_and_accumulates_the_noise_level() -> None:
+def test_further_weights_are_multiplied_and_the_noise_level_is_accumulated() -> None:
     level, robust = [np.full(4, 0.5), np.full(3, 0.8)], [np.full(4, 0.1), np.ones(3)]
     once = SAMPLES.weighed(level, robust, None)
     np.testing.assert_allclose(once.weight[0], [0.05, 0.025, 0.0, 0.05])

@@ -92,7 +92,7 @@ def test_every_starting_value_rule_named_in_the_catalogue_exists() -> None:
         ("drive_damping", (80.0,)),
     ],
 )
-def test_starting_values_of_a_rule_follow_from_the_scales_of_a_campaign(
+def test_starting_values_of_each_catalogue_rule_follow_from_the_typical_magnitudes(
     rule: str, starts: tuple[float, ...]
 ) -> None:
     assert (RULES | LINEAR_RULES)[rule](SIZES) == pytest.approx(starts)

@@ -209,7 +209,7 @@ def test_held_positions_of_a_moving_shaft_are_reconstructed_from_the_speed() -> 
         ({393: 5}, 1e-6, 0.1, True),
     ],
 )
-def test_constant_position_is_held_only_if_it_catches_up_with_the_speed(
+def test_constant_position_is_held_only_if_its_next_change_makes_up_for_the_missed_travel(
     at: Any, step: float, speed: float, found: bool
 ) -> None:
     assert (held_path(at, step=step, speed=speed)[1] is not None) == found

@@ -87,9 +87,9 @@ fn jump_larger_than_the_gap_is_followed_at_its_sample() {
     }
 }
 
-/// A zero of no duration changes nothing: friction exists on both sides of it.
+/// A single sample at zero speed, where the friction is zero, does not move the reading afterwards.
 #[test]
-fn zero_of_no_duration_does_not_move_the_reading() {
+fn sample_at_zero_speed_does_not_change_the_readings_of_the_other_samples() {
     let (f, w, dt) = (0.1, 1.5, 0.05);
     let chain = chain_round(ConstantLaw(f), &[("sensor_hysteresis", &[w])]);
     let touches = |t: f64| if (t - 1.0).abs() < 1e-9 { 0.0 } else { 0.1 };

@@ -95,7 +95,7 @@ fn derivatives_are_those_of_the_characteristic_on_both_sides_of_its_turning_poin
 
 /// Each instant within a step is transformed separately.
 #[test]
-fn instants_of_a_step_are_transformed_separately() {
+fn nonlinearity_transforms_each_instant_of_a_step_separately() {
     let cell = SensorNonlinearity::new(&[0.01]).expect("within bounds");
     let rig = Rig {
         radius_m: 1.0,

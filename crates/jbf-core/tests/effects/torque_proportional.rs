@@ -75,7 +75,7 @@ fn drag_is_not_transmitted() {
 
 /// On an inclined axis the weight is constant and adds to the inertial force of the mass.
 #[test]
-fn constant_weight_is_transmitted() {
+fn constant_weight_on_an_inclined_axis_adds_to_the_transmitted_force() {
     let (sines, weight) = (Sines::two_way(1.0), 4.0);
     let chain = chain_round(
         newtons(F_C_N, 0.0),

@@ -25,7 +25,7 @@ fn friction_decays_exponentially_with_time() {
 
 /// Time at rest counts as well, in contrast to running-in over the distance slid.
 #[test]
-fn time_at_rest_counts() {
+fn friction_decays_also_during_a_rest() {
     let chain = chain_round(newtons(F_C_N, 0.0), &[("warm_up", &[0.5, 3.0])]);
     let later = |t: f64| constant::<f64>(if t < 5.0 { 0.0 } else { 0.05 }, t);
     let last = readings(&chain, 0.01, 600, later)[600];

@@ -88,7 +88,7 @@ fn swings_beyond_the_breakaway_cause_drift() {
 
 /// With a breakaway close to the level it is a spring and a slider; if very stiff, Coulomb's law.
 #[test]
-fn limits_are_a_spring_with_slider_and_coulombs_law() {
+fn stiff_law_equals_coulombs_law_and_breakaway_near_the_level_a_spring_with_slider() {
     let (dt, steps) = (2.03e-3, 3000);
     let run =
         |name: &str, values: &[f64], a: f64| along::<f64>(name, values, dt, steps, sine(a, 3.0));

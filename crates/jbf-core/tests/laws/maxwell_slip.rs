@@ -167,7 +167,7 @@ fn load_cycles_below_f_c_cause_no_ratchetting() {
 ///
 /// The breakaway of that elasto-plastic law is its level.
 #[test]
-fn limits_are_coulombs_law_and_the_elasto_plastic_law() {
+fn stiff_law_equals_coulombs_law_and_small_exponent_the_elasto_plastic_law() {
     let (dt, steps) = (2.03e-3, 3000);
     let run =
         |name: &str, values: &[f64], a: f64| along::<f64>(name, values, dt, steps, sine(a, 3.0));

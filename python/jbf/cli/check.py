@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CheckOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf check`."""
 
     model: str
     runs: tuple[str, ...]
@@ -38,7 +38,7 @@ class CheckOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf check` to the parser."""
     parser = command(commands, "check", COMMANDS["check"], CheckOptions, run)
     parser.add_argument(
         "model", metavar="MODEL", help="model of the runs, written by jbf diagnose --out"
@@ -67,7 +67,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: CheckOptions) -> int:
-    """Run the command."""
+    """Run `jbf check` and return its exit code."""
     from jbf.diagnosis.check import check, identity
 
     wanted = {"--json": options.json, "--resume": options.resume}

@@ -13,7 +13,7 @@ from jbf.reporting.json import json_text
 
 @dataclass(frozen=True)
 class CompareOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf compare`."""
 
     model: str
     runs: tuple[str, ...]
@@ -25,7 +25,7 @@ class CompareOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf compare` to the parser."""
     parser = command(commands, "compare", COMMANDS["compare"], CompareOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     add_runs(parser)
@@ -38,7 +38,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: CompareOptions) -> int:
-    """Run the command."""
+    """Run `jbf compare` and return its exit code."""
     wanted = {"--json": options.json, "--report": options.report}
     read = outputs.inputs_in(options.model, options.runs, options.map, options.effects_from)
     outputs.check(wanted, read)

@@ -17,14 +17,14 @@ from jbf.cli.progress import shown
 
 @dataclass(frozen=True)
 class DemoOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf demo`."""
 
     directory: str
     verbosity: Verbosity
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf demo` to the parser."""
     parser = command(commands, "demo", COMMANDS["demo"], DemoOptions, run)
     parser.add_argument(
         "directory",
@@ -37,7 +37,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: DemoOptions) -> int:
-    """Run the command."""
+    """Run `jbf demo` and return its exit code."""
     from jbf.demo import run as run_demo
     from jbf.reporting.diagnosis_summary import verdict_line
 

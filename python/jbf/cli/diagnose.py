@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DiagnoseOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf diagnose`."""
 
     rig: str | None
     runs: tuple[str, ...]
@@ -55,7 +55,7 @@ class DiagnoseOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf diagnose` to the parser."""
     parser = command(commands, "diagnose", COMMANDS["diagnose"], DiagnoseOptions, run)
     add_rig(parser, nargs="?")
     add_runs(parser, needed=False)
@@ -94,7 +94,7 @@ def _add_next_run(parser: Parser) -> None:
 
 
 def run(options: DiagnoseOptions) -> int:
-    """Run the command."""
+    """Run `jbf diagnose` and return its exit code."""
     if options.many is not None:
         for name, given in (
             (hold_out.OPTION, options.hold_out),

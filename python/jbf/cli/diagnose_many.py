@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def add(parser: Parser) -> None:
-    """Add the options."""
+    """Add `--many` and `--jobs`."""
     group = parser.add_argument_group("many rigs")
     group.add_argument(
         "--many",
@@ -37,7 +37,7 @@ def add(parser: Parser) -> None:
 
 
 def run(options: DiagnoseOptions, folder: str) -> int:
-    """Run the command; a campaign that fails is reported, and the others continue."""
+    """Run `jbf diagnose --many`; a failed campaign is reported, and the others continue."""
     from jbf.diagnosis import diagnose_many
 
     if options.rig is not None or options.next_run:

@@ -14,7 +14,7 @@ from jbf.reporting.json import json_text
 
 @dataclass(frozen=True)
 class EffectsOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf effects`."""
 
     name: str | None
     law: str | None
@@ -22,7 +22,7 @@ class EffectsOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf effects` to the parser."""
     parser = command(commands, "effects", COMMANDS["effects"], EffectsOptions, run)
     parser.add_argument(
         "name", metavar="NAME", nargs="?", help="effect whose description is printed"
@@ -33,7 +33,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: EffectsOptions) -> int:
-    """Run the command."""
+    """Run `jbf effects` and return its exit code."""
     from jbf.reporting.catalogue_text import effect_page, effects_page
 
     wanted = {"--json": options.json}

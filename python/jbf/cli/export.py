@@ -14,7 +14,7 @@ from jbf.export import c, rust
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf export`."""
 
     model: str
     rust: str | None
@@ -22,7 +22,7 @@ class ExportOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf export` to the parser."""
     parser = command(commands, "export", COMMANDS["export"], ExportOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument(
@@ -34,7 +34,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: ExportOptions) -> int:
-    """Run the command."""
+    """Run `jbf export` and return its exit code."""
     wanted = {"--rust": options.rust, "--c": options.c}
     if not any(wanted.values()):
         raise InputError(problem="no output is given", mend="add --rust FILE.rs or --c FILE.h")

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FitOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf fit`."""
 
     rig: str
     runs: tuple[str, ...]
@@ -43,7 +43,7 @@ class FitOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf fit` to the parser."""
     parser = command(commands, "fit", COMMANDS["fit"], FitOptions, run)
     add_rig(parser)
     add_runs(parser, needed=False)
@@ -81,7 +81,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: FitOptions) -> int:
-    """Run the command."""
+    """Run `jbf fit` and return its exit code."""
     wanted = {"--out": options.out}
     if not options.runs and not os.path.isdir(options.rig):
         raise InputError(

@@ -22,7 +22,7 @@ WIDEST = 98
 
 
 def add(parser: Parser) -> None:
-    """Add the option."""
+    """Add `--hold-out`."""
     parser.add_argument(
         OPTION,
         metavar="PATTERN",

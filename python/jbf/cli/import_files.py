@@ -24,7 +24,7 @@ EVERY = "all"
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf import`."""
 
     files: tuple[str, ...]
     map: str | None
@@ -42,7 +42,7 @@ class ImportOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf import` to the parser."""
     parser = command(commands, "import", COMMANDS["import"], ImportOptions, run)
     parser.add_argument(
         "files", metavar="FILE", nargs="+", help="recordings, all read with one map"
@@ -85,7 +85,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: ImportOptions) -> int:
-    """Run the command."""
+    """Run `jbf import` and return its exit code."""
     outputs.check({"--plot": options.plot}, options.inputs())
     if options.joint is not None and options.map is not None:
         raise InputError(
@@ -188,8 +188,8 @@ def _look(options: ImportOptions) -> int:
 def _map_path(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bool]:
     """Return the path of a file's map, and whether an existing map there is kept.
 
-    The name is `map.toml`. A joint has a name of its own, and so has a file if `map.toml` is the
-    map of another file.
+    The name is `map.toml`, or `STEM.map.toml` if `map.toml` is the map of another file. The map of
+    a joint is `STEM.JOINT.map.toml`. A number is appended if this name is in use as well.
     """
     from jbf.importing.map_text import map_was_written_for
 

@@ -21,7 +21,7 @@ FALSE_ALARM_RATE, MIN_EFFECT = "--false-alarm-rate", "--min-effect"
 
 
 def add(parser: Parser) -> None:
-    """Add the options."""
+    """Add the options that set the thresholds of a detection."""
     parser.add_argument(
         FALSE_ALARM_RATE,
         metavar="P",

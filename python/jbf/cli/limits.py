@@ -16,7 +16,7 @@ SPEED, SHARPNESS, LOADS = "--max-velocity", "--max-acceleration", "--loads"
 
 
 def add(group: Group, *, otherwise: str, sharpest: str, needed: bool = False) -> None:
-    """Add the options.
+    """Add the options that set the operating limits.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from jbf.reporting.json import json_text
 
 @dataclass(frozen=True)
 class PlanOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf plan`."""
 
     rig: str
     minutes: float
@@ -38,7 +38,7 @@ class PlanOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf plan` to the parser."""
     parser = command(commands, "plan", COMMANDS["plan"], PlanOptions, run)
     power.add_rig_or_model(parser)
     parser.add_argument(
@@ -76,7 +76,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: PlanOptions) -> int:
-    """Run the command."""
+    """Run `jbf plan` and return its exit code."""
     from jbf.diagnosis.experiment_design.plan import plan
 
     wanted = {"--json": options.json}

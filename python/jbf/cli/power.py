@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PowerOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf power`."""
 
     rig: str
     runs: tuple[str, ...]
@@ -42,7 +42,7 @@ class PowerOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf power` to the parser."""
     parser = command(commands, "power", COMMANDS["power"], PowerOptions, run)
     add_rig_or_model(parser)
     add_runs(parser)
@@ -87,7 +87,7 @@ def noise_of(option: str | None, model: Model) -> float:
 
 
 def run(options: PowerOptions) -> int:
-    """Run the command."""
+    """Run `jbf power` and return its exit code."""
     from jbf.diagnosis.power.planned_runs import planned_power
 
     wanted = {"--json": options.json}

@@ -13,7 +13,7 @@ from jbf.records.checks import POINT
 
 @dataclass(frozen=True)
 class PredictOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf predict`."""
 
     model: str
     motion: str
@@ -22,7 +22,7 @@ class PredictOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf predict` to the parser."""
     parser = command(commands, "predict", COMMANDS["predict"], PredictOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument("motion", metavar="RUN", help="CSV file of a run, with or without friction")
@@ -36,7 +36,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: PredictOptions) -> int:
-    """Run the command."""
+    """Run `jbf predict` and return its exit code."""
     wanted = {"--out": options.out}
     read = outputs.inputs_in(options.model, options.motion, options.effects_from)
     outputs.check(wanted, read)

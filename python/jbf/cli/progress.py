@@ -1,4 +1,4 @@
-"""Progress on stderr: a bar on a terminal, otherwise a log with one line a minute."""
+"""Progress on stderr: a bar on a terminal, otherwise a log with one line per minute."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from jbf.cli.commands import COMMANDS
 
 @dataclass(frozen=True)
 class WorkbenchOptions:
-    """Arguments of the command."""
+    """Arguments of `jbf workbench`."""
 
     folder: str
     demo: bool
@@ -23,7 +23,7 @@ class WorkbenchOptions:
 
 
 def add(commands: Commands) -> None:
-    """Add the command to the parser."""
+    """Add `jbf workbench` to the parser."""
     parser = command(commands, "workbench", COMMANDS["workbench"], WorkbenchOptions, run)
     parser.add_argument(
         "folder",
@@ -42,7 +42,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: WorkbenchOptions) -> int:
-    """Run the command."""
+    """Run `jbf workbench` and return its exit code."""
     from jbf.workbench.serve import serve
 
     def opened(address: str) -> None:

@@ -14,7 +14,7 @@ from jbf.reporting.json import json_text
 
 @dataclass(frozen=True)
 class RobustnessOptions:
-    """Arguments of the action."""
+    """Arguments of `jbf control robustness`."""
 
     model: str | None
     bench: BenchOptions
@@ -23,7 +23,7 @@ class RobustnessOptions:
 
 
 def add(actions: Commands) -> None:
-    """Add the action to the parser."""
+    """Add `jbf control robustness` to the parser."""
     does = "test the compensation with a wrong model: missing effects, wrong load, more noise"
     parser = command(actions, "robustness", does, RobustnessOptions, run)
     parser.add_argument("model", metavar="MODEL", nargs="?", help="model file (default: thesis)")
@@ -33,7 +33,7 @@ def add(actions: Commands) -> None:
 
 
 def run(options: RobustnessOptions) -> int:
-    """Run the action."""
+    """Run `jbf control robustness` and return its exit code."""
     from jbf.control.bench import thesis_model
     from jbf.control.robustness import robustness
     from jbf.reporting.control_json import robustness_dict

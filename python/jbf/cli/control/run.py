@@ -21,7 +21,7 @@ _DEFAULT = "none,learning,coulomb,observed"
 
 @dataclass(frozen=True)
 class RunOptions:
-    """Arguments of the action."""
+    """Arguments of `jbf control run`."""
 
     model: str | None
     scheme: str | None
@@ -35,7 +35,7 @@ class RunOptions:
 
 
 def add(actions: Commands) -> None:
-    """Add the action to the parser."""
+    """Add `jbf control run` to the parser."""
     does = "simulate control loops on the bench, and compare compensation schemes"
     parser = command(actions, "run", does, RunOptions, run)
     parser.add_argument(
@@ -64,7 +64,7 @@ def add(actions: Commands) -> None:
 
 
 def run(options: RunOptions) -> int:
-    """Run the action."""
+    """Run `jbf control run` and return its exit code."""
     from jbf.control.run import run as run_loop
     from jbf.control.settings import Settings
     from jbf.reporting.control_run_text import runs_text

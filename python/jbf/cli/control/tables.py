@@ -13,14 +13,14 @@ from jbf.reporting.json import json_text
 
 @dataclass(frozen=True)
 class TablesOptions:
-    """Arguments of the action."""
+    """Arguments of `jbf control tables`."""
 
     json: str | None
     plot: str | None
 
 
 def add(actions: Commands) -> None:
-    """Add the action to the parser."""
+    """Add `jbf control tables` to the parser."""
     does = "reproduce Tables 6.1 and 6.2 of the thesis: published, fitted and predicted values"
     parser = command(actions, "tables", does, TablesOptions, run)
     add_json(parser)
@@ -28,7 +28,7 @@ def add(actions: Commands) -> None:
 
 
 def run(options: TablesOptions) -> int:
-    """Run the action."""
+    """Run `jbf control tables` and return its exit code."""
     from jbf.control.assumptions import assumptions
     from jbf.control.thesis_tables import fit_friction, tables
     from jbf.reporting.control_json import tables_dict

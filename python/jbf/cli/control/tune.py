@@ -12,7 +12,7 @@ from jbf.cli.progress import shown
 
 @dataclass(frozen=True)
 class TuneOptions:
-    """Arguments of the action."""
+    """Arguments of `jbf control tune`."""
 
     model: str
     toml: str | None
@@ -20,7 +20,7 @@ class TuneOptions:
 
 
 def add(actions: Commands) -> None:
-    """Add the action to the parser."""
+    """Add `jbf control tune` to the parser."""
     does = "compute the settings of the compensator from a fitted model"
     parser = command(actions, "tune", does, TuneOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
@@ -30,7 +30,7 @@ def add(actions: Commands) -> None:
 
 
 def run(options: TuneOptions) -> int:
-    """Run the action."""
+    """Run `jbf control tune` and return its exit code."""
     from jbf.control import tune
 
     wanted = {"--toml": options.toml}

@@ -1,4 +1,4 @@
-"""How often a diagnosis of simulated drives is right: `python benches/drives.py --seeds 4`.
+"""Rate of right diagnoses of simulated drives: `python benches/drives.py --seeds 4`.
 
 Dry and viscous friction under three loads (`rigsim.axes`, which shares no code with the library).
 The campaigns contain no effect, one effect of drives, two effects, an effect that is in no

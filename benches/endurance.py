@@ -1,4 +1,4 @@
-"""Whether memory stays flat: `python benches/endurance.py`.
+"""Memory of a process during many diagnoses: `python benches/endurance.py`.
 
 Diagnoses campaign after campaign in one process and prints its resident memory. Fails if the memory
 after the last tenth exceeds that after the second by more than `--growth-mib`.

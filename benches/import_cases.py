@@ -165,7 +165,9 @@ ORDERS: tuple[tuple[list[str], str | None], ...] = (
 class Text:
     """A file and its expected interpretation.
 
-    Attributes ---------- header
+    Attributes
+    ----------
+    header
         The row of the names, the first being 1; 0 without such a row.
     """
 

@@ -1,4 +1,4 @@
-"""How often a diagnosis names an effect where there is none, by the kind of noise.
+"""False-alarm rate of a diagnosis of campaigns without hidden effects, by kind of noise.
 
     .venv/bin/python benches/level.py [--campaigns 40] [--first-seed 1] [--jobs 2]
 

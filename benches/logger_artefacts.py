@@ -24,12 +24,12 @@ Columns = dict[str, Array]
 
 
 def as_recorded(run: Columns) -> str:
-    """The unchanged record."""
+    """Return the unchanged record as CSV."""
     return table(run)
 
 
 def late(seconds: float) -> Callable[[Columns], str]:
-    """A force that lags the other channels, interpolated to their stamps."""
+    """Return a function that delays the force and interpolates it to the stamps of the record."""
 
     def treat(run: Columns) -> str:
         time = run["time_s"]
@@ -39,20 +39,23 @@ def late(seconds: float) -> Callable[[Columns], str]:
 
 
 def drawn(run: Columns) -> str:
-    """A force logged at 20 Hz and interpolated linearly."""
+    """Return the record as CSV with a force logged at 20 Hz and interpolated linearly."""
     time, force = slow(run)
     return table(run | {"friction_n": np.interp(run["time_s"], time, force)})
 
 
 def held(run: Columns) -> str:
-    """A force logged at 20 Hz, each value held until the next."""
+    """Return the record as CSV with a force logged at 20 Hz, each value held until the next."""
     time, force = slow(run)
     last = np.searchsorted(time, run["time_s"] + 1e-9, side="right") - 1
     return table(run | {"friction_n": force[last]})
 
 
 def own_clock(run: Columns) -> str:
-    """A force logged at 20 Hz with separate stamps; missing values are empty cells."""
+    """Return the record as CSV with a force logged at 20 Hz with separate stamps.
+
+    Missing values are empty cells.
+    """
     time, force = slow(run)
     motion = [name for name in run if name != "friction_n"]
     rows = {round(t, 6): [run[name][i] for name in motion] for i, t in enumerate(run["time_s"])}
@@ -67,7 +70,7 @@ def own_clock(run: Columns) -> str:
 
 
 def slow(run: Columns) -> tuple[Array, Array]:
-    """Force at 20 Hz: the sample nearest to each instant."""
+    """Return stamps (s) and force (N) at 20 Hz: the sample nearest to each instant."""
     time = np.arange(run["time_s"][0], run["time_s"][-1], 0.05)
     nearest = np.abs(run["time_s"][:, None] - time).argmin(axis=0)
     return run["time_s"][nearest], run["friction_n"][nearest]

@@ -1,4 +1,4 @@
-"""How long, and how large, a diagnosis of a long recording is: `python benches/long_recording.py`.
+"""Time and memory of a diagnosis of a long recording: `python benches/long_recording.py`.
 
 A simulated slide (`rigsim.axes`, which shares no code with the library) records at 50 Hz, divided
 into runs of about five minutes, with one hidden effect or none. Prints the verdict, the names, wall

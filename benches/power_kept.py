@@ -1,4 +1,4 @@
-"""Whether effects are detected as often as their power predicts: `python benches/power_kept.py`.
+"""Detection rate of effects compared with their predicted power: `python benches/power_kept.py`.
 
 The diagnosis of simulated campaigns without hidden effects reports two strengths per effect. At
 `detectable_80`, 80 % of similar campaigns would show it; at `distinguishable_80`, it would be
@@ -63,9 +63,11 @@ def with_effect(
 
 
 def campaign(seed: int, effects: Sequence[str] | None = None) -> Iterator[dict[str, Any]]:
-    """Diagnose every effect for which the campaign states a power, at both strengths.
+    """Yield the assessed diagnoses with each effect whose power the campaign states.
 
-    `effects` limits the effects.
+    The effect is simulated once at its detectable strength and once at its distinguishable
+    strength. Nothing is yielded if the diagnosis without a hidden effect names one. `effects`
+    limits the effects.
     """
     rig, runs, _ = simulated(seed, campaign="short", coloured=seed % 2 == 1)
     found = jbf.diagnose(rig, runs)
@@ -91,7 +93,7 @@ def answer(
     runs: list[jbf.Run],
     draw: int,
 ) -> dict[str, Any]:
-    """Diagnose the runs with the effect and assess the result."""
+    """Diagnose the runs with the effect added, and return the assessed result as a row."""
     strong = at_strength(bare, power, value)
     again = jbf.diagnose(bare.rig, with_effect(bare, strong, runs, draw))
     could = {other for name in again.effects for other in (name, *again.alternatives[name])}

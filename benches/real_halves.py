@@ -9,9 +9,9 @@ a drive, %), `seal/NAP310_1bar.csv` and so on, `tribometer/run.csv`, `emps/run.c
 and position_m or angle_rad. Every other run, stroke pair or cycle is fitted, or the first half.
 
 By hand: inertia, offset and, with an angle, gravity, with each law of `HAND_LAWS` and each set of
-`HAND_EFFECTS`, fitted to the same half; the one that predicts the other half best is reported,
-a choice that nobody has who knows the first half alone. Without the recordings, which are not
-distributed, it reports this and does nothing.
+`HAND_EFFECTS`, are fitted to the same half. The model with the smallest error on the other half is
+reported, although a user who has only the first half could not select it. The recordings are not
+distributed: without them a message is printed and nothing is done.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from jbf.errors import Unfinished
 Array = npt.NDArray[np.float64]
 Halves = tuple[list[jbf.Run], list[jbf.Run]]
 SLOW = 0.05
-"""Share of the top speed below which the direction of a stroke is not known."""
+"""Share of the top speed below which the direction of a stroke is unknown."""
 LEAST = 15
-"""Number of samples from which on a run is used."""
+"""Smallest number of samples of a run."""
 HAND_LAWS = ("coulomb", "stribeck")
 HAND_EFFECTS = (
     (),
@@ -49,14 +49,14 @@ HAND_EFFECTS = (
 
 
 def columns(path: Path) -> dict[str, Array]:
-    """The columns of a CSV file by name."""
+    """Return the columns of a CSV file by name."""
     names = path.read_text(encoding="utf-8").split("\n", 1)[0].strip().split(",")
     values = np.loadtxt(path, delimiter=",", skiprows=1)
     return dict(zip(names, values.T, strict=True))
 
 
 def drive(path: Path) -> Halves:
-    """The first and the second halves of a drive's sweeps."""
+    """Split each sweep of a drive into its first and its second half."""
     c = columns(path)
     t, v, f = c["time_ms"] / 1e3, c["speed_rpm"] * 2.0 * np.pi / 60.0, c["torque_pct"]
     fitted, left = [], []
@@ -67,7 +67,7 @@ def drive(path: Path) -> Halves:
 
 
 def part(c: dict[str, Array], at: npt.NDArray[np.intp], name: str) -> jbf.Run:
-    """Some samples of a recording; a pressure in kPa stands for the load."""
+    """Return the samples `at` of a recording as a run; a pressure in kPa replaces the load."""
     t, v, f = (c[k][at] for k in ("time_s", "velocity_m_s", "friction_n"))
     others = {k: c[k][at] for k in ("position_m", "angle_rad") if k in c}
     if "pressure_pa" in c:
@@ -76,7 +76,7 @@ def part(c: dict[str, Array], at: npt.NDArray[np.intp], name: str) -> jbf.Run:
 
 
 def strokes(path: Path) -> Halves:
-    """Every other pair of strokes, and the others."""
+    """Split the pairs of strokes of a recording alternately into two halves."""
     c = columns(path)
     v = c["velocity_m_s"]
     sign = np.sign(np.where(np.abs(v) > SLOW * np.max(np.abs(v)), v, 0.0))
@@ -91,7 +91,7 @@ def strokes(path: Path) -> Halves:
 
 
 def all_strokes(folder: Path) -> Halves:
-    """Samples of several pressures at once."""
+    """Split the recordings at all pressures together, each as in `strokes`."""
     fitted, left = [], []
     for path in sorted(folder.glob("NAP310_*bar.csv")):
         for some, into in zip(strokes(path), (fitted, left), strict=True):
@@ -100,10 +100,10 @@ def all_strokes(folder: Path) -> Halves:
 
 
 def cycles(path: Path) -> Halves:
-    """Every other cycle of a slide to and fro, and the others.
+    """Split the cycles of a reciprocating slide alternately into two halves.
 
-    They are cut where the slide enters the upper fifth of its stroke: there it slides, and a
-    contact that bends begins a run as it ended the last one.
+    A cycle begins where the slide enters the upper fifth of its stroke. The contact is fully
+    deflected there, at the beginning and at the end of each run.
     """
     c = columns(path)
     place = c["position_m"]
@@ -115,8 +115,10 @@ def cycles(path: Path) -> Halves:
 
 
 def steady(folder: Path) -> Halves:
-    """Every other pair of steady strokes of a cylinder, a run for each valve voltage, and the
-    others: away from the ends of its way, where what is measured is the force of the stop."""
+    """Split the pairs of steady strokes of a cylinder alternately, with one run per valve voltage.
+
+    The ends of the travel are excluded, where the force of the end stop is measured.
+    """
     fitted: list[jbf.Run] = []
     left: list[jbf.Run] = []
     for path in sorted(folder.glob("valve*V.csv")):
@@ -132,15 +134,17 @@ def steady(folder: Path) -> Halves:
 
 
 def halved(path: Path) -> Halves:
-    """The first half, and the second."""
+    """Split a recording into its first and its second half."""
     c = columns(path)
     at = np.arange(len(c["time_s"]))
     return [part(c, at[: len(at) // 2], "first")], [part(c, at[len(at) // 2 :], "second")]
 
 
 def runs_of(path: Path) -> Halves:
-    """Every other run of a file with a column `run`, and the others; those with power if a column
-    `powered` marks it."""
+    """Split the runs numbered in the column `run` of a file alternately into two halves.
+
+    If a column `powered` exists, only samples with power are used.
+    """
     c = columns(path)
     on = c.get("powered", np.ones(len(c["time_s"]))) == 1.0
     parts = [np.flatnonzero((c["run"] == k) & on) for k in np.unique(c["run"])]
@@ -149,7 +153,7 @@ def runs_of(path: Path) -> Halves:
 
 
 def files(pattern: Path) -> Halves:
-    """Every other file without its first second, and the others."""
+    """Split the files that match a pattern alternately, each without its first second."""
     runs = []
     for path in sorted(pattern.parent.glob(pattern.name)):
         c = columns(path)
@@ -159,7 +163,7 @@ def files(pattern: Path) -> Halves:
 
 @dataclass(frozen=True)
 class Task:
-    """A recording, how it is divided, and what moves."""
+    """A recording, the function that splits it, the kind of its motion and its base law."""
 
     title: str
     path: Path
@@ -169,7 +173,7 @@ class Task:
 
 
 def plan(folder: Path, law: str) -> Iterator[Task]:
-    """All recordings."""
+    """Generate the tasks for all recordings."""
     for k in (1, 2):
         yield Task(f"leadscrew/drive{k}", folder / f"leadscrew/drive{k}.csv", drive, "rotary", law)
     for bar in (1, 3, 5, 7):
@@ -190,7 +194,7 @@ def plan(folder: Path, law: str) -> Iterator[Task]:
 
 
 def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], left: list[jbf.Run]) -> tuple[float, str]:
-    """The smallest error of the fits by hand on the other half, and the model."""
+    """Return the smallest error on the other half among the fits by hand, and its model."""
     machine = ["sensor_offset", "inertia"]
     if all(run.angle_rad is not None for run in fitted):
         machine.append("gravity")
@@ -209,7 +213,7 @@ def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], left: list[jbf.Run]) -> tuple[f
 
 
 def row(task: Task) -> str:
-    """A line of the table."""
+    """Diagnose one recording and return its row of the table."""
     quantity = "force" if task.motion == "linear" else "torque"
     rig = jbf.Rig(drive=jbf.Drive(task.motion, quantity))
     fitted, left = (
@@ -231,7 +235,7 @@ def row(task: Task) -> str:
 
 
 def main() -> int:
-    """Do it for every recording that is there."""
+    """Print one row for each available recording."""
     parser = argparse.ArgumentParser(prog="real_halves", description=__doc__.split("\n", 1)[0])
     parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("--law", default="auto", help="base law (default auto)")

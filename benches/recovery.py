@@ -1,4 +1,4 @@
-"""Do the intervals of a fit cover the truth? `python benches/recovery.py [EFFECT...]`.
+"""Coverage of the intervals of a fit: `python benches/recovery.py [EFFECT...]`.
 
 For every effect of the catalogue, several rigs of the project's own simulator are drawn at random,
 and each is recorded many times with new noise. Every record is fitted with the right structure, and

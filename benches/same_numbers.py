@@ -1,4 +1,4 @@
-"""Do two versions of jbf give the same numbers? Recorded by one, compared by the other.
+"""Compare the results of two versions of jbf: recorded by one, compared by the other.
 
     python benches/same_numbers.py record before.json      # with the first version
     python benches/same_numbers.py compare before.json     # with the second version

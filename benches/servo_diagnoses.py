@@ -1,8 +1,8 @@
-"""How often a diagnosis of simulated servo drives is right: `python benches/servo_diagnoses.py`.
+"""Rate of right diagnoses of simulated servo drives: `python benches/servo_diagnoses.py`.
 
-Closed-loop motions and the loggers of `simulator/servosim`, which shares no code with the library,
-with nothing hidden, one effect, two of them, or something that no catalogue contains. Three runs
-are diagnosed, two more of the same drive are predicted.
+The motions are those of closed loops, recorded by the loggers of `simulator/servosim`, which shares
+no code with the library. A drive has no hidden effect, one, two, or one that no catalogue contains.
+Three runs are diagnosed, and two further runs of the same drive are predicted.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Answer:
-    """A diagnosis of a campaign.
+    """The assessed diagnosis of a campaign.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Answer:
 
 
 def tasks(kinds: list[str], seeds: range, law: str) -> Iterator[Task]:
-    """One campaign of each kind a seed."""
+    """Generate one campaign of each kind per seed."""
     for seed in seeds:
         random = np.random.default_rng([seed, 5])
         single = str(random.choice(sorted(EFFECTS)))
@@ -82,7 +82,7 @@ def tasks(kinds: list[str], seeds: range, law: str) -> Iterator[Task]:
 
 
 def answer(task: Task) -> Answer:
-    """Simulate, diagnose, judge; an exception is an answer, too."""
+    """Return the assessed diagnosis of a campaign; an exception becomes the result `error`."""
     try:
         return diagnosed(task)
     except Exception as error:
@@ -91,7 +91,7 @@ def answer(task: Task) -> Answer:
 
 
 def diagnosed(task: Task) -> Answer:
-    """Simulate, diagnose, judge."""
+    """Simulate a campaign, diagnose it and assess the result."""
     campaign = servosim.simulate(task.seed, task.hidden, FITTED + PREDICTED)
     drawn = campaign.drawn
     plant, logger = drawn.plant, drawn.logger
@@ -124,7 +124,7 @@ def diagnosed(task: Task) -> Answer:
 
 
 def judged(task: Task, true: set[str], found: jbf.Diagnosis) -> str:
-    """Compare a diagnosis with what was simulated."""
+    """Assess a diagnosis against the simulated effects `true`: one of the columns of `table`."""
     if task.kind == "unknown":
         return "right" if found.verdict == "unexplained" else "not reported"
     named = {*found.machine, *found.effects}
@@ -138,7 +138,7 @@ def judged(task: Task, true: set[str], found: jbf.Diagnosis) -> str:
 
 
 def table(answers: list[Answer]) -> Iterator[str]:
-    """A row a kind."""
+    """Generate a table with one row per kind, and the processor time of a diagnosis."""
     columns = ("right", "tied", "false name", "unexplained", "missed", "not reported", "error")
     head = ("hidden", "campaigns", *columns, "machine right", "held-out ratio, median", "worst")
     yield f"| {' | '.join(head)} |"
@@ -158,7 +158,7 @@ def table(answers: list[Answer]) -> Iterator[str]:
 
 
 def line(a: Answer) -> str:
-    """One campaign in a line."""
+    """Format the result of one campaign as a line."""
     hidden = "+".join(a.task.hidden) or "nothing"
     return (
         f"{a.task.seed} {a.judged}: {hidden} -> {a.verdict} {'+'.join(a.named)} ({a.law}) "

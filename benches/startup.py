@@ -1,6 +1,7 @@
-"""How long `import jbf` and the first words of the command line take, each in a new process.
+"""Time that `import jbf` and short commands take, each in a new process.
 
-`python benches/startup.py --times 20` prints the least and the median time, and the processor time.
+`python benches/startup.py --times 20` prints the shortest and the median time, and the processor
+time.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How fast the workbench draws: `python benches/workbench_drawing.py`.
+"""Time that the workbench needs to draw: `python benches/workbench_drawing.py`.
 
 A recording of a million samples (and a model of it) in a headless browser without a graphics
 processor. Measures the time from the click to the frame with all plots of "Explore", and the

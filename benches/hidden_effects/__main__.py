@@ -1,4 +1,4 @@
-"""How often `jbf.diagnose` is right on campaigns that it has never seen.
+"""Rate of right diagnoses of campaigns with hidden effects.
 
     .venv/bin/python benches/hidden_effects [--kinds single,none] [--seeds 2] [--rivals]
 

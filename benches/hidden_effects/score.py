@@ -22,7 +22,9 @@ def judge(
     `tied`: all hidden effects are among the names of valid ties. `abstained`: the result reports
     remaining structure, or that the effect could be hidden in these runs, and names nothing false.
 
-    Parameters ---------- hidden
+    Parameters
+    ----------
+    hidden
         Effects of the catalogue in the record.
     foreign
         Whether an effect that is in no catalogue is hidden.

@@ -15,7 +15,7 @@ def _share(count: int, total: int) -> str:
 
 
 def summary(rows: list[Row]) -> str:
-    """Outcomes by kind, with time and held-out error."""
+    """Table of outcomes by kind of campaign, with time and held-out error."""
     lines = [
         "| hidden | campaigns | right | honest tie | abstained | wrong | held-out / noise, median "
         "| worst | s, median |",
@@ -35,7 +35,7 @@ def summary(rows: list[Row]) -> str:
 
 
 def confusion(rows: list[Row]) -> str:
-    """Results by hidden effect, for campaigns with at most one hidden effect."""
+    """Table of results by hidden effect, for campaigns with at most one hidden effect."""
     said: dict[str, Counter[str]] = {}
     for row in rows:
         if row["kind"] == "pair":
@@ -56,7 +56,7 @@ def confusion(rows: list[Row]) -> str:
 
 
 def rivals(rows: list[Row]) -> str:
-    """Share of right results of each rule, by kind."""
+    """Table of the shares of right results: jbf and each simpler rule, by kind of campaign."""
     known = [row for row in rows if "rivals" in row]
     if not known:
         return ""

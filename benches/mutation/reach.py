@@ -1,4 +1,4 @@
-"""Which tests reach which line, and how long each takes: measured once, by coverage contexts.
+"""Tests that run each line, and their durations, measured once by coverage contexts.
 
     python benches/mutation/reach.py [TESTS ...] --out FILE
 

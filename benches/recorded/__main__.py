@@ -1,4 +1,4 @@
-"""How often `jbf.diagnose` is right on campaigns as a logger hands them over.
+"""Rate of right diagnoses of simulated campaigns with recording artefacts.
 
     .venv/bin/python benches/recorded [--artefacts a,b] [--kinds none,single,pair] [--jobs 2]
     .venv/bin/python benches/recorded --folder CASES --heldout HELDOUT

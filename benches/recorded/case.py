@@ -12,7 +12,9 @@ Row = dict[str, Any]
 class Case:
     """A labelled campaign in two folders.
 
-    Attributes ---------- key
+    Attributes
+    ----------
+    key
         A unique name.
     effects, artefacts
         The hidden effects and the recording artefacts.

@@ -12,7 +12,7 @@ pub const LOAD_N: f64 = 104.0;
 /// Step of the thesis's control loop, s.
 pub const LOOP_STEP_S: f64 = 0.002;
 
-/// Table 4.2 on the journal clock; `lift` may attach derivatives to the four parameters.
+/// The law of Table 4.2 on the journal clock; `lift` may attach derivatives to the four parameters.
 pub fn law<T: Real>(lift: impl Fn(usize, f64) -> T) -> Journal<T> {
     let p = Parameters::TABLE_4_2;
     let parameters = Parameters {
@@ -24,7 +24,7 @@ pub fn law<T: Real>(lift: impl Fn(usize, f64) -> T) -> Journal<T> {
     Journal::new(&Bearing::THESIS, LOAD_N, &parameters, Clock::Journal).expect("Table 4.2 is valid")
 }
 
-/// This law with the named effects at their starting values.
+/// The law of Table 4.2 with the named effects at their starting values.
 pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain<T, Journal<T>> {
     let mut all = Effects::NONE;
     for info in CATALOGUE.iter().filter(|info| effects.contains(&info.name)) {
@@ -53,7 +53,7 @@ pub fn two_way<T: Real>(time_s: f64) -> Motion<T> {
         .with_angle_rad(T::of(0.127 * (1.0 - cos) / Bearing::THESIS.radius_m))
 }
 
-/// One period of this motion at the loop's step.
+/// One period of [`two_way`] at the loop's step.
 ///
 /// A benchmark thus includes reversals and full film in realistic proportions.
 pub fn period<T: Real>() -> Vec<Motion<T>> {

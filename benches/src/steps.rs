@@ -26,7 +26,7 @@ pub const PERIOD: u64 = 3141;
 
 /// An observer of stepped components.
 pub trait Watch {
-    /// `steps(n)` makes `n` steps of the named component, continuing from its state.
+    /// Receives a component by name; `steps(n)` makes `n` further steps of it.
     fn watch(&mut self, name: &str, steps: &mut dyn FnMut(u64));
 }
 
@@ -71,7 +71,7 @@ struct Bare<'a, W> {
 impl<T: Real, W: Watch> Visitor<T> for Bare<'_, W> {
     type Output = ();
 
-    /// The law alone: film or memory, friction, bristle.
+    /// Steps the law alone: film or memory, friction, bristle.
     fn visit<L: Named<T>>(self, law: L) {
         let mut state = law.start(T::of(LOAD_N));
         let mut before = T::ZERO;
@@ -90,7 +90,7 @@ impl<T: Real, W: Watch> Visitor<T> for Bare<'_, W> {
     }
 }
 
-/// Every law of the catalogue with its own stepper, at its starting values.
+/// Steps every law of the catalogue with its own stepper, at its starting values.
 fn laws<T: Real>(watch: &mut impl Watch, kind: &str) {
     for page in law::CATALOGUE {
         let values: Vec<T> = page.parameters.iter().map(|p| T::of(p.starts[0])).collect();
@@ -109,7 +109,7 @@ fn laws<T: Real>(watch: &mut impl Watch, kind: &str) {
     }
 }
 
-/// Every stepper with the films that it supports, and the friction after it.
+/// Steps every stepper with the films that it supports, and the friction after it.
 fn steppers<T: Real>(watch: &mut impl Watch, kind: &str) {
     let reduced = law::<T>(|_, v| T::of(v));
     let p = Parameters::TABLE_4_2;
@@ -154,10 +154,10 @@ fn one_chain<T: Real>(
     along(watch, name, |_, to| chain.step(&mut state, to, dt_s));
 }
 
-/// The signal chain with the first law.
+/// Steps the signal chain with the first law.
 ///
-/// Without effects, with each effect, with all, and with derivatives with respect to the four
-/// parameters.
+/// It is stepped without effects, with each effect, with all, and with derivatives with respect to
+/// the four parameters.
 fn chains(watch: &mut impl Watch) {
     let all: Vec<&str> = CATALOGUE.iter().map(|info| info.name).collect();
     one_chain(watch, "chain/none/f64", &[], |_, v| v);
@@ -178,7 +178,7 @@ struct Looped<'a, W> {
 }
 
 impl<T: Real, W: Watch> LoopVisitor<T> for Looped<'_, W> {
-    /// A complete loop from counter to voltage, along recorded encoder readings.
+    /// Steps a complete loop from counter to voltage, along recorded encoder readings.
     ///
     /// A closed loop would also measure the simulation of the shaft.
     fn visit<C: Compensator<T>>(
@@ -209,7 +209,7 @@ impl<T: Real, W: Watch> LoopVisitor<T> for Looped<'_, W> {
     }
 }
 
-/// Observers alone, and every loop with a compensator.
+/// Steps the observers alone, and every loop with a compensator.
 fn loops<T: Real>(watch: &mut impl Watch, kind: &str) {
     let observer = velocity_observer::<T>().expect("valid");
     let mut velocity = T::ZERO;

@@ -1,10 +1,11 @@
-"""Whether fits and diagnoses of absurd campaigns end, and in a sane answer.
+"""Robustness of fits and diagnoses against campaigns with unrealistic properties.
 
 `python benches/torture`. Every case is a rig and a campaign drawn at random (`draw.py`): scales
 over six decades, one to four runs, ten to two thousand samples, no motion, one speed, noise alone,
-zeros. Each must give a result, or one line that states what these runs cannot show. Not allowed are
-other exceptions, warnings of a library, numbers that are not finite, a bound as a value, and
-`adequate` far above the noise. The limit is `--limit` seconds of processor time.
+zeros. Each must give a result, or an error of one line that states what these runs cannot show.
+Faults are other exceptions, warnings of a library, numbers that are not finite, a bound as a value,
+and the verdict `adequate` with an error far above the noise. The limit is `--limit` seconds of
+processor time.
 """
 
 from __future__ import annotations

@@ -20,7 +20,9 @@ KINDS = ("friction", "friction", "friction", "noise", "zeros", "constant", "own 
 class Case:
     """A campaign and its known noise.
 
-    Attributes ---------- noise_rms
+    Attributes
+    ----------
+    noise_rms
         Standard deviation of the part that no model can explain, N. nan if unknown: for noise
         alone, and for a speed that jumps at every sample, which no machine has.
     """

@@ -14,9 +14,18 @@ from .record import Vector
 class Noise:
     """Noise levels.
 
-    friction_n: sd of the white part (N). coloured_share: sd of the first-order coloured part as a
-    share of the white one (-). correlation_s: its time constant (s). velocity_m_s: sd of the speed
-    (m/s), zero where the speed is exactly zero. counts_per_rad: encoder (1/rad).
+    Attributes
+    ----------
+    friction_n
+        Standard deviation of the white part of the friction noise, N.
+    coloured_share
+        Standard deviation of its first-order coloured part, as a share of the white part.
+    correlation_s
+        Time constant of the coloured part, s.
+    velocity_m_s
+        Standard deviation of the speed, m/s; the noise is zero where the speed is exactly zero.
+    counts_per_rad
+        Encoder counts per radian.
     """
 
     friction_n: float

@@ -13,7 +13,10 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Record:
-    """Samples of one run: s, rad, m/s, N, N, N, C; `clean_friction_n` is free of noise."""
+    """Samples of one run, in the order and units of the fields; `velocity` in m/s, `friction` in N.
+
+    `clean_friction_n` is the friction without noise, N.
+    """
 
     time_s: Vector
     angle_rad: Vector

@@ -15,7 +15,7 @@ TIGHT = 1e-9  # s; instants closer than this are treated as one
 
 
 class _Trip:
-    """Path bookkeeping along the pieces of a commanded motion."""
+    """Distance slid, rests and angle of the journal, accumulated over the pieces of a motion."""
 
     def __init__(self, radius_m: float, start_angle: float) -> None:
         self.radius_m = radius_m
@@ -24,7 +24,7 @@ class _Trip:
         self.rest_from: float | None = None
 
     def at(self, piece: Piece, t: float) -> Path:
-        """Path at time `t` of `piece`."""
+        """Path at time `t` (s), within `piece`."""
         x = piece.position(t)
         moved = abs(x - piece.position(piece.t0))
         done = self.done
@@ -44,7 +44,7 @@ class _Trip:
             self.rest_from = None
 
     def leave(self, piece: Piece) -> None:
-        """End `piece`."""
+        """End `piece`: add its path to the accumulated one."""
         self.done = self.at(piece, piece.t1)
 
 

@@ -23,7 +23,9 @@ RATES_HZ = (100.0, 200.0, 250.0, 500.0, 1000.0)
 class Drawn:
     """The quantities drawn from a seed.
 
-    Attributes ---------- rotary
+    Attributes
+    ----------
+    rotary
         True: angles and torques. False: positions and forces.
     kind
         Kind of motion of all runs.

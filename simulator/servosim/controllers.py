@@ -19,7 +19,9 @@ KINDS = ("steps", "trapezoids", "point_to_point", "jog", "soft", "hand")
 class Demand:
     """Requirements of a motion.
 
-    Attributes ---------- top
+    Attributes
+    ----------
+    top
         Velocity, rad/s or m/s.
     acceleration
         rad/s^2 or m/s^2.

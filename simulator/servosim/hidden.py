@@ -19,7 +19,9 @@ Rng = np.random.Generator
 class Course:
     """The current state of a run.
 
-    Attributes ---------- time
+    Attributes
+    ----------
+    time
         Since the start of the run, s.
     position, velocity
         rad and rad/s, or m and m/s.

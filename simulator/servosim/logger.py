@@ -20,7 +20,9 @@ FORCES = ("command", "sensor", "quantised")
 class Logger:
     """Description of how runs are recorded.
 
-    Attributes ---------- rate_hz
+    Attributes
+    ----------
+    rate_hz
         Sampling rate.
     stamps
         `even`; `jitter`: samples at uneven instants with true stamps; `jittered`: an even clock

@@ -25,7 +25,9 @@ Control = Callable[[int, float, float], float]
 class Plant:
     """Parameters of a drive in SI units, rotary or linear.
 
-    Attributes ---------- inertia
+    Attributes
+    ----------
+    inertia
         kg m^2 or kg.
     coulomb, viscous
         Friction torque, N m, and its slope, N m s/rad (or N, N s/m).
@@ -49,7 +51,9 @@ class Plant:
 class Trajectory:
     """The motion between events: pieces of constant torque and constant sign of the friction.
 
-    Attributes ---------- time, position, velocity
+    Attributes
+    ----------
+    time, position, velocity
         Values at the start of each piece and, last, at the end, shape (n + 1,).
     before, after
         Acceleration at the start and at the end of each piece, shape (n,).

@@ -12,7 +12,7 @@ BASE = Base()  # Table 4.2
 
 
 def hold(speed: float, seconds: float = 60.0):
-    """A constant speed (m/s), long enough to settle."""
+    """Motion at a constant speed (m/s), long enough for the film to settle."""
     return polyline("hold", [(0.0, speed), (seconds, speed)])
 
 

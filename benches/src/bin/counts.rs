@@ -5,7 +5,7 @@
 use jbf_benches::steps::{all, Watch, PERIOD};
 use std::hint::black_box;
 
-/// Callgrind writes its counts since the last mark.
+/// Marks the end of a measurement: callgrind writes its counts since the previous mark.
 #[inline(never)]
 fn jbf_counts_mark() {
     black_box(());

@@ -14,7 +14,9 @@ use std::time::Instant;
 
 const STEPS: usize = 50_000;
 
-/// `halves` contains the speed at every half step.
+/// Steps a law and stores the friction coefficient before each step.
+///
+/// `halves` contains the speed at every half step, m/s.
 #[inline(never)]
 fn run<T: Real>(
     law: &Journal<T>,

@@ -14,7 +14,7 @@ use std::time::Instant;
 const OMEGAS_RAD_S: [f64; 8] = [0.0055, 0.0225, 0.045, 0.1, 0.25, 0.5, 1.0, 2.0];
 const SAMPLES: usize = 2000;
 
-/// Friction of all runs, one after the other, and what they cost together.
+/// Computes the friction of all runs into `out`, one run after another; returns their total cost.
 fn all<F: Film<f64, N>, const N: usize>(
     film: &F,
     tolerance: f64,

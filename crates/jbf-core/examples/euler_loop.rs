@@ -1,5 +1,5 @@
 //! Accuracy of explicit Euler, the thesis's stepper, at each loop period: friction
-//! along a reversal of U = 0.127 sin(2 t), against a trajectory right to 1e-9.
+//! along a reversal of U = 0.127 sin(2 t), against a trajectory accurate to 1e-9.
 //!
 //! `cargo run --release -p jbf-core --example euler_loop`
 

@@ -37,7 +37,7 @@ fn main() -> Result<(), ParameterError> {
         rig,
     };
 
-    // 40 rows a period, 80 steps a row, none at rest; the first period only settles the film.
+    // 40 rows per period, 80 steps per row, none at rest; the first period only settles the film.
     let dt_s = TAU / 3200.0;
     let mut state = chain.start(&motion(0.0));
     println!("{:>7}  {:>8}  {:>9}", "t, s", "U, m/s", "f");

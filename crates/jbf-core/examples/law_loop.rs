@@ -1,5 +1,5 @@
-//! Prints the loop of any law in newtons, friction against place over one stroke and back, with
-//! its steady curve: what bends, what falls, what lags.
+//! Prints the hysteresis loop of any law in newtons, friction against position over one stroke
+//! forward and back, and the steady curve of the law.
 //!
 //! `cargo run -p jbf-core --example law_loop -- lugre`
 
@@ -17,7 +17,7 @@ fn motion(time_s: f64) -> Motion<f64> {
         .with_angle_rad(-1e-3 * cos) // on a linear axis the place, m
 }
 
-/// Forty rows of the second period, fifty steps a row.
+/// Table of the second period: forty rows, fifty steps per row.
 struct Table;
 
 impl Visitor<f64> for Table {

@@ -1,4 +1,4 @@
-//! Where may inertia be left out? Prints, as comma-separated values, the largest difference of
+//! Influence of the inertia of the journal. Prints, as comma-separated values, the largest difference of
 //! friction between the full and the reduced model over a period of `U = amplitude sin(omega t)`,
 //! relative to the loop's peak, once the film has settled: Table 4.2, both clocks.
 //!
@@ -11,7 +11,7 @@ use jbf_core::{Bearing, Clock, ParameterError};
 use std::f64::consts::TAU;
 
 const SAMPLES: usize = 1000;
-/// The film's longest memory, at a crawl, is some eight units of dimensionless time.
+/// Settling time in units of dimensionless time; the longest memory of the film is about eight.
 const SETTLING: f64 = 30.0;
 
 /// Unsigned friction over the first whole period after the settling.

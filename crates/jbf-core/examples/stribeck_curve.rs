@@ -17,7 +17,7 @@ fn main() -> Result<(), ParameterError> {
         "U, m/s", "eps", "phi, rad", "f"
     );
     for i in 0..=24 {
-        // From creep to full film, six points a decade.
+        // From creep to full film, six points per decade.
         let speed_m_s = 1e-4 * 10.0_f64.powf(f64::from(i) / 6.0);
         let film = law.steady(speed_m_s)?;
         let bar = "*".repeat((film.coefficient * 200.0).round() as usize);

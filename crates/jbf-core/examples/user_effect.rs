@@ -10,7 +10,7 @@ use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::motion::JournalMotion;
 use jbf_core::{Bearing, Chain, Clock, Friction, Motion, ParameterError, Real};
 
-/// `F_w (1 + sin th)/2` against the motion.
+/// Wiper whose friction `F_w (1 + sin th)/2` varies over a turn.
 #[derive(Clone, Copy, Debug)]
 struct Wiper<T> {
     force_n: T,

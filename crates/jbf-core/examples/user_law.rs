@@ -1,5 +1,5 @@
 //! A law that is in no catalogue, with effects that are: dry friction that falls with the power of
-//! speed, `F = F_1 (|v|/v_1)^-p`, round which the catalogue's effects act. The crate is not touched.
+//! speed, `F = F_1 (|v|/v_1)^-p`, combined with effects of the catalogue. The crate is not touched.
 //!
 //! ```text
 //! cargo run --example user_law
@@ -9,7 +9,9 @@ use jbf_core::effect::Effects;
 use jbf_core::law::Law;
 use jbf_core::{Chain, Friction, Motion, ParameterError, Real};
 
-/// Newtons of a slide: it computes with no load, and its coefficient is a force over 1 N.
+/// Friction of a slide, `F_1 (|v|/v_1)^-p`, N.
+///
+/// It does not depend on the load: its coefficient refers to one newton.
 #[derive(Clone, Copy, Debug)]
 struct FallingPower<T> {
     at_unit_speed_n: T,

@@ -33,14 +33,17 @@ pub struct FilmStep {
     pub load_n: f64,
 }
 
-/// A law without a film that passes the steps of a film to `sink`.
+/// A law that only determines the steps that a record requires of a film, and passes them to
+/// `sink`.
+///
+/// It has neither a film nor friction.
 #[derive(Clone, Copy, Debug)]
 pub struct FilmSteps<F> {
     sink: F,
 }
 
 impl<F> FilmSteps<F> {
-    /// Creates a law that passes its steps to `sink`.
+    /// Creates a law that passes each step to `sink`.
     pub fn new(sink: F) -> Self {
         Self { sink }
     }

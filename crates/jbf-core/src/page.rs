@@ -143,7 +143,8 @@ impl Bound {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Parameter {
-    /// Name in files and options: the symbol (`sigma`), with the unit if no rig changes it (`tau_s`).
+    /// Name in files and options: the symbol (`sigma`), followed by the unit if it is the same on
+    /// every rig (`tau_s`).
     pub name: &'static str,
     /// Unit in conventional notation (`1/m`).
     pub unit: &'static str,

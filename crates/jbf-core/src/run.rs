@@ -37,7 +37,7 @@ pub fn predict<T: Real, L: Law<T>, E: EffectSet<T>>(
     predict_by(chain, record, max_step_s, Steps::Every, sink);
 }
 
-/// Selection of the steps between two samples that a chain makes.
+/// Inner steps that a chain makes between two samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
     /// Every step.

@@ -13,7 +13,7 @@ use std::cell::RefCell;
 
 const MAX_STEP_S: f64 = 0.02;
 
-/// A law with derivatives with respect to f_m, U_tr and K0 if its numbers carry them.
+/// The law of Table 4.2; `lifted` may attach derivatives to f_m, U_tr and K0.
 fn law<T: Real>(lifted: impl Fn(f64, usize) -> T) -> Journal<T> {
     let p = Parameters::TABLE_4_2;
     let parameters = Parameters {

@@ -91,7 +91,7 @@ fn runge_kutta_in_single_precision_keeps_the_journal_inside_the_bearing() {
     torture::<f32>(&Rk4, 4);
 }
 
-/// This test for the full model.
+/// As [`torture`], for the full model.
 fn torture_full<T: Real>(stepper: &impl StiffStepper, seed: u64) {
     let mut random = Random::new(seed);
     for _ in 0..LAWS {

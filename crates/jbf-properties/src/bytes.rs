@@ -59,7 +59,7 @@ pub fn step_s(bytes: &mut Unstructured<'_>) -> Result<f64> {
     between(bytes, 1e-7, 10.0)
 }
 
-/// Either clock.
+/// Draws one of the two clocks.
 pub fn clock(bytes: &mut Unstructured<'_>) -> Result<Clock> {
     Ok(if bytes.arbitrary()? {
         Clock::Journal
@@ -93,7 +93,7 @@ pub fn effects<T: Real>(bytes: &mut Unstructured<'_>, law: &Info) -> Result<Effe
     Ok(effects)
 }
 
-/// The relative spacing of the numbers.
+/// Relative spacing of the numbers of a type.
 pub fn rounding<T: Real>() -> f64 {
     if size_of::<T>() == size_of::<f32>() {
         f32::EPSILON.into()

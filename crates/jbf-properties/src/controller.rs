@@ -14,7 +14,7 @@ use jbf_core::plant::Drive;
 use jbf_core::reference::Target;
 use jbf_core::Real;
 
-/// Most steps per input, so that one input does not take as long as a hundred.
+/// Largest number of steps per input, which limits the duration of a case.
 const STEPS: usize = 64;
 
 struct Running<T: Real> {
@@ -129,7 +129,8 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     any(bytes, &Loop { drive, law, dt_s }, running)
 }
 
-/// Any loop with any compensator, over counters and targets of any kind.
+/// Checks that any loop with any compensator has a finite output within its limit, for any counter
+/// and target.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

@@ -8,10 +8,10 @@ use jbf_core::law::journal::{Journal, Parameters, PARAMETERS};
 use jbf_core::law::journal_full::JournalFull;
 use jbf_core::{Bearing, Clock};
 
-/// Few samples, because long runs take long and only finiteness is tested.
+/// Number of samples of a trajectory; few suffice to test that it is finite.
 const SAMPLES: usize = 12;
 
-/// Most steps for that number of samples.
+/// Largest number of steps for `SAMPLES` samples.
 const MOST_STEPS: u32 = 2_000_000;
 
 fn along<F: Film<f64, N>, E: Excitation, const N: usize>(

@@ -6,7 +6,7 @@ use arbitrary::{Result, Unstructured};
 use jbf_core::encoder::{Encoder, State};
 use jbf_core::Real;
 
-/// Counters as wide as these are rare, but allowed.
+/// Numbers of bits of the counter, common and rare ones.
 const BITS: [u32; 6] = [8, 10, 16, 24, 31, 32];
 
 fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
@@ -57,7 +57,7 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Any encoder, along motions that it can follow and jumps that it cannot.
+/// Checks that any encoder follows every possible motion, and reports and omits every jump.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

@@ -26,7 +26,7 @@ const BEARING: CBearing = CBearing {
     count: Bearing::THESIS.count,
 };
 
-/// One number in sixteen is not finite.
+/// Draws a number; one in sixteen is not finite.
 fn any<T: Real>(bytes: &mut Unstructured<'_>) -> Result<T> {
     Ok(match bytes.int_in_range(0..=31_u8)? {
         0 => T::of(f64::NAN),
@@ -51,7 +51,7 @@ fn sound<T: Real>(m: &CMotion<T>) -> bool {
     Motion::from(m).is_finite()
 }
 
-/// Both texts are terminated by a zero and are not empty.
+/// Asserts that both texts of an error are terminated by a zero and are not empty.
 fn told(error: &CError) {
     assert!(error.name.contains(&0) && error.rule.contains(&0));
     assert!(error.name[0] != 0 && error.rule[0] != 0);
@@ -262,7 +262,8 @@ laws! {
         jbf_rate_and_state_f64_init jbf_rate_and_state_f64_effect jbf_rate_and_state_f64_start jbf_rate_and_state_f64_step jbf_rate_and_state_f64_predict;
 }
 
-/// Any law of the interface in either precision.
+/// Checks that the C interface of any law, in either precision, has the results of the core and
+/// reports rejected input by a code.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     assert_eq!(RUNS.len(), jbf_c::SIZES.len());
     let run = bytes.choose(RUNS)?;

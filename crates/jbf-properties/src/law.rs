@@ -86,7 +86,9 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     .unwrap_or(Ok(()))
 }
 
-/// Any law, with parameters anywhere within their bounds, along speeds that jump.
+/// Checks that the friction of any law resists a motion with jumps of the speed.
+///
+/// The parameters are anywhere within their bounds.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

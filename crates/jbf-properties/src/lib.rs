@@ -27,7 +27,7 @@ pub type Property = fn(&mut Unstructured<'_>) -> Result<()>;
 /// A property.
 #[derive(Clone, Copy)]
 pub struct Entry {
-    /// Its name, also that of its fuzz target.
+    /// Name of the property and of its fuzz target.
     pub name: &'static str,
     /// The property itself. An error only means that the bytes are exhausted.
     pub holds: Property,

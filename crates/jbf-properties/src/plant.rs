@@ -136,7 +136,9 @@ fn run<T: Real>(bytes: &mut Unstructured<'_>) -> Result<()> {
     with_law(page.name, bearing, Some(104.0), &values, clock, turning).unwrap_or(Ok(()))
 }
 
-/// Any law with any effects on a motor's shaft, under voltages and loads that jump.
+/// Checks that a motor's shaft with any law and effects stays finite and needs few trials per step.
+///
+/// Voltages and loads jump.
 pub fn holds(bytes: &mut Unstructured<'_>) -> Result<()> {
     if bytes.arbitrary()? {
         run::<f32>(bytes)

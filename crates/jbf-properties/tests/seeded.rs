@@ -16,7 +16,7 @@ use std::time::Instant;
 /// Longest input, bytes: several dozen steps.
 const LONGEST: usize = 512;
 
-/// The input of a seed: many short ones, some long.
+/// Returns the input of a seed; most inputs are short, some are long.
 fn input(seed: u64, buffer: &mut [u8; LONGEST]) -> &[u8] {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let longest = LONGEST >> (random.next_u32() % 4);

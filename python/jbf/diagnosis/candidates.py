@@ -215,7 +215,7 @@ class Candidates:
         return fitted
 
     def _approach(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:
-        """The search of a fit that starts from the solution of a smaller model."""
+        """Search of a fit, started from the solution of a smaller model."""
         seeds: list[Mapping[str, float]] = [{}]
         if near is not None:
             near_values = self._values_of(near)
@@ -245,7 +245,7 @@ class Candidates:
         self._each("looking at", lambda effects: self.look(effects, near), order, near)
 
     def score_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
-        """Compute the score tests of several sets of effects relative to a smaller model."""
+        """Compute and cache the score tests of several sets of effects in a smaller model."""
         self._each("testing", lambda effects: self.score_test(effects, near), sets, near)
 
     def _each(
@@ -356,14 +356,14 @@ class Candidates:
 
     @cached_property
     def beyond(self) -> list[ExtrapolatedRun]:
-        """Runs that exceed the range of all others; empty for a single run."""
+        """Runs whose speed or load is beyond the range of all others; empty for a single run."""
         return extrapolated_runs(self.campaign)
 
     def held_out_rms(self, effects: Sequence[str]) -> float:
         """Held-out RMS, N.
 
-        Runs are held out of the fit one at a time. For runs that exceed the range of all others,
-        parts are held out.
+        Runs are held out of the fit one at a time. A run whose speed or load is beyond the
+        range of all others is held out in parts.
         """
         parts = self.held_out_parts(effects, [b.run for b in self.beyond], alternate=True)
         errors = np.concatenate(list(errors_by_run(self.converge(effects), parts).values()))

@@ -51,7 +51,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class Extrapolation:
-    """Prediction error of a run that exceeds the range of all others, from a fit to the others.
+    """Prediction error of a run whose speed or load is beyond the range of all others.
 
     Attributes
     ----------
@@ -89,8 +89,8 @@ class Step:
     trials
         Candidates for the next addition.
     extrapolations
-        Errors of runs that exceed the range of all others; `held_out_rms` includes parts of these
-        runs.
+        Errors of runs whose speed or load is beyond the range of all others; `held_out_rms`
+        includes parts of these runs.
     """
 
     effects: tuple[str, ...]

@@ -240,7 +240,7 @@ def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> S
 
 
 def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolation, ...]:
-    """Prediction errors of runs that exceed the range of all others, from a fit to the others."""
+    """Prediction errors of runs beyond the range of all others in speed or load."""
     if not candidates.beyond:
         return ()
     unit, names = candidates.campaign.rig.quantities, candidates.campaign.samples.runs

@@ -318,7 +318,7 @@ def simulated_runs(
 def _sign_randomised(
     solution: Solution, campaign: Campaign, random: np.random.Generator
 ) -> list[Array]:
-    """Noise of the runs, N, one array a run: innovations with random signs by block."""
+    """Noise of the runs, N, one array per run: innovations with random signs by block."""
     plain = replace(
         solution.samples, weight=tuple(c.astype(float) for c in solution.samples.counted)
     )

@@ -167,7 +167,7 @@ def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[
 def _without_delay(
     problem: Problem, solution: Solution, residuals: list[Array], slopes: list[Array]
 ) -> list[Array]:
-    """Residuals without the contribution of a delay and its growth, one array a run.
+    """Residuals without the contribution of a delay and its growth, one array per run.
 
     The contribution is removed to first order; otherwise the noise would appear coloured.
     """
@@ -255,7 +255,7 @@ class ExactDelay:
     sd_s
         Standard deviation of the delay under its normalised likelihood, s.
     residuals
-        Record minus expected reading at these values, N, one array a run.
+        Record minus expected reading at these values, N, one array per run.
     """
 
     values: Array
@@ -303,7 +303,7 @@ class _Scan:
     Attributes
     ----------
     friction
-        Record without the random effects of its run, N, one array a run.
+        Record without the random effects of its run, N, one array per run.
     direction
         Derivative of the search variables with respect to the delay, 1/s.
     share
@@ -342,7 +342,7 @@ class _Scan:
         return cls(problem, chain, friction, values, direction, noise_rms, share)
 
     def along(self, delay_s: float) -> Array:
-        """Values of all parameters for a given delay."""
+        """Values of all parameters at a delay, s; the others change with it to first order."""
         change = delay_s - float(self.values[self.chain.tau])
         moved = self.problem.encode(self.values) + self.direction * change
         values = self.problem.decode(moved, self.values)
@@ -350,7 +350,7 @@ class _Scan:
         return values
 
     def cost(self, delay_s: float) -> float:
-        """Minus twice the log likelihood."""
+        """Minus twice the log likelihood of a delay, s."""
         values, total = self.along(delay_s), 0.0
         for p, friction in zip(self.problem.campaign.prepared, self.friction, strict=True):
             reading = self.chain.read(values, p.run, *p.motion_as_read, 0.0)
@@ -368,7 +368,7 @@ class _Scan:
         return total
 
     def residuals(self, values: Array, sd_s: float) -> list[Array]:
-        """Record minus expected reading, N."""
+        """Record minus expected reading, N, per run; `sd_s` is the standard error of the delay."""
         residuals = []
         for p in self.problem.campaign.prepared:
             reading = self.chain.read(values, p.run, *p.motion_as_read, sd_s)

@@ -238,7 +238,7 @@ def _step(
 def _rows(
     problem: Problem, solution: Solution, columns: Sequence[int], clocks: Clocks
 ) -> Iterator[tuple[Array, Array, int]]:
-    """Yield the innovations and derivatives of each run in reduced rows, and the sample count.
+    """Yield innovations and derivatives of each run in triangular form, and the sample count.
 
     The derivatives are with respect to the selected parameters and, last, the delays of the clock
     model.

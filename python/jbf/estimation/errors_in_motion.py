@@ -93,7 +93,7 @@ class ErrorsInMotion:
         return stacked[:, 0], stacked[:, 1:]
 
     def innovations(self, residuals: Sequence[Array], weights: Sequence[Array]) -> list[Array]:
-        """Independent residuals of standard deviation `noise`, one array a run.
+        """Independent residuals of standard deviation `noise`, one array per run.
 
         Values at samples without weight are zero.
         """

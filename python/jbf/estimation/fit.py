@@ -64,7 +64,7 @@ class Fit(Estimates):
     nobs
         Number of samples n that count: those in motion with a known sign.
     residuals
-        Record minus prediction, N, one array a run.
+        Record minus prediction, N, one array per run.
     loglik
         Log-likelihood at the estimates.
     converged, message

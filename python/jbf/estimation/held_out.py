@@ -1,7 +1,8 @@
 """Held-out errors: prediction errors at samples that a fit did not use.
 
 Each run is held out once; with many runs, several runs are held out at a time. A single run, and a
-run beyond the range of all others, is divided into parts, and alternate parts are held out.
+run beyond the range of all others (`extrapolated_runs`), is divided into parts, and alternate parts
+are held out.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ class HeldOutPart:
     runs
         Indices of the runs.
     masks
-        Mask of the held-out samples, one a run.
+        Mask of the held-out samples, one per run.
     identified
         Which parameters the fitted samples identify, shape (k,); the others were held.
     residuals
@@ -78,7 +79,7 @@ class HeldOutPart:
 
 
 def held_out_by_run(problem: Problem, solution: Solution) -> list[Array]:
-    """Held-out errors at the samples that count, N, one array a run (`held_out_parts`)."""
+    """Held-out errors at the samples that count, N, one array per run (`held_out_parts`)."""
     return list(errors_by_run(solution, held_out_parts(problem, solution)).values())
 
 
@@ -209,7 +210,7 @@ class _RunInformation:
     squares
         Sums of squares of the derivatives, shape (runs, k).
     factors
-        Innovations and derivatives in reduced rows, one pair a run.
+        Innovations and derivatives in triangular form (`triangular`), one pair per run.
     innovations
         Number of innovations of each run.
     """
@@ -326,7 +327,7 @@ def _held(problem: Problem, unidentified: Mask) -> dict[str, float]:
 
 
 def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
-    """The solution with the held parameters set to their fixed values."""
+    """Parameter values of the solution, with those of held parameters replaced by `held`."""
     values = zip(problem.names, solution.values.tolist(), strict=True)
     return np.array([held.get(name, value) for name, value in values])
 

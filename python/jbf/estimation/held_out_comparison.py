@@ -165,7 +165,7 @@ def independent_units(
 
 @dataclass(frozen=True)
 class ExtrapolatedRun:
-    """A run that is beyond the range of all others.
+    """A run whose speed or load is beyond the range of all others.
 
     The prediction of a fast run from slower ones is an extrapolation. The error of this prediction
     depends more on the form of the law than on the fit, and is not used as a held-out error.
@@ -187,7 +187,7 @@ class ExtrapolatedRun:
 
 
 def extrapolated_runs(campaign: Campaign) -> list[ExtrapolatedRun]:
-    """Runs that are beyond the range of all others, each with the first such quantity."""
+    """Runs with a speed or a load beyond the range of all others; speed is tested first."""
     by_run: dict[int, ExtrapolatedRun] = {}
     for quantity, values in _quantities(campaign).items():
         for extrapolated in _extrapolated(quantity, values, campaign.settings.held_out):
@@ -196,7 +196,7 @@ def extrapolated_runs(campaign: Campaign) -> list[ExtrapolatedRun]:
 
 
 def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
-    """Speed and load at the samples that count, one array a run."""
+    """Speed and load at the samples that count, one array per run."""
     runs, counted = campaign.prepared, campaign.samples.counted
     speeds = [p.motion.velocity[c] for p, c in zip(runs, counted, strict=True)]
     loads = [recorded_load(p.rig, p.run) for p in runs]

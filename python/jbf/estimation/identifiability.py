@@ -140,7 +140,7 @@ class Reset:
     values
         Parameter values, shape (k,).
     residuals
-        Record minus prediction at these values, N, one array a run.
+        Record minus prediction at these values, N, one array per run.
     notes
         Parameter name to the reason why it is held, for the parameters considered here.
     """

@@ -36,7 +36,7 @@ It is a numerical tolerance.
 
 
 class OnDemand(Sequence[Array]):
-    """Sequence with one array a run, computed at each access.
+    """Sequence with one array per run, computed at each access.
 
     Parameters
     ----------

@@ -112,7 +112,7 @@ def robust_gain(richer: Solution, simpler: Solution) -> float:
 def _innovation_pairs(
     richer: Solution, simpler: Solution, samples: Samples
 ) -> list[tuple[Array, Array]]:
-    """Innovations of two solutions with the noise of the richer one, one pair a run.
+    """Innovations of two solutions with the noise of the richer one, one pair per run.
 
     The correlation due to the random effects of a run is removed.
     """

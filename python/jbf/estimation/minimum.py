@@ -193,7 +193,7 @@ class Approach:
         steps: int = TRIAL_EVALUATIONS,
         method: Method = "dogbox",
     ) -> Solution:
-        """Continue the search.
+        """Continue the search from the best starting points, and return its solution.
 
         Parameters
         ----------

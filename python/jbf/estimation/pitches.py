@@ -139,7 +139,7 @@ def _remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
 
 
 def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
-    """Compute the result of `_remaining_force` by least squares with reduced rows of each run."""
+    """Compute the result of `_remaining_force` by least squares, run by run in triangular form."""
     pairs = campaign.moving
     place = np.concatenate([p.motion.angle_rad[m] for p, m in pairs]) * campaign.arm_m
     speed = np.concatenate([p.motion.velocity[m] for p, m in pairs])

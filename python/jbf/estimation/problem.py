@@ -40,7 +40,7 @@ from jbf.records.toml_file import number
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Lines = tuple[list[Array], list[Array]]
-"""Residuals and derivatives of the prediction by the search variables, one array a run each."""
+"""Residuals and derivatives of the prediction by the search variables, one array per run each."""
 
 SLOPES_COST = 2.0
 """Cost of a prediction with derivatives relative to one without. It limits the effort only."""
@@ -131,13 +131,13 @@ class Problem:
     # ---- predictions ------------------------------------------------------------------------
 
     def predict(self, values: Array, selection: Sequence[int] | None = None) -> list[Array]:
-        """Predictions, N, one array a run; `selection` selects runs."""
+        """Predictions, N, one array per run; `selection` selects runs."""
         motions = [p.core for p in self._runs(selection)]
         self.campaign.work.take(self.chain.inner_steps(values, motions))
         return self.chain.predict(values, motions)
 
     def residuals(self, values: Array, selection: Sequence[int] | None = None) -> list[Array]:
-        """Record minus prediction, N, one array a run; `selection` selects runs."""
+        """Record minus prediction, N, one array per run; `selection` selects runs."""
         runs = self._runs(selection)
         return [p.friction - f for f, p in zip(self.predict(values, selection), runs, strict=True)]
 
@@ -162,9 +162,10 @@ class Problem:
     def gauss_newton_rows(
         self, values: Array, samples: Samples, noise: Noise, lines: Lines | None = None
     ) -> tuple[Array, Array, int]:
-        """Innovations and their derivatives in reduced rows, and the number of innovations.
+        """Innovations and their derivatives in triangular form, and the number of innovations.
 
-        They are computed from `lines`, the result of :meth:`linearise`, if it is given.
+        The triangular form (`triangular`) has fewer rows and the same inner products. The rows are
+        computed from `lines`, the result of :meth:`linearise`, if it is given.
         """
         r, j, count = [], [], 0
         lengths = [len(p.friction) for p in self.campaign.prepared]

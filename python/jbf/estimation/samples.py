@@ -30,7 +30,7 @@ T = TypeVar("T", bound=np.generic)
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """The samples of a set of runs; every tuple has one entry a run.
+    """The samples of a set of runs; every tuple has one entry per run.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ class Samples:
         )
 
     def within(self, masks: Sequence[Mask]) -> Samples:
-        """Return the samples within masks, one a run."""
+        """Return the samples within masks, one per run."""
         return replace(
             self,
             counted=tuple(c & m for c, m in zip(self.counted, masks, strict=True)),
@@ -117,9 +117,9 @@ class Samples:
         Parameters
         ----------
         level
-            Factor for the noise level of each sample, one array a run.
+            Factor for the noise level of each sample, one array per run.
         robust
-            Factor for heavy-tailed noise, one array a run.
+            Factor for heavy-tailed noise, one array per run.
         between
             Random effects of the runs.
         """
@@ -203,11 +203,11 @@ class Samples:
         ]
 
     def weighted_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Innovations of weighted residuals, one array a run; zero without weight."""
+        """Innovations of weighted residuals, one array per run; zero without weight."""
         return self._innovations(residuals, noise, self.weight, [w > 0.0 for w in self.weight])
 
     def innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Innovations for tests, one array a run, scaled to the smallest noise level.
+        """Innovations for tests, one array per run, scaled to the smallest noise level.
 
         They are zero where a sample does not count.
         """
@@ -227,7 +227,7 @@ class Samples:
         weights: Sequence[Array],
         masks: Sequence[Mask],
     ) -> list[Array]:
-        """Innovations of residuals with these weights, one array a run; zero outside the masks."""
+        """Innovations of weighted residuals, one array per run; zero outside the masks."""
         residuals = self.without_deviations(residuals, noise)
         if self.motion is not None:
             return self.motion.innovations(residuals, weights)

@@ -24,7 +24,7 @@ class Solution:
     values
         Parameter values, shape (k,).
     residuals
-        Record minus prediction, N, one array a run.
+        Record minus prediction, N, one array per run.
     jacobian
         Derivative of the prediction with respect to each search variable, one (n, k) a run. For
         large numbers of samples, both are computed at each access.

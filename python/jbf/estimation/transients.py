@@ -78,7 +78,7 @@ def check_film_rate(
 
 
 def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) -> list[Mask]:
-    """Mask of the samples at which a film still depends on motion in a gap, one a run.
+    """Mask of the samples at which a film still depends on motion in a gap, one per run.
 
     Parameters
     ----------
@@ -87,10 +87,11 @@ def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) ->
     least_n
         Difference of the friction that is negligible, N.
 
-    Notes ----- The model interpolates the motion linearly over missing rows. If the shaft reversed
-    or started in the gap, the simulated film state is wrong for some time after the gap. Two
-    simulations bound this duration: in one, the speed changes at the end of the gap; in the other,
-    at its beginning.
+    Notes
+    -----
+    The model interpolates the motion linearly over missing rows. If the shaft reversed or started
+    in the gap, the simulated film state is wrong for some time after the gap. Two simulations bound
+    this duration: in one, the speed changes at the end of the gap; in the other, at its beginning.
     """
     prepared = problem.campaign.prepared
     affected = [np.zeros(len(p.run), dtype=bool) for p in prepared]

@@ -245,7 +245,7 @@ def held_out_sentence(diagnosis: Diagnosis) -> str:
 
 
 def extrapolation_sentences(diagnosis: Diagnosis) -> list[str]:
-    """Describe each run that exceeds the range of all others.
+    """Describe each run whose speed or load is beyond the range of all others.
 
     The text states its extrapolation error, and how it is tested.
     """

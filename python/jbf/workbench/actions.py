@@ -209,12 +209,12 @@ def undo(session: Session, parameters: Parameters) -> Any:
 
 
 def keep(session: Session, parameters: Parameters) -> Any:
-    """Write a file into the folder."""
+    """Write the model, its report or another result as a file into the folder."""
     return saved_files.save_as_file(session, str(parameters["what"]))
 
 
 def text(session: Session, parameters: Parameters) -> Any:
-    """Return the content of such a file as a download."""
+    """Return the content of a file that `keep` would write, as a download."""
     name, content = saved_files.text_of(session, str(parameters["what"]))
     said = f"attachment; filename*=UTF-8''{quote(name)}"
     # Never displayed as a page of this server: a report is opened from disk.

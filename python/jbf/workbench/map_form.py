@@ -117,12 +117,19 @@ def form_of(text: str) -> dict[str, Any]:
 
 
 def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> str:
-    """Return the text with other columns and rig values.
-
-    `rig` maps names such as `drive.pitch_m` to numbers.
+    """Return the text of a map with other columns and rig values.
 
     If the columns imply a different machine, its sections are guessed again; values already filled
     in are kept.
+
+    Parameters
+    ----------
+    text
+        Text of the map.
+    columns
+        Column of a run to its expression.
+    rig
+        Values by dotted name, such as `drive.pitch_m`.
 
     Raises
     ------
@@ -199,7 +206,7 @@ def expression_of(row: Mapping[str, Any]) -> str:
 
 
 def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, Any]) -> str:
-    """Return the text as changed by a form.
+    """Return the text of a map with the changes made in its form.
 
     Raises
     ------

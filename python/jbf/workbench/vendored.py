@@ -27,7 +27,7 @@ HERE = Path(__file__).resolve().parent / "vendored_files"
 
 
 def file(name: str) -> Path | None:
-    """Return the path of one of the files.
+    """Return the path of a file of the plot library.
 
     None if the name is unknown or the file was not fetched.
     """

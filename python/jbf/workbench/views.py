@@ -33,7 +33,7 @@ def series_by_run(session: Session, number: int | None) -> dict[str, RunSeries]:
 
 
 def series_of_run(session: Session, number: int | None, name: str) -> RunSeries:
-    """Return one of these runs."""
+    """Return the run of a name, with a model's prediction if available."""
     session.on_bench().run(name)
     return series_by_run(session, number)[name]
 

@@ -48,7 +48,9 @@ def recorded(
 ) -> tuple[Runs, dict[str, Any]]:
     """Simulate records by run name, and return them with the true values.
 
-    Parameters ---------- seed
+    Parameters
+    ----------
+    seed
         Seed of rig, motions, noise, effects and artefacts, each with its own random stream.
     effects
         Names from the catalogue of effects; their parameters are drawn at `strength`.

@@ -26,14 +26,15 @@ use crate::stepper::Linear;
 pub(super) enum Aim {
     /// Advance as far as the error allows.
     Ahead,
-    /// Land on eps_tr, this many seconds ahead; beyond it the other side begins.
+    /// End the step where the eccentricity reaches eps_tr, after this time, s. Asperity contact
+    /// begins or ends there.
     Touch(f64),
-    /// Advance on the side that was just detected. If even that side appears wrong, the journal is
-    /// at eps_tr and the step is accepted.
+    /// Advance on the other side of eps_tr, after a trial that began on the wrong side. If this
+    /// trial begins on the wrong side again, the journal is at eps_tr and the step is accepted.
     Turned,
 }
 
-/// Equations at the start of a step.
+/// Equations linearised at the start of a step, with the speed and the rate of the input there.
 pub(super) struct Here<T, const N: usize> {
     /// Speed, m/s.
     pub(super) speed_m_s: f64,

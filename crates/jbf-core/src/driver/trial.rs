@@ -69,13 +69,13 @@ pub(super) enum Verdict<T> {
     Sound([[T; 5]; 2]),
 }
 
-/// Behaviour of a step at eps_tr.
+/// Position of a step relative to eps_tr, where asperity contact begins or ends.
 enum Touch {
-    /// It stays on its side.
+    /// The step stays on one side of eps_tr.
     No,
-    /// It passes eps_tr at this fraction of its length.
+    /// The step passes eps_tr at this fraction of its length.
     At(f64),
-    /// It began on the other side already.
+    /// The step began on the other side of eps_tr than assumed.
     Wrong,
 }
 

@@ -13,7 +13,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// A coefficient of friction in addition to the dry level.
+/// Dry friction proportional to the load, in addition to the level of the law.
 #[derive(Clone, Copy, Debug)]
 pub struct DryLoadDependence<T> {
     coefficient: T,

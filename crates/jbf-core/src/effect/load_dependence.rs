@@ -19,7 +19,7 @@ use crate::real::Real;
 /// Largest ratio of the load to the rig's load, up or down, at which the power law is evaluated.
 const FURTHEST: f64 = 10.0;
 
-/// The two exponents.
+/// Film parameters that change with a power of the load.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadDependence<T> {
     exponents: [T; 2],

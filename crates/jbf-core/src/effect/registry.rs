@@ -16,7 +16,7 @@ pub(crate) trait Shelf<T: Real>: EffectSet<T> {
     /// True if no effect of this stage is set.
     fn is_empty(&self) -> bool;
 
-    /// Sets the effect of that name, or removes it where a parameter is at its infinite null.
+    /// Sets the effect of that name, or removes it if a parameter equals its null and is infinite.
     ///
     /// Returns `None` if this stage has no effect of that name.
     fn set(&mut self, name: &str, parameters: &[T]) -> Option<Result<(), ParameterError>>;
@@ -148,8 +148,10 @@ macro_rules! signal_chain {
                 OccupiedStages { $($stage: !self.$stage.is_empty(),)* }
             }
 
-            /// Adds (or replaces) the effect of that name, or removes it where a parameter is at
-            /// its infinite null.
+            /// Adds or replaces the effect of that name.
+            ///
+            /// If the null of a parameter is infinite and the parameter equals it, the effect is
+            /// removed instead.
             ///
             /// # Errors
             /// Names the parameter that violates its rule, or reports that there is no such effect.

@@ -73,7 +73,7 @@ pub trait Loading<T: Real>: Effect<T> {
 pub trait Film<T: Real>: Effect<T> {
     /// Factor on the film's clock.
     fn rate(&self, state: &Self::State) -> T;
-    /// Largest value of that factor, at least one.
+    /// Largest factor on the film's clock, at least one.
     fn fastest(&self) -> f64;
 }
 

@@ -14,7 +14,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Half the difference of the Stribeck peaks of the two directions.
+/// Stribeck peak that differs between the two directions.
 #[derive(Clone, Copy, Debug)]
 pub struct StribeckAsymmetry<T> {
     height_n: T,

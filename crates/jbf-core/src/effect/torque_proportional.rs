@@ -24,7 +24,7 @@ use crate::friction::Friction;
 use crate::motion::Motion;
 use crate::real::Real;
 
-/// Friction per transmitted force.
+/// Friction proportional to the transmitted force.
 #[derive(Clone, Copy, Debug)]
 pub struct TorqueProportional<T> {
     share: T,

@@ -10,7 +10,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Viscous slope per load, in addition to a load-independent slope.
+/// Viscous slope proportional to the load, in addition to that of the law.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousLoadDependence<T> {
     slope_s_m: T,

@@ -15,7 +15,7 @@ use crate::motion::{JournalMotion, Motion};
 use crate::page::Start;
 use crate::real::Real;
 
-/// Inverse of the speed at which viscous friction is half of its linear value.
+/// Viscous friction that grows less than proportionally to the speed.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousThinning<T> {
     slowness_s_m: T,

@@ -9,7 +9,7 @@ use crate::friction::Friction;
 use crate::motion::{JournalMotion, Motion};
 use crate::real::Real;
 
-/// Share of the load that acts on the drive.
+/// Force proportional to the load, independent of the direction of motion.
 #[derive(Clone, Copy, Debug)]
 pub struct ZeroLoadDependence<T> {
     share: T,

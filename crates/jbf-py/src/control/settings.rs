@@ -21,7 +21,7 @@ pub struct LoopSpec {
     pub drive: DriveSpec,
     counts_per_rad: f64,
     counter_bits: u32,
-    /// `None` for a loop that only a jump of the counter stops.
+    /// Voltage that certainly moves the shaft, V; `None` if an unchanged counter is never frozen.
     moving_v: Option<f64>,
     patience_s: Option<f64>,
 }

@@ -68,7 +68,11 @@ class Strength:
 
 
 class PresentRuns:
-    """Present runs with the model without the effect; computes unexplained parts of changes."""
+    """Present runs and their model, to which effects of given strength are added.
+
+    The methods return the changes of the friction by an effect, and the parts of these changes that
+    the model cannot reproduce.
+    """
 
     def __init__(self, candidates: Candidates, present: Names) -> None:
         self.base = candidates.converge(present)

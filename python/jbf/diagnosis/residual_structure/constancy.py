@@ -244,8 +244,8 @@ def _halves(
 ) -> Iterator[list[list[float]]]:
     """Sums for the two halves of each stroke.
 
-    Strokes with fewer than `least` samples a half are skipped. Each half has the sum of squares of
-    the friction, N^2, and the sum of its products with the residual.
+    Strokes with fewer than `least` samples per half are skipped. Each half has the sum of squares
+    of the friction, N^2, and the sum of its products with the residual.
     """
     for k in range(int(np.max(stroke, initial=-1)) + 1):
         rows = np.flatnonzero((stroke == k) & counted)

@@ -29,7 +29,7 @@ LONGER = 2.0
 
 
 def resting_samples(velocity: Array) -> Mask:
-    """Mask of the stretches of at least `REST_SAMPLES` speeds that are exactly zero."""
+    """Mask of the samples in sequences of at least `REST_SAMPLES` speeds of exactly zero."""
     zero = velocity == 0.0
     edges = np.diff(np.concatenate(([0], zero.astype(np.int8), [0])))
     rest = np.zeros(len(zero), dtype=bool)
@@ -82,7 +82,11 @@ def still_samples(
 
 
 def _within_a_step(path: Array, slow: Mask, step: float, samples: int) -> Mask:
-    """Mask of the stretches of at least `samples` slow samples with the path within its step."""
+    """Mask of the slow samples whose path stays within the encoder step.
+
+    They are in a window of `samples` slow samples over which the path varies by at most
+    `STILL_STEPS` steps.
+    """
     n = len(path)
     if n < samples or not slow.any():
         return np.zeros(n, dtype=bool)

@@ -216,9 +216,10 @@ def _smoothed(readings: Readings, errors: ReadingErrors, corners: Array) -> Smoo
 
 
 def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Array:
-    """Factors with which the acceleration may jump by its RMS in a step with a reversal.
+    """Factors of the noise intensity that permit a jump of the acceleration at each reversal.
 
-    Friction reverses there, too. The factors are zero in the other steps.
+    In a step with a reversal the friction reverses too, so that the acceleration may change by its
+    RMS. The factors are zero in the other steps.
     """
     step_s = np.maximum(np.diff(readings.time_s), 1e-300)
     at_rest = readings.velocity_shape <= AT_REST
@@ -228,10 +229,11 @@ def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Arr
 
 
 def _likeliest_start(readings: Readings) -> tuple[ReadingErrors, float]:
-    """Starting variances from the roughness of the readings, or larger ones of higher likelihood.
+    """Starting values of the reading errors, and their log-likelihood.
 
-    The roughness is a median over all samples. If the machine is mostly at rest, the variance of
-    the readings in motion is larger. Also returns the log-likelihood.
+    The variances follow from the roughness of the readings, a median over all samples. If the
+    machine is mostly at rest, the variance of the readings in motion is larger. Larger variances of
+    the velocity are therefore tried as well, and the most likely starting values are returned.
     """
     start = _start(readings)
     tried = [
@@ -244,7 +246,10 @@ def _likeliest_start(readings: Readings) -> tuple[ReadingErrors, float]:
 
 
 def _start(readings: Readings) -> ReadingErrors:
-    """Variances from the roughness of the readings."""
+    """Starting values of the reading errors, from the roughness of the readings in motion.
+
+    The variance of the time stamps is zero, and the intensity of the noise is one.
+    """
     noise = []
     for signal, shape, floor in (
         (readings.position, readings.position_shape, readings.position_floor),

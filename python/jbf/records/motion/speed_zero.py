@@ -64,7 +64,11 @@ def speed_zero(
 
 
 def _still(path: Array, step: float) -> Mask:
-    """Mask of the stretches of at least `STILL_SAMPLES` samples with the path within its step."""
+    """Mask of the samples at standstill.
+
+    These are in a window of `STILL_SAMPLES` samples over which the path varies by at most
+    `STILL_STEPS` encoder steps.
+    """
     n = len(path)
     still = np.zeros(n, dtype=bool)
     if n < STILL_SAMPLES:
@@ -76,7 +80,7 @@ def _still(path: Array, step: float) -> Mask:
 
 
 def _longest(time: Array, still: Mask) -> float:
-    """Length of the longest standstill, s."""
+    """Duration of the longest standstill, s."""
     edges = np.diff(np.concatenate(([0], still.astype(np.int8), [0])))
     firsts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return float(np.max(time[ends - 1] - time[firsts]))

@@ -31,7 +31,8 @@ impl<T: Real> Named<T> for Journal<T> {
     }
 }
 
-/// Arguments of both journal laws.
+/// Checks the arguments from which both journal laws are built; returns bearing, load (N) and
+/// parameters.
 pub(in crate::law) fn parts<'a, T: Real>(
     bearing: Option<&'a Bearing>,
     load_n: Option<f64>,

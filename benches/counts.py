@@ -80,7 +80,10 @@ def write(counts: Counts) -> None:
 
 
 def by_this_compiler(target: Path) -> Counts | None:
-    """Measure the commit that wrote the baseline with this rustc; None without its history."""
+    """Measure the commit that wrote the baseline with the present rustc.
+
+    None if the history of the repository is not available.
+    """
     log = ["git", "log", "-1", "--format=%H", "--", str(BASELINE)]
     commit = subprocess.run(log, cwd=ROOT, capture_output=True, text=True).stdout.strip()
     if not commit:

@@ -374,7 +374,7 @@ def compare_speed(folder: Path, megabytes: float) -> None:
 
 
 def main() -> None:
-    """Command line."""
+    """Run the comparisons and print their tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", choices=["units", "dates", "texts"], help="one of the tables")
     parser.add_argument("--stamps", type=int, default=1_000_000)

@@ -102,7 +102,7 @@ def peer_sets(sets: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def single(folder: Path, rounds: int) -> None:
-    """T1: successive steps, from Rust and from C."""
+    """Time T1, successive steps of one parameter set, in Rust and in C."""
     build = ["cargo", "build", "--release", "--quiet", "-p", "jbf-benches", "--bin", "t1"]
     subprocess.run(build, check=True, cwd=HERE.parent)
     ours = subprocess.Popen(
@@ -144,7 +144,7 @@ def single(folder: Path, rounds: int) -> None:
 
 
 def batch(folder: Path, rounds: int) -> None:
-    """T1, many parameter sets: `jbf.batch` from the wheel, and C with OpenMP and SIMD."""
+    """Time T1 with many parameter sets, by `jbf.batch` and by C with OpenMP and SIMD."""
     random = np.random.default_rng(1)
     sets = {name: value * random.uniform(0.8, 1.2, SETS) for name, value in TABLE.items()}
     numbers, kernels = peer_sets(sets), library(folder, "libpeers_simd.so")
@@ -174,7 +174,10 @@ def batch(folder: Path, rounds: int) -> None:
 
 
 def solvers(folder: Path, rounds: int, tasks: list[str]) -> None:
-    """T2 and T3: eight motions to a required friction error, numbalsoda at its best settings."""
+    """Time T2 and T3, eight motions to a required friction error, by jbf and by numbalsoda.
+
+    numbalsoda has its best settings.
+    """
     sys.path.insert(0, str(folder))
     os.environ.setdefault("NUMBA_NUM_THREADS", "2")
     os.environ.setdefault("RAYON_NUM_THREADS", "2")

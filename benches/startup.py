@@ -36,7 +36,7 @@ def turn(words: list[str]) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Command line."""
+    """Time each command and print a table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--times", type=int, default=20)
     times = parser.parse_args().times

@@ -55,7 +55,7 @@ class Bench:
     def pytest(
         self, tests: list[str], limit_s: float, without: Sequence[str] = ()
     ) -> tuple[int | None, str]:
-        """Run tests in order up to the first failure, without some tests of the files.
+        """Run tests in order up to the first failure, except those in `without`.
 
         Returns the exit code (None: out of time) and the output.
         """

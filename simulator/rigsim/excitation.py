@@ -48,14 +48,14 @@ def _phase(rng: Rng) -> float:
 
 
 def two_way(name: str, top: float, omega: float, rng: Rng) -> Plan:
-    """A sine through zero."""
+    """Draw a run whose speed is a sine without an offset."""
     length = _length(omega, rng)
     tones = [(top * rng.uniform(0.8, 1.0), omega, _phase(rng))]
     return Plan(multisine(name, LEAD_IN_S + length + TAIL_S, tones), length)
 
 
 def one_way(name: str, top: float, omega: float, rng: Rng) -> Plan:
-    """A sine that never changes sign."""
+    """Draw a run whose speed is a sine with an offset and never changes sign."""
     length, swing = _length(omega, rng), rng.uniform(0.35, 0.47) * top
     sense = 1.0 if rng.random() < 0.5 else -1.0
     tones = [(swing, omega, _phase(rng))]
@@ -64,7 +64,7 @@ def one_way(name: str, top: float, omega: float, rng: Rng) -> Plan:
 
 
 def triangle(name: str, top: float, omega: float, rng: Rng) -> Plan:
-    """A triangular speed with a random starting phase."""
+    """Draw a run with a triangular speed and a random starting phase."""
     length, quarter = _length(omega, rng), 0.5 * math.pi / omega
     end = LEAD_IN_S + length + TAIL_S
     begun = 4.0 * quarter * float(rng.uniform())
@@ -89,7 +89,7 @@ def _between(knots: Knots, start: float, end: float) -> Knots:
 
 
 def stops(name: str, top: float, _omega: float, rng: Rng) -> Plan:
-    """Stop-and-go: ramps and rests of random length in either direction."""
+    """Draw a stop-and-go run: ramps and rests of random length, in either direction."""
     knots: Knots = [(0.0, 0.0), (LEAD_IN_S + float(rng.uniform(0.3, 3.0)), 0.0)]
     for _ in range(int(rng.integers(3, 7))):
         ramp, plateau = rng.uniform(0.15, 1.0), rng.uniform(1.0, 5.0)
@@ -104,7 +104,7 @@ def stops(name: str, top: float, _omega: float, rng: Rng) -> Plan:
 
 
 def steady(name: str, top: float, _omega: float, rng: Rng) -> Plan:
-    """Constant speeds one after another; the run begins at the first."""
+    """Draw a run with several constant speeds; it begins at the first of them."""
     sense = 1.0 if rng.random() < 0.5 else -1.0
     knots: Knots = [(0.0, sense * log_uniform(rng, 0.03, 1.0) * top)]
     for _ in range(int(rng.integers(3, 7))):
@@ -117,7 +117,7 @@ def steady(name: str, top: float, _omega: float, rng: Rng) -> Plan:
 
 
 def from_rest(name: str, top: float, omega: float, rng: Rng) -> Plan:
-    """A sine through zero that begins at zero speed."""
+    """Draw a run whose speed is a sine without an offset that begins at zero."""
     length = _length(omega, rng)
     return Plan(
         multisine(name, length + TAIL_S, [(top * rng.uniform(0.8, 1.0), omega, 0.0)]), length
@@ -125,7 +125,7 @@ def from_rest(name: str, top: float, omega: float, rng: Rng) -> Plan:
 
 
 def tones(name: str, top: float, _omega: float, rng: Rng) -> Plan:
-    """The sum of three sines, beginning at rest."""
+    """Draw a run whose speed is the sum of three sines and begins at zero."""
     rates = [0.2 * rng.uniform(0.7, 1.4), 0.7 * rng.uniform(0.7, 1.4), 1.8 * rng.uniform(0.7, 1.4)]
     parts = [
         (share * top, omega, float(rng.choice([0.0, math.pi])))

@@ -188,7 +188,9 @@ fn saturation_is_reported_and_the_loop_follows_again_afterwards() {
     });
 }
 
-/// Random counters and references, from the smallest to the largest numbers.
+/// Asserts that the output of a loop stays finite and within its limit for random input.
+///
+/// Counters and references range from the smallest to the largest numbers.
 fn torture<T: Real, C: Compensator<T>>(name: &str, controller: &Controller<T, C>) {
     let mut random = Random::new(7);
     for _ in 0..20 {

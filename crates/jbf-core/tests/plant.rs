@@ -149,7 +149,7 @@ fn plant_with_any_law_is_symmetric_in_the_input() {
     }
 }
 
-/// Each effect in the plant alone: finite, without divergence, and at rest again at the end.
+/// Asserts that the plant with each effect alone stays finite and is at rest again at the end.
 fn runs_and_rests<L: Law<f64> + Copy>(law: L, effects: &[Info]) {
     for info in effects {
         let values: Vec<f64> = info.parameters.iter().map(|p| p.starts[0]).collect();

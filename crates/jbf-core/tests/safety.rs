@@ -29,9 +29,10 @@ fn random_law<T: Real>(random: &mut Random) -> Journal<T> {
     Journal::new(&Bearing::THESIS, load_n, &p, clock).expect("in the catalogue's bounds")
 }
 
-/// Half a million random steps: speeds to 1e6 m/s, steps to 10 s.
+/// Asserts that the journal stays inside the bearing in half a million random steps.
 ///
-/// Loads jump by a factor of a hundred, vanish, and change sign.
+/// Speeds are up to 1e6 m/s, steps up to 10 s. Loads jump by a factor of a hundred, vanish, and
+/// change sign.
 fn torture<T: Real>(stepper: &impl Stepper, seed: u64) {
     let mut random = Random::new(seed);
     let mut held = 0_u32;

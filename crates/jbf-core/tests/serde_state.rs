@@ -31,7 +31,7 @@ fn driven<C: Compensator<f64>>(compensator: C) -> C::State {
     bench.state.compensator
 }
 
-/// Both states give the same output from here on.
+/// Asserts that two states of a compensator give the same output over 5000 steps.
 fn go_on_alike<C: Compensator<f64>>(compensator: &C, mut one: C::State, mut other: C::State) {
     for i in 0..5_000_u32 {
         let t = f64::from(i) * DT_S;

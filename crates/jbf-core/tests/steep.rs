@@ -59,7 +59,8 @@ fn error<T: Real>(control: Control, viscous: f64, times: f64) -> f64 {
     square.sqrt() / size
 }
 
-/// Viscous friction, N s/m, with which the shaft coasts for 7 ms down to a seventh of a step.
+/// Viscous friction, N s/m. The time constant of the shaft is 7 ms without it, and a seventh of a
+/// step with the largest value.
 const VISCOUS: [f64; 10] = [0.0, 1e3, 2e3, 2.4e3, 3e3, 4e3, 5e3, 7e3, 1e4, 2e4];
 
 #[test]

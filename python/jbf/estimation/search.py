@@ -93,7 +93,7 @@ class Visited:
             self.lowest = (point, lines)
 
     def lines_at(self, values: Array) -> Lines | None:
-        """Residuals and derivatives at these values; None unless they are the lowest point."""
+        """Residuals and derivatives at the lowest point; None unless `values` are those of it."""
         if self.lowest is None or self.at(values) is not self.lowest[0]:
             return None
         return self.lowest[1]

@@ -53,7 +53,7 @@ class Candidate:
 
     @property
     def expression(self) -> str:
-        """Expression for the map, with `[?]` for an open unit and with a unit outside the name."""
+        """Expression for the map: name and, unless it is in the name, unit; `[?]` if open."""
         name = written(self.called or self.column.name)
         if self.question is not None:
             return f"{name} [{OPEN}]"

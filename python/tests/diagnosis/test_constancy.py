@@ -253,7 +253,9 @@ def fitted(rig: Rig, runs: list[Run], effects: tuple[str, ...] = ()) -> tuple[Pr
 @pytest.mark.extended
 @pytest.mark.parametrize("coloured", [False, True])
 @pytest.mark.parametrize("effects", [(), ("sensor_lag",), ("running_in",), ("drive_compliance",)])
-def test_parameters_agree_in_runs_of_one_bearing(effects: tuple[str, ...], coloured: bool) -> None:
+def test_no_disagreement_is_found_between_runs_simulated_with_equal_parameters(
+    effects: tuple[str, ...], coloured: bool
+) -> None:
     seed = 34 if effects == ("drive_compliance",) else 11
     rig, runs, _ = simulated(seed, effects, coloured=coloured)
     problem, solution = fitted(rig, runs, effects)

@@ -139,7 +139,7 @@ def test_false_alarm_rate_does_not_exceed_the_nominal_rate_in_four_kinds_of_nois
     assert false <= stats.binom.ppf(0.999, campaigns, 0.05)
 
 
-def test_calibrated_level_of_white_noise_is_that_of_a_shared_chi_square() -> None:
+def test_calibrated_level_in_white_noise_is_at_most_a_fifth_below_bonferroni() -> None:
     found = calibrated(_level(), _directions(_white(np.random.default_rng(0))))
     assert 0.8 * 0.01 / TESTED < found.chance <= 0.01 / TESTED
     assert found.blocks == RUNS * N * STEP_S

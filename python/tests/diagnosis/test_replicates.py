@@ -69,7 +69,7 @@ def test_error_that_recurs_with_the_motion_is_reported_with_its_share(unit: floa
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
-def test_significance_of_a_recurring_error_is_the_root_of_the_pairs(unit: float) -> None:
+def test_significance_of_a_recurring_wave_is_the_square_root_of_its_pairs(unit: float) -> None:
     """Products of white noise have a standard deviation equal to the mean square."""
     for part, found in ((0.99, True), (1.01, False)):
         sigma = part * float(np.sqrt(N - PERIOD))

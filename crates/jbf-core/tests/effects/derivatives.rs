@@ -95,7 +95,8 @@ struct Difference {
 }
 
 impl Difference {
-    /// Returns false if the parameter has no influence.
+    /// Asserts that derivatives agree with the difference quotients; returns false if the parameter
+    /// has no influence.
     fn check(&self, label: &str, carried: &[f64]) -> bool {
         let largest = carried.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
         let nothing = largest == 0.0 && self.slopes.iter().flatten().all(|&s| s == 0.0);

@@ -60,7 +60,8 @@ fn reading_follows_the_branches_and_is_constant_within_the_gap() {
     assert!(touched > 20, "the level is {touched} samples long");
 }
 
-/// A jump larger than the gap leaves a difference of w on either side, from its first instant on.
+/// After a jump larger than the gap the reading is closer to zero than the force by w, from the
+/// sample of the jump on.
 #[test]
 fn jump_larger_than_the_gap_is_followed_at_its_sample() {
     let (f, w, dt) = (0.1, 1.5, 0.05);

@@ -21,9 +21,10 @@ fn loop_work(name: &str, values: &[f64], amplitude_m: f64) -> (f64, f64) {
     (work, size)
 }
 
-/// LuGre is passive if `sigma_1(v) |v| < 4 sigma_0 g(v)` at every speed (Olsson 1996).
+/// True if a law is passive at these parameters.
 ///
-/// The maximum of the left side, at `v_d/sqrt(2)`, is decisive.
+/// LuGre is passive if `sigma_1(v) |v| < 4 sigma_0 g(v)` at every speed (Olsson 1996). The maximum
+/// of the left side, at `v_d/sqrt(2)`, is decisive.
 fn passive(name: &str, p: &[f64]) -> bool {
     name != "lugre" || p[4] * p[5] * (-0.5_f64).exp() / 2.0_f64.sqrt() < 4.0 * p[0].min(p[1])
 }

@@ -64,7 +64,7 @@ impl<T: Real> Film<'_, T> {
         self.inside(x, y, e2, ub)
     }
 
-    /// Slope outside the bearing and at the centre.
+    /// Rate of change of the position outside the bearing and at the centre.
     ///
     /// Stages of a coarse step may be outside the bearing: they are evaluated at the limit, in
     /// their own direction. The centre is evaluated next to it.
@@ -173,7 +173,7 @@ impl<T: Real> Gap<T> {
     }
 }
 
-/// Slope at `e2 = x^2 + y^2`, well between 0 and 1.
+/// Rate of change of the position at `e2 = x^2 + y^2`, well between 0 and 1.
 #[inline(always)]
 pub(super) fn slope<T: Real>(
     fb: T,
@@ -190,7 +190,7 @@ pub(super) fn slope<T: Real>(
     }
 }
 
-/// Slope computed operation by operation.
+/// Rate of change of the position, computed operation by operation.
 #[inline(always)]
 pub(super) fn plain<T: Real>(gap: &Gap<T>, fb: T, [x, y]: [T; 2], load: T, ub: T) -> [T; 2] {
     let &Gap {

@@ -19,7 +19,7 @@ use crate::friction::Friction;
 use crate::real::Real;
 use core::f64::consts::FRAC_2_PI;
 
-/// Slope of the film at `e2 = x^2 + y^2`.
+/// Rate of change of the position in the film at `e2 = x^2 + y^2`, with combined derivatives.
 #[inline(always)]
 pub(super) fn motion<T: Real>(
     fb: T,

@@ -45,11 +45,11 @@ KINDS: dict[str, tuple[Dimensions, ...]] = {
 
 _WORDS = {
     "time": "t time zeit temps tiempo tempo timestamp zeitstempel uhrzeit datum date datetime "
-    "elapsed stamp laufzeit messzeit heure horodatage durée duree timestamps seconds millis "
-    "micros milliseconds microseconds nanoseconds",
+    "elapsed stamp laufzeit messzeit heure horodatage durée duree timestamps sec secs seconds ms "
+    "msec millis milliseconds us usec micros microseconds ns nanoseconds",
     "place": "x y s pos position weg hub displacement disp stroke travel distance strecke course "
     "déplacement deplacement posición posicion auslenkung lage spostamento corsa desplazamiento "
-    "posizione wegmessung encoder angle winkel theta phi drehwinkel angolo angulo ángulo "
+    "posizione wegmessung encoder enc angle winkel theta phi drehwinkel angolo angulo ángulo "
     "verfahrweg schlittenposition alpha kolbenweg q qpos",
     "speed": "v n w vel velocity geschwindigkeit vitesse velocidad velocità velocita speed "
     "drehzahl omega gleitgeschwindigkeit régime regime winkelgeschwindigkeit "
@@ -76,8 +76,9 @@ _WORDS = {
 
 
 _CLOCKS = {
-    "seconds": "s", "millis": "ms", "milliseconds": "ms", "micros": "us", "microseconds": "us",
-    "nanoseconds": "ns",
+    "sec": "s", "secs": "s", "seconds": "s", "ms": "ms", "msec": "ms", "millis": "ms",
+    "milliseconds": "ms", "us": "us", "usec": "us", "micros": "us", "microseconds": "us",
+    "ns": "ns", "nanoseconds": "ns",
 }  # fmt: skip
 """Names of times that are units, as in logs of an Arduino, and their symbols."""
 
@@ -99,15 +100,15 @@ _ALSO = {"effort": "torque"}
 """Second meaning of a word: a force in French, a torque in robot logs. The unit decides."""
 _ACTUAL = {"ist", "istwert", "actual", "act", "measured", "meas", "mess", "réel", "reel"}
 _ANGLES = _words(
-    "angle winkel theta phi drehwinkel angolo angulo ángulo alpha encoder drehzahl omega "
+    "angle winkel theta phi drehwinkel angolo angulo ángulo alpha encoder enc drehzahl omega "
     "winkelgeschwindigkeit rotationsgeschwindigkeit umdrehungszahl régime regime"
 )
 _BY_WORD = {word: kind for kind, words in _WORDS.items() for word in words.split()}
 _SPLIT = re.compile(r"[^\w#µμ]+|_+|(?<=[a-zà-ÿ])(?=[A-ZÄÖÜ])")
 _NUMBERED = re.compile(r"([a-zà-ÿ]+)(\d+)")
 _GENERIC = _words(
-    "joint axis achse axe eje asse j data value actual state states msg message raw filtered filt "
-    "smoothed avg mean corrected abs"
+    "joint axis achse axe eje asse j data field value actual state states msg message raw filtered "
+    "filt smoothed avg mean corrected abs"
 )
 """Words that name neither a quantity nor a joint."""
 _SHORT = 2
@@ -214,7 +215,7 @@ def understood(text: str, unit: str = "") -> Header:
         kind=_decided(kinds, parse_unit(unit)),
         sure=any(len(word) > _SHORT for word, _ in kinds),
         motor=any(word in _MOTOR or word.startswith("motor") for word in words),
-        setpoint=any(word in _SETPOINT for word in words) and not _ACTUAL.intersection(words),
+        setpoint=any(_is_setpoint(word) for word in words) and not _ACTUAL.intersection(words),
         modelled=any(word in _MODELLED for word in words) and not _ACTUAL.intersection(words),
         turning=any(word in _ANGLES for word in spoken),
         label="_".join([w for w in spoken if _is_label(w)] + numbers),
@@ -228,8 +229,9 @@ def _unnumbered(words: list[str], unit: Unit | None) -> tuple[list[str], list[st
         match = _NUMBERED.fullmatch(word)
         known = match is not None and (match[1] in _BY_WORD or match[1] in _GENERIC)
         if known and match is not None:
-            kind = _BY_WORD.get(match[1], "")
-            if unit is None or kind not in KINDS or unit.dimensions in KINDS[kind]:
+            kinds = {_BY_WORD.get(match[1], ""), _ALSO.get(match[1], "")} & KINDS.keys()
+            fits = unit is None or any(unit.dimensions in KINDS[kind] for kind in kinds)
+            if fits or not kinds:
                 found.append(match[1])
                 numbers.append(match[2])
                 continue
@@ -237,8 +239,13 @@ def _unnumbered(words: list[str], unit: Unit | None) -> tuple[list[str], list[st
     return found, numbers
 
 
+def _is_setpoint(word: str) -> bool:
+    """Return whether a word names a set point, alone or in a compound: Sollgeschwindigkeit."""
+    return word in _SETPOINT or "soll" in word
+
+
 def _is_label(word: str) -> bool:
-    known = word in _BY_WORD or word in _MOTOR or word in _SETPOINT or word in _ACTUAL
+    known = word in _BY_WORD or word in _MOTOR or _is_setpoint(word) or word in _ACTUAL
     return not known and word not in _GENERIC and _within(word) is None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from jbf.importing.columns import Header, understood
 from jbf.importing.expression import OPEN, written
+from jbf.importing.formats.messages import NANOSECONDS, SECONDS
 from jbf.importing.formats.table import Column, Table, Values
 from jbf.importing.guessed import Entry, Question
 from jbf.importing.plausible import OFF, PAIRS, speed_ratio
@@ -22,6 +24,10 @@ FORWARD, FEW = 0.9, 4
 """Minimum share of increasing steps of a clock, and number of rows below which it is not tested."""
 SHORTEST_S = 1e-6
 """Smallest plausible sampling interval of a friction recording, s."""
+_PART = re.compile(r"(?:.*[^a-z])?(?P<part>[a-z]+)", re.IGNORECASE)
+"""Path of a column whose last word may be a part of a stamp, such as `header.stamp.secs`."""
+_HEADER_STAMP = re.compile(r"header\W+stamp", re.IGNORECASE)
+"""Stamp of the measurement in a message; it precedes the times of the log and other stamps."""
 Found = tuple[Entry | None, list[Question]]
 
 
@@ -32,7 +38,22 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
     own = [c for c in table.columns if c.name == "time_s" and c.kind == "number"]
     if own:
         return Entry("time_s", written("time_s"), "name of a jbf column"), []
-    numbers = [c for c in table.columns if _is_time(c) and _runs_forward(head[c.name])]
+    pairs = _stamps_in_two_columns(table, head)
+    in_pairs = {name for pair in pairs for name in pair}
+    numbers = [
+        c
+        for c in table.columns
+        if _is_time(c) and _runs_forward(head[c.name]) and c.name not in in_pairs
+    ]
+    in_headers = [pair for pair in pairs if _HEADER_STAMP.search(pair[0])]
+    if len(in_headers) == 1 or (len(pairs) == 1 and not numbers):
+        seconds, nanoseconds = (in_headers or pairs)[0]
+        text = f"{written(seconds)} [s] + {written(nanoseconds)} [ns]"
+        return Entry("time_s", text, "seconds and nanoseconds of a stamp"), []
+    if pairs:
+        return _one_of([*(c.name for c in numbers), *(" + ".join(pair) for pair in pairs)])
+    stamps = [c for c in numbers if _HEADER_STAMP.search(c.name)]
+    numbers = stamps if len(stamps) == 1 else numbers
     instants = [
         c for c in table.columns if c.kind == "instant" and _steps(head[c.name]) is not None
     ]
@@ -48,9 +69,7 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
         epoch = _since_1970(numbers[0], head[numbers[0].name])
         return (epoch, []) if epoch else _of_number(numbers[0], _steps(head[numbers[0].name]))
     if numbers:
-        names = ", ".join(c.name for c in numbers)
-        ask = f"which of these is it: {names}? Those of other channels belong under [clocks]"
-        return Entry("time_s", OPEN, f"one of: {names}", sure=False), [Question("time_s", ask)]
+        return _one_of([c.name for c in numbers])
     if table.rate_hz is not None:
         return None, []
     ask = (
@@ -58,6 +77,30 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
         "under [file], or steady = true for steady states (a Stribeck curve)"
     )
     return None, [Question("time_s", ask)]
+
+
+def _one_of(candidates: Sequence[str]) -> Found:
+    """Ask which of several times is that of the recording."""
+    names = ", ".join(candidates)
+    ask = f"which of these is it: {names}? Those of other channels belong under [clocks]"
+    return Entry("time_s", OPEN, f"one of: {names}", sure=False), [Question("time_s", ask)]
+
+
+def _stamps_in_two_columns(table: Table, head: Mapping[str, Values]) -> list[tuple[str, str]]:
+    """Return the columns of seconds and of nanoseconds of each stamp, as in ROS logs."""
+    parts: dict[tuple[str, bool], str] = {}
+    for column in table.columns:
+        match = _PART.fullmatch(column.name)
+        part = "" if match is None or column.kind != "number" else match["part"].lower()
+        if part in (*SECONDS, *NANOSECONDS):
+            lead = column.name[: -len(part)]
+            parts.setdefault((lead, part in SECONDS), column.name)
+    pairs = [(name, parts.get((lead, False))) for (lead, whole), name in parts.items() if whole]
+    return [
+        (seconds, nanoseconds)
+        for seconds, nanoseconds in pairs
+        if nanoseconds is not None and _runs_forward(head[seconds] + head[nanoseconds] / 1e9)
+    ]
 
 
 def time_by_motion(

@@ -21,8 +21,9 @@ from jbf.importing.formats.table import BLOCK, Column, Source, Table, Values
 LOG_TIME = "log_time"
 LONGEST = 32
 """Largest number of list elements that become columns."""
-_SECONDS = ("sec", "secs")
-_NANOSECONDS = ("nanosec", "nanosecs", "nsec", "nsecs")
+SECONDS = ("sec", "secs", "seconds")
+NANOSECONDS = ("nanosec", "nanosecs", "nsec", "nsecs", "nanos", "nanoseconds")
+"""Names of the two parts of a stamp."""
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 
@@ -114,14 +115,14 @@ def _parts(message: Any) -> Iterable[tuple[str, Any]]:
 
 def _is_stamp(value: Any) -> bool:
     names = {name for name, _ in _parts(value)} if not np.isscalar(value) else set()
-    return bool(names & set(_SECONDS) and names & set(_NANOSECONDS))
+    return bool(names & set(SECONDS) and names & set(NANOSECONDS))
 
 
 def nanoseconds(stamp: Any) -> int:
     """Convert a stamp of seconds and nanoseconds to nanoseconds."""
     parts = dict(_parts(stamp))
-    whole = next(int(parts[n]) for n in _SECONDS if n in parts)
-    return whole * 10**9 + next(int(parts[n]) for n in _NANOSECONDS if n in parts)
+    whole = next(int(parts[n]) for n in SECONDS if n in parts)
+    return whole * 10**9 + next(int(parts[n]) for n in NANOSECONDS if n in parts)
 
 
 def path_of(name: str) -> list[str | int]:

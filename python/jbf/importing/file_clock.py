@@ -9,8 +9,8 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from jbf.importing.evaluation import Quantity, converted, evaluate
-from jbf.importing.expression import Node, Reference
+from jbf.importing.evaluation import column_unit, converted, evaluate
+from jbf.importing.expression import Binary, Node, Reference
 from jbf.importing.formats.table import Values
 from jbf.importing.targets import wanted_unit
 
@@ -45,21 +45,21 @@ class FileClock:
     def seconds(self, node: Node, values: Mapping[str, Values], units: Mapping[str, str]) -> Array:
         """Return corrected times, s.
 
-        The whole seconds of the first time are subtracted before any rounding.
+        The whole seconds of the first time are subtracted before any rounding: in the column that
+        counts from 1970, and in its unit.
         """
-        wanted = wanted_unit("time_s")
-        found = evaluate(node, values, units)
-        time = converted(found, wanted, "time_s")
+        time = _time(node, values, units)
         if self.origin_s is None:
             known = time[np.isfinite(time)]
-            late = known.size > 0 and EPOCH_S[0] < known[0] < EPOCH_S[1]
-            self.origin_s = float(np.floor(known[0])) if late else 0.0
-        if self.origin_s and isinstance(node, Reference) and found.unit.pi == 0:
-            first = float(Fraction(int(self.origin_s)) / found.unit.ratio)
-            time = converted(Quantity(found.value - first, found.unit), wanted, "time_s")
-        elif self.origin_s:
-            time = time - self.origin_s
-        return self.corrected(time)
+            self.origin_s = float(np.floor(known[0])) if _is_since_1970(time) else 0.0
+        if not self.origin_s:
+            return self.corrected(time)
+        column = _column_since_1970(node, values, units)
+        if column is None:
+            return self.corrected(time - self.origin_s)
+        first = Fraction(int(self.origin_s)) / column_unit(column, units).ratio
+        shifted = values[column.column] - (int(first) if first.denominator == 1 else float(first))
+        return self.corrected(_time(node, {**values, column.column: shifted}, units))
 
     def corrected(self, time: Array) -> Array:
         """Convert times of this clock to times of the recording, s."""
@@ -68,3 +68,25 @@ class FileClock:
         if self.offset_s:
             time = time + self.offset_s
         return np.round(time, 9) if self.rounded else time
+
+
+def _time(node: Node, values: Mapping[str, Values], units: Mapping[str, str]) -> Array:
+    return converted(evaluate(node, values, units), wanted_unit("time_s"), "time_s")
+
+
+def _is_since_1970(time: Array) -> bool:
+    known = time[np.isfinite(time)]
+    return bool(known.size) and bool(EPOCH_S[0] < known[0] < EPOCH_S[1])
+
+
+def _column_since_1970(
+    node: Node, values: Mapping[str, Values], units: Mapping[str, str]
+) -> Reference | None:
+    """Return the column that counts from 1970, alone or in a sum: `secs [s] + nsecs [ns]`."""
+    if isinstance(node, Binary) and node.sign in ("+", "-"):
+        sides = (node.left, node.right) if node.sign == "+" else (node.left,)
+        columns = (_column_since_1970(side, values, units) for side in sides)
+        return next((column for column in columns if column is not None), None)
+    if not isinstance(node, Reference) or not column_unit(node, units).fits(wanted_unit("time_s")):
+        return None
+    return node if _is_since_1970(_time(node, values, units)) else None

@@ -1,6 +1,7 @@
 """Inference of the map of a text file: headers, units, numbers and dates; open questions."""
 
 import gzip
+import json
 import math
 from pathlib import Path
 
@@ -70,6 +71,10 @@ CERTAIN = {
     "friction and load": (
         text("Time (s),Friction force (N),Normal load (N),COF,Position (mm)\n", "t f load pct x"),
         {"friction_n": "Friction force (N)", "load_n": "Normal load (N)"}),
+    "a set point in a compound": (
+        text("t [s],Sollposition [mm],Position [mm],Kraft [N]\n", "t x x f"),
+        {"position_m": "Position [mm]"}),
+    "a time named by its unit": (text("ms,Position [mm],Force [N]\n", "ms x f"), {"time_s": "ms"}),
     "a joint": (text("t [s],q [deg],qd [deg/s],tau [Nm]\n", "t x v f"),
         {"angle_rad": "q [deg]", "velocity_rad_s": "qd [deg/s]", "torque_n_m": "tau [Nm]"}),
 }  # fmt: skip
@@ -164,10 +169,79 @@ def test_joint_states_without_units_are_those_of_a_revolute_joint(tmp_path: Path
     assert found.map().columns == expected
 
 
+STAMPS = [
+    (i, 1_763_800_000 + i // 100, i % 100 * 10**7 + i * i % 997 + 456_789_012 % 10**7)
+    for i in range(60)
+]
+"""Number, seconds and nanoseconds of the stamp of each message."""
+
+
+@pytest.mark.parametrize(
+    ("header", "unused"),
+    [
+        ("secs,nsecs,position,velocity,effort", 0),
+        ("sec,nanosec,position,velocity,effort", 0),
+        ("header.stamp.secs,header.stamp.nsecs,position,velocity,effort", 0),
+        ("Time,header.seq,header.stamp.secs,header.stamp.nsecs,position,velocity,effort", 2),
+        ("%time,field.header.seq,field.header.stamp,field.position0,field.velocity0,field.effort0",
+         2),
+    ],
+)  # fmt: skip
+def test_stamp_of_a_joint_state_is_read_to_the_nanosecond(
+    header: str, unused: int, tmp_path: Path
+) -> None:
+    lines = [header]
+    whole = "secs" not in header and "nanosec" not in header
+    for (i, seconds, nanoseconds), (_, x, v, f) in zip(STAMPS, samples(), strict=True):
+        stamp = [f"{seconds}{nanoseconds:09d}"] if whole else [str(seconds), str(nanoseconds)]
+        log = [f"{seconds}{nanoseconds + 1234:09d}" if whole else f"{seconds + 0.5:.6f}", str(i)]
+        lines.append(",".join([*log[:unused], *stamp, f"{x:.5f}", f"{v:.5f}", f"{f:.5f}"]))
+    path = written(tmp_path, "\n".join(lines) + "\n")
+    found = look(path)
+    assert found.sure
+    assert found.rig == {"drive": {"motion": "rotary", "friction": "torque"}}
+    time_s = import_files(path, whole=True).runs[0].time_s
+    exact = [(s - STAMPS[0][1]) + n / 1e9 for _, s, n in STAMPS]
+    np.testing.assert_allclose(time_s - time_s[0], np.subtract(exact, exact[0]), atol=1e-12)
+
+
+def test_stamp_next_to_another_time_becomes_a_question(tmp_path: Path) -> None:
+    lines = ["time [s],cmd.secs,cmd.nsecs,F [N],x [mm]"]
+    lines += [
+        f"{t:.2f},{s},{n},{f:.4f},{x:.4f}"
+        for (_, s, n), (t, x, _, f) in zip(STAMPS, samples(), strict=True)
+    ]
+    found = look(written(tmp_path, "\n".join(lines) + "\n"))
+    assert [question.place for question in found.questions] == ["time_s"]
+
+
+@pytest.mark.parametrize("suffix", ["csv", "npz", "json", "parquet"])
+def test_integer_stamps_since_1970_are_exact_in_every_format(suffix: str, tmp_path: Path) -> None:
+    ticks = [seconds * 10**9 + nanoseconds for _, seconds, nanoseconds in STAMPS]
+    columns = {"stamp_ns": ticks, "friction_n": [s[3] for s in samples()],
+               "position_m": [s[1] / 1e3 for s in samples()]}  # fmt: skip
+    path = tmp_path / f"run.{suffix}"
+    if suffix == "csv":
+        rows = [",".join(map(repr, row)) for row in zip(*columns.values(), strict=True)]
+        path.write_text("\n".join([",".join(columns), *rows]))
+    elif suffix == "npz":
+        np.savez(path, **{name: np.array(values) for name, values in columns.items()})
+    elif suffix == "json":
+        path.write_text(json.dumps(columns))
+    else:
+        arrow = pytest.importorskip("pyarrow")
+        pytest.importorskip("pyarrow.parquet").write_table(arrow.table(columns), path)
+    time_s = import_files(path, whole=True).runs[0].time_s
+    expected = [(tick - ticks[0]) / 1e9 for tick in ticks]
+    np.testing.assert_allclose(time_s - time_s[0], expected, rtol=0.0, atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("header", "joints"),
     [
         ("t [s],q1 [rad],q2 [rad],qd1 [rad/s],qd2 [rad/s],tau1 [N m],tau2 [N m]", ("1", "2")),
+        ("time,field.position0,field.position1,field.velocity0,field.velocity1,field.effort0,"
+         "field.effort1", ("0", "1")),
         ("time,position.hip,position.knee,velocity.hip,velocity.knee,effort.hip,effort.knee",
          ("hip", "knee")),
     ],
@@ -233,7 +307,7 @@ def test_time_stamps_since_1970_keep_their_resolution(unit: str, tmp_path: Path)
     rows = "".join(f"{t},{i},{i}\n" for i, t in enumerate(stamps))
     for header in (f"stamp_{unit}", "timestamp"):
         result = import_files(written(tmp_path, f"{header},F [N],x [mm]\n{rows}"))
-        atol = {"s": 2e-7, "ms": 0.0, "us": 0.0, "ns": 3e-7}[unit]
+        atol = 2e-7 if unit == "s" else 0.0
         np.testing.assert_allclose(result.runs[0].time_s, np.arange(50) / 100, rtol=0.0, atol=atol)
         assert result.ledger["files"][0]["start"].startswith("2025-11-22")
 

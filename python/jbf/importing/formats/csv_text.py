@@ -6,7 +6,6 @@ fails, the block is converted cell by cell, so that errors state the row and col
 
 from __future__ import annotations
 
-import codecs
 import gzip
 import io
 from collections.abc import Iterable, Iterator, Sequence
@@ -28,9 +27,16 @@ from jbf.importing.formats.dates import (
     is_instant,
     seconds_since,
 )
-from jbf.importing.formats.dialect import Dialect, decode, is_empty, sniff
+from jbf.importing.formats.dialect import (
+    Dialect,
+    decode,
+    is_empty,
+    known_encoding,
+    opened,
+    sniff,
+)
 from jbf.importing.formats.layout import LABEL, Layout, Part, lay_out, merged
-from jbf.importing.formats.plain_lines import plain_columns
+from jbf.importing.formats.plain_lines import exact_integers, is_long_integer, plain_columns
 from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, Values
 from jbf.importing.formats.trace_blocks import is_trace, open_trace
 
@@ -47,12 +53,13 @@ class TextSource(Source):
     def __init__(self, path: Path, options: Options) -> None:
         self.path = path
         self.options = options
-        with _opened(path) as file:
+        with opened(path) as file:
             data = file.read(_HEAD_BYTES)
         if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
             raise InputError(file=path, problem="is binary, not text", mend="name another file")
         self.encoding = options.encoding or decode(data)
         self._words: list[int] = []
+        self._exact: set[str] = set()
         self._damage = DamagedRows(path)
         self._firsts: dict[bool, int] = {}
         self._origins: dict[str, tuple[int, str | None]] = {}
@@ -67,7 +74,7 @@ class TextSource(Source):
 
     def _lines(self) -> Iterator[tuple[int, str]]:
         """Yield every line with its number."""
-        with _opened(self.path) as raw:
+        with opened(self.path) as raw:
             self._handle = raw
             try:
                 text = io.TextIOWrapper(raw, self.encoding, errors="replace", newline=None)
@@ -131,6 +138,8 @@ class TextSource(Source):
                 column = replace(column, kind="instant" if dated else "word", unit="")
             elif cells and all(map(is_file_time, cells)):
                 column = replace(column, kind="instant", unit="")
+            elif cells and all(map(is_long_integer, cells)):
+                self._exact.add(name)
             if column.kind == "instant":
                 order = self.options.dates or day_or_month_first(cells)
                 if order is None:
@@ -252,8 +261,9 @@ class TextSource(Source):
         }
         self._words, self._damage = [], DamagedRows(self.path)
         clock = self._clock_of(table)
-        numeric = [at for at, kind in zip(places, kinds, strict=True) if kind == "number"]
-        text = [at for at, kind in zip(places, kinds, strict=True) if kind != "number"]
+        columns = list(zip(places, names, kinds, strict=True))
+        numeric = [at for at, name, kind in columns if kind == "number" and name not in self._exact]
+        text = [at for at in places if at not in numeric]
         lines = self._samples()
         while block := list(islice(lines, BLOCK)):
             plain = None
@@ -277,13 +287,15 @@ class TextSource(Source):
                 numbers = [number for number, _ in rows]
                 turned = dict(enumerate(zip(*[cells for _, cells in rows], strict=True)))
             found: dict[str, Values] = {}
-            for name, at, kind in zip(names, places, kinds, strict=True):
+            for at, name, kind in columns:
                 cells = turned[at]
                 if kind == "word":
                     found[name] = np.array([cell.strip() for cell in cells], dtype=object)
                 elif kind == "instant":
                     found[name] = self._instants(name, cells, numbers, readers[name])
-                elif plain is not None:
+                elif name in self._exact and (whole := exact_integers(cells)) is not None:
+                    found[name] = whole
+                elif plain is not None and name not in self._exact:
                     found[name] = cells
                 else:
                     found[name] = self._numbers(name, cells, numbers, wrong)
@@ -366,35 +378,13 @@ class TextSource(Source):
         return min(int(raw.tell()), size), size
 
 
-def _opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
-    try:
-        file = path.open("rb")
-        if file.read(2) == b"\x1f\x8b":
-            file.seek(0)
-            return gzip.GzipFile(fileobj=file)
-        file.seek(0)
-    except OSError as error:
-        reason = (error.strerror or type(error).__name__).lower()
-        mend = "check the path and its permissions"
-        raise InputError(file=path, problem=f"cannot be read ({reason})", mend=mend) from None
-    return file
-
-
 def open_text(path: Path, options: Options) -> Source:
     """Open a text file: a table, or a trace of a controller with one block per variable."""
-    with _opened(path) as file:
+    with opened(path) as file:
         begin = file.read(_TRACE_BYTES)
     encoding = options.encoding or decode(begin)
     # An unknown encoding causes an error when the text is read.
-    if is_trace(begin.decode(_known(encoding), errors="replace").splitlines()):
-        with _opened(path) as file:
+    if is_trace(begin.decode(known_encoding(encoding), errors="replace").splitlines()):
+        with opened(path) as file:
             return open_trace(path, io.TextIOWrapper(file, encoding, errors="replace"))
     return TextSource(path, options)
-
-
-def _known(encoding: str) -> str:
-    """Return the encoding, or Latin-1 in place of an unknown encoding."""
-    try:
-        return codecs.lookup(encoding).name
-    except LookupError:
-        return "latin-1"

@@ -7,12 +7,16 @@ either.
 
 from __future__ import annotations
 
+import codecs
 import csv
+import gzip
+import io
 import re
 from collections import Counter
 from dataclasses import dataclass
+from pathlib import Path
 
-from jbf.errors import quoted
+from jbf.errors import InputError, quoted
 from jbf.importing.formats.dates import is_instant
 
 DELIMITERS = ("\t", ";", ",", "|", " ")
@@ -186,3 +190,26 @@ def _doubt(cells: list[str]) -> str | None:
             '"." and thousands = "," under [file]'
         )
     return None
+
+
+def opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
+    """Open a file, gzipped or not, as bytes."""
+    try:
+        file = path.open("rb")
+        if file.read(2) == b"\x1f\x8b":
+            file.seek(0)
+            return gzip.GzipFile(fileobj=file)
+        file.seek(0)
+    except OSError as error:
+        reason = (error.strerror or type(error).__name__).lower()
+        mend = "check the path and its permissions"
+        raise InputError(file=path, problem=f"cannot be read ({reason})", mend=mend) from None
+    return file
+
+
+def known_encoding(encoding: str) -> str:
+    """Return the encoding, or Latin-1 in place of an unknown encoding."""
+    try:
+        return codecs.lookup(encoding).name
+    except LookupError:
+        return "latin-1"

@@ -27,7 +27,7 @@ RATES = ("hz", "rate_hz", "fs", "fs_hz", "sample_rate", "sampling_rate", "sample
 """Keys of a sampling rate, Hz."""
 FEWEST = 3
 """Minimum number of samples for a list of numbers to be a column."""
-Columns = dict[str, npt.NDArray[np.float64]]
+Columns = dict[str, npt.NDArray[Any]]
 
 
 def open_json(path: Path, options: Options) -> Source:
@@ -147,7 +147,7 @@ def _is_number(value: Any) -> bool:
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
 
 
-def _numbers(values: Sequence[Any]) -> npt.NDArray[np.float64]:
+def _numbers(values: Sequence[Any]) -> npt.NDArray[Any]:
     known = [
         nanoseconds(value) / 1e9
         if isinstance(value, Mapping)
@@ -156,4 +156,5 @@ def _numbers(values: Sequence[Any]) -> npt.NDArray[np.float64]:
         else value
         for value in values
     ]
-    return np.array(known, dtype=np.float64)
+    array = np.array(known)
+    return array if array.dtype.kind == "i" else np.array(known, dtype=np.float64)

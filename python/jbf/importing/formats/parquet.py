@@ -41,7 +41,8 @@ class ParquetSource(Source):
                 elif kinds[name] == "word":
                     found[name] = np.array(column.to_pylist(), dtype=object)
                 else:
-                    numbers = column.cast(pa.float64(), safe=False)
+                    whole = pa.types.is_integer(column.type) and column.null_count == 0
+                    numbers = column if whole else column.cast(pa.float64(), safe=False)
                     found[name] = as_numbers(numbers.to_numpy(zero_copy_only=False))
             yield found
 

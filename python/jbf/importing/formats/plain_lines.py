@@ -7,12 +7,28 @@ not accept a block, the caller must convert it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from jbf.importing.formats.dialect import Dialect
+
+_LONG = re.compile(r"[+-]?\d{16,19}")
+
+
+def is_long_integer(cell: str) -> bool:
+    """Return whether a cell is an integer that float64 may round, as of nanoseconds since 1970."""
+    return _LONG.fullmatch(cell.strip()) is not None
+
+
+def exact_integers(cells: Sequence[str]) -> npt.NDArray[np.int64] | None:
+    """Convert cells to int64; None if a cell is not an integer of 64 bits."""
+    try:
+        return np.array(cells, dtype=np.str_).astype(np.int64)
+    except (ValueError, OverflowError):
+        return None
 
 
 def plain_columns(

@@ -22,8 +22,12 @@ DAMAGED = 1e-3
 """Largest share of damaged rows in a text file; one damaged row is always permitted."""
 BLOCK = 50_000
 """Number of rows in memory at a time."""
+LARGEST_EXACT, LARGEST_INTEGER = 2.0**53, 2.0**63
+"""Magnitudes up to which every integer is exact as float64, and up to which it fits in int64."""
 Values = npt.NDArray[Any]
-"""Values of a column: float64 with NaN for a missing sample, or text (object) for words."""
+"""Values of a column: float64 with NaN for a missing sample, int64 if float64 would round, or text
+(object) for words.
+"""
 
 
 @dataclass(frozen=True)
@@ -213,8 +217,13 @@ def in_blocks(columns: Mapping[str, Values], size: int = BLOCK) -> Iterator[dict
 
 
 def as_numbers(values: Any) -> Values:
-    """Convert an array to float64, or to text if it contains any."""
+    """Convert an array to float64, or to text if it contains any.
+
+    Integers that float64 would round, such as nanoseconds since 1970, become int64.
+    """
     array = np.asarray(values)
     if array.dtype.kind in "biuf":
-        return array.astype(np.float64)
+        numbers = array.astype(np.float64)
+        size = np.abs(numbers).max(initial=0.0) if array.dtype.kind in "iu" else 0.0
+        return array.astype(np.int64) if LARGEST_EXACT < size < LARGEST_INTEGER else numbers
     return np.array([None if v is None else str(v) for v in array.tolist()], dtype=object)

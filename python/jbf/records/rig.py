@@ -13,6 +13,7 @@ from jbf.errors import InputError, quoted
 from jbf.records.drive import Drive
 from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
 from jbf.records.toml_file import PathLike, number, positive, read_toml, refuse_unknown, table
+from jbf.records.usual_sizes import warn_of_unusual_sizes
 from jbf.text_files import write_text
 from jbf.units.quantity import quantities
 
@@ -182,6 +183,12 @@ class Rig:
     drive : Drive, optional
         Rotary or linear drive whose columns the runs have.
 
+    Warns
+    -----
+    UserWarning
+        A dimension, the pitch or the viscosity is far outside the usual range of machines, as in a
+        wrong unit (`pitch_m=10`).
+
     Examples
     --------
     >>> rig = jbf.Rig(load=jbf.Load(50.0))
@@ -212,6 +219,7 @@ class Rig:
                 problem="cannot be combined with [bearing]: both define the friction",
                 mend="keep one: [bearing] for journal bearings, [drive] for any other machine",
             )
+        warn_of_unusual_sizes(self.to_mapping())
 
     @property
     def quantities(self) -> Quantities:

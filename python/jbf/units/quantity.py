@@ -11,9 +11,9 @@ import numpy as np
 from jbf.errors import InputError
 from jbf.units.unit import parse_unit, unit_of_name
 
-_QUANTITY = re.compile(
-    r"\s*(?P<number>[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*(?P<unit>(?![\d.])\S.*?)\s*"
-)
+_DIGITS = r"\s*(?P<number>[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*"
+_NUMBER = re.compile(_DIGITS, re.ASCII)
+_QUANTITY = re.compile(_DIGITS + r"(?P<unit>(?![\d.])\S.*?)\s*")
 _LONGEST = 60
 
 
@@ -23,8 +23,8 @@ def quantities(section: Mapping[str, Any], prefix: str) -> dict[str, Any]:
     Parameters
     ----------
     section
-        Keys and values: `pitch_m = "10 mm"` becomes `pitch_m = 0.01`. Values that are not text of a
-        number and a unit, and those of keys that do not end in a unit, are unchanged.
+        Keys and values: `pitch_m = "10 mm"` becomes `pitch_m = 0.01`, and so does `"0.01"`. Values
+        that are not text of a number, and those of keys that do not end in a unit, are unchanged.
     prefix
         Text before the key in an error, such as ``"drive."``.
 
@@ -40,6 +40,8 @@ def _converted(key: str, value: object, prefix: str) -> object:
     named = unit_of_name(key)
     if named is None or not isinstance(value, str) or len(value) > _LONGEST:
         return value
+    if _NUMBER.fullmatch(value):
+        return float(value)
     match = _QUANTITY.fullmatch(value)
     if match is None:
         return value

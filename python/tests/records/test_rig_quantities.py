@@ -1,5 +1,6 @@
 """Quantities with a unit in rig files: converted to the unit of their key, or refused."""
 
+import re
 from dataclasses import fields
 from pathlib import Path
 
@@ -82,6 +83,44 @@ def test_quantities_of_a_drive_are_converted_to_the_units_of_their_keys(
     assert {key: getattr(drive, key) for key in wanted} == pytest.approx(wanted, rel=1e-14)
 
 
+@pytest.mark.parametrize(
+    ("text", "key", "value", "meant"),
+    [
+        (SCREW, "pitch_m", "10", '"10 mm"'),
+        (SCREW, "pitch_m", '"10 m"', '"10 mm"'),
+        (BEARING, "radius_m", "12.7", '"12.7 mm"'),
+        (BEARING, "clearance_m", "0.006", '"0.006 mm"'),
+        (BEARING, "viscosity_pa_s", "32", '"32 mPa s"'),
+    ],
+)
+def test_size_in_a_wrong_unit_is_warned_of_with_the_likely_unit(
+    text: str, key: str, value: str, meant: str, path: Path
+) -> None:
+    line = next(line for line in text.splitlines() if line.startswith(f"{key} "))
+    with pytest.warns(UserWarning, match=re.escape(meant)) as caught:
+        rig_of(path, text.replace(line, f"{key} = {value}"))
+    assert len(caught) == 1
+    assert f".{key}: " in str(caught[0].message)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("size", [{"pitch_m": 0.0005}, {"pitch_m": 0.6}, {"pitch_m": None}])
+def test_size_of_a_usual_machine_is_accepted_without_a_warning(
+    size: dict[str, float | None],
+) -> None:
+    assert Rig(drive=Drive("linear", "force", **size)).drive is not None
+    assert Rig.thesis().bearing is not None
+
+
+@pytest.mark.parametrize(("text", "number"), [("0.01", 0.01), (" 1e-2 ", 0.01), (".5", 0.5)])
+def test_number_in_quotes_is_read_in_the_unit_of_its_key(
+    text: str, number: float, path: Path
+) -> None:
+    drive = rig_of(path, SCREW.replace("10 mm", text)).drive
+    assert drive is not None
+    assert drive.pitch_m == number
+
+
 def test_unit_of_every_number_of_a_rig_is_known_from_its_key() -> None:
     """New keys with a unit need no additional entry."""
     numbers = {f.name for kind in (Bearing, Lubricant, Load, Drive) for f in fields(kind)}
@@ -120,8 +159,8 @@ def test_quantity_in_a_wrong_unit_is_refused_with_file_key_and_remedy(
     assert unit in str(error.mend)
 
 
-@pytest.mark.parametrize("value", ["0.01", "1e-2", ".5", "mm", "ten mm", "", "nan", "1e999 mm"])
-def test_text_without_a_number_and_a_unit_is_refused_in_a_rig_file(value: str, path: Path) -> None:
+@pytest.mark.parametrize("value", ["mm", "ten mm", "", "nan", "1e999 mm"])
+def test_text_without_a_number_is_refused_in_a_rig_file(value: str, path: Path) -> None:
     error = input_error(rig_of, path, SCREW.replace("10 mm", value))
     assert (error.file, error.key) == (str(path), "drive.pitch_m")
 

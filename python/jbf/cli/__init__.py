@@ -31,12 +31,14 @@ from jbf.renamed import current_option
 _MODULES = {"import": "import_files"}
 """Modules of commands whose name is a Python keyword."""
 
-FIRST = (
-    "jbf demo",
-    "jbf diagnose rig.toml runs/ --out model.toml --report report.html",
-    'eval "$(jbf --completion bash)"',
+BEGIN = (
+    ("jbf demo", "an example of the complete workflow"),
+    ("jbf import log.csv", "read a recording of your own"),
+    ("jbf diagnose rig.toml runs/ --report report.html", "find the missing effects"),
 )
-"""Examples in the help of `jbf` without a command."""
+"""Commands to begin with, for the help of `jbf`, and what each does."""
+FIRST = (*(line for line, _ in BEGIN), 'eval "$(jbf --completion bash)"')
+"""Examples in the help of `jbf --help`."""
 
 _PIPE_CLOSED = 141
 _INTERRUPTED = 130
@@ -161,6 +163,8 @@ def _configure_process() -> None:
 
 
 def _dispatch(arguments: list[str]) -> int:
+    if not arguments:
+        return _without_command()
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _show
@@ -198,9 +202,17 @@ def _refuse(error: InputError) -> int:
     return 2
 
 
+def _without_command() -> int:
+    """Print the commands to begin with, and an error in one line."""
+    width = max(len(line) for line, _ in BEGIN)
+    lines = [f"  {line:<{width}}  {does}" for line, does in BEGIN]
+    outputs.say("\n".join(["Commands to begin with:", *lines]), {})
+    return _refuse(InputError(problem="COMMAND is missing", mend="jbf --help lists all commands"))
+
+
 def _check_command(arguments: list[str]) -> None:
     """Raise an error for a misspelt command, with the closest command as suggestion."""
-    first = arguments[0] if arguments else "-"
+    first = arguments[0]
     if not first.startswith("-") and first not in COMMANDS:
         raise InputError(
             problem=f'there is no command "{first}"', mend=did_you_mean(first, COMMANDS)

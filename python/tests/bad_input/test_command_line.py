@@ -21,7 +21,7 @@ FIT = "fit rig.toml a.csv --out new.toml"
 DIAG = "diagnose rig.toml a.csv "
 
 REFUSED = {
-    "no command": ("", "required: COMMAND"),
+    "option without a command": ("--", "required: COMMAND"),
     "command misspelt": ("diagnos", 'there is no command "diagnos"; did you mean "diagnose"?'),
     "option misspelt": (f"{COMPARE} --jsn x", "did you mean --json?"),
     "value missing": (f"{COMPARE} --json", "--json: expected one argument"),

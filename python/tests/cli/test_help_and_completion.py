@@ -29,6 +29,18 @@ def test_help_of_a_command_ends_with_valid_examples(name: str, capsys: Capture) 
         assert chosen.command == name.split()[0]
 
 
+def test_call_without_a_command_shows_valid_commands_to_begin_with(capsys: Capture) -> None:
+    assert main([]) == 2
+    shown, errors = capsys.readouterr()
+    assert errors.startswith("jbf: ")
+    assert errors.count("\n") == 1
+    lines = [line.strip() for line in shown.splitlines() if line.startswith("  jbf ")]
+    assert len(lines) == 3
+    for line in lines:
+        words = shlex.split(line.split("  ")[0])[1:]
+        assert parser().parse_args(words).command == words[0]
+
+
 def test_option_value_is_accepted_after_an_equals_sign_or_a_space() -> None:
     assert main(["effects", "--law=lugre"]) == 0
     assert main(["effects", "presliding", "--law", "lugre"]) == 0

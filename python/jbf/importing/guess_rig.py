@@ -58,7 +58,7 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
         drive["friction"] = "none"
         asked.append("mass_kg" if linear else "inertia_kg_m2")
     else:
-        return {}, []
+        drive["friction"] = OPEN  # the friction itself is a question
     of_motor = any(key.startswith("motor_") for key in keys)
     if linear and (of_motor or set(asked) & {"rated_torque_n_m", "torque_constant_n_m_a"}):
         asked.append("pitch_m")
@@ -66,6 +66,20 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
     return {"drive": drive}, [
         Question(f"drive.{key}", f"{_ASKS[key]} Write it into the map") for key in asked
     ]
+
+
+def assumed_machine(sections: Mapping[str, Mapping[str, Any]]) -> str | None:
+    """Describe in one line the machine that was derived from the columns; None if none was.
+
+    A recording of a journal bearing may have the same columns as that of a drive.
+    """
+    if "drive" not in sections:
+        return None
+    motion = sections["drive"]["motion"]
+    return (
+        f"described as a {motion} drive ([drive]); for a journal bearing write [bearing] instead "
+        "(docs/import.md#a-journal-bearing)"
+    )
 
 
 def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:

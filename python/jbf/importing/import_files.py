@@ -16,6 +16,7 @@ from jbf.importing.cutting.piece import Piece
 from jbf.importing.cutting.trims import trimmed
 from jbf.importing.formats.registry import format_of
 from jbf.importing.guess import guess
+from jbf.importing.guess_rig import assumed_machine
 from jbf.importing.guess_align import with_alignment
 from jbf.importing.guessed import Guess
 from jbf.importing.ledger import ledger_of
@@ -149,6 +150,9 @@ def import_files(
     ['sweep']
     """
     paths = _paths(files)
+        machine = assumed_machine(mapping.rig) if map is None else None
+        if machine is not None:
+            recordings[0].notes.append(machine)
     folder = None if out is None else path_of(out)
     if folder is not None:
         check_folder(folder, replace=replace_folder)

@@ -9,6 +9,7 @@ from pathlib import Path
 import tomlkit
 
 from jbf.importing.columns import understood
+from jbf.importing.guess_rig import assumed_machine
 from jbf.importing.guessed import Guess
 from jbf.text_files import real_path
 
@@ -72,6 +73,9 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
         parts.append("\n".join(["# Columns with a time of their own.", "[clocks]", *own]) + "\n")
     parts += _align(guess)
     parts.append(_cut(guess))
+    machine = assumed_machine(guess.rig)
+    if machine is not None:
+        parts.append(f"# The machine: {machine}.")
     for section, content in guess.rig.items():
         lines = tomlkit.dumps({section: dict(content)}).rstrip("\n").split("\n")
         choices = [CHOICES.get(line.split(" = ")[0], "") for line in lines]
@@ -79,7 +83,8 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
     if not guess.rig:
         parts.append(
             '# What it was recorded on, as in rig.toml:\n# [drive]\n# motion = "linear"\n'
-            '# friction = "force"\n'
+            '# friction = "force"\n# or [bearing], [lubricant] and [load] '
+            "(docs/import.md#a-journal-bearing)\n"
         )
     return "\n".join(parts)
 

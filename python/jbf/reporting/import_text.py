@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from jbf.importing.guess_rig import assumed_machine
 from jbf.importing.guessed import Guess
 from jbf.importing.recording import STEADY
 from jbf.importing.result import Import
@@ -43,6 +44,9 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
         lines += ["", "Clocks:"]
         for stem, note in guess.align_notes.items():
             lines += hanging("- ", f"{stem}: {note}")
+    machine = assumed_machine(guess.rig)
+    if machine is not None:
+        lines += ["", f"Machine: {machine}"]
     if guess.questions:
         lines += ["", "Questions:"]
         for question in guess.questions:

@@ -59,6 +59,17 @@ def test_import_without_a_map_writes_a_map_that_can_be_imported(capsys: Capture)
     assert written == {"cut.toml", "import.json", "log.csv", "map.toml", "rig.toml"}
 
 
+def test_assumed_drive_is_reported_with_the_section_for_a_bearing(capsys: Capture) -> None:
+    Path("map.toml").unlink()
+    assert "[bearing]" in printed(capsys, "import log.csv")
+    assert "[bearing]" in Path("map.toml").read_text()
+    assert "[bearing]" in printed(capsys, "import log.csv --folder runs")
+    notes = json.loads(Path("runs/import.json").read_text())["files"][0]["notes"]
+    assert any("[bearing]" in note for note in notes)
+    # A map states the machine.
+    assert "[bearing]" not in printed(capsys, f"{IMPORT} --force")
+
+
 def test_recording_is_cut_at_its_rests_by_default_and_the_option_to_disable_is_named(
     capsys: Capture,
 ) -> None:

@@ -126,7 +126,8 @@ def _each_joint(options: ImportOptions) -> int:
 
 def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
     """Import one campaign."""
-    from jbf.importing.import_files import OpenQuestions, import_files
+    from jbf.importing.import_files import import_files
+    from jbf.importing.mapping import OpenQuestions
 
     try:
         with shown("importing") as report:

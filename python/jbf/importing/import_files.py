@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,12 +15,12 @@ from jbf.importing.cutting.piece import Piece
 from jbf.importing.cutting.trims import trimmed
 from jbf.importing.formats.registry import format_of
 from jbf.importing.guess import guess
-from jbf.importing.guess_rig import assumed_machine
 from jbf.importing.guess_align import with_alignment
+from jbf.importing.guess_rig import assumed_machine
 from jbf.importing.guessed import Guess
 from jbf.importing.ledger import ledger_of
 from jbf.importing.map_text import map_text
-from jbf.importing.mapping import Map, read_map
+from jbf.importing.mapping import Map, OpenQuestions, read_map
 from jbf.importing.overview import overview
 from jbf.importing.recording import check_loads
 from jbf.importing.recording import read_recording as spooled
@@ -34,27 +33,6 @@ from jbf.records.run import PathLike, Run
 from jbf.text_files import check_readable, path_of, read_text
 
 Report = Callable[[str, int, int], None]
-
-
-class OpenQuestions(InputError):
-    """A file does not contain all information that an import requires.
-
-    Attributes
-    ----------
-    lines
-        Each question, with its file.
-    """
-
-    def __init__(self, guessed: Guess) -> None:
-        self.lines = [f"{guessed.path}, {question}" for question in guessed.questions]
-        more = len(guessed.questions) - 1
-        first = guessed.questions[0]
-        also = f" (and {more} more)" if more else ""
-        problem = f"{first}{also}"
-        super().__init__(file=guessed.path, problem=problem, mend="give a map: jbf import FILE")
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return partial(InputError, **self._fields()), ()
 
 
 def look(path: PathLike, joint: str | None = None, beside: Sequence[PathLike] = ()) -> Guess:
@@ -150,9 +128,6 @@ def import_files(
     ['sweep']
     """
     paths = _paths(files)
-        machine = assumed_machine(mapping.rig) if map is None else None
-        if machine is not None:
-            recordings[0].notes.append(machine)
     folder = None if out is None else path_of(out)
     if folder is not None:
         check_folder(folder, replace=replace_folder)
@@ -175,6 +150,9 @@ def import_files(
             _read(path, mapping, Path(spool) / str(number), progress)
             for number, path in enumerate(paths)
         ]
+        machine = assumed_machine(mapping.rig) if map is None else None
+        if machine is not None:
+            recordings[0].notes.append(machine)
         pieces = _pieces(recordings, mapping)
         for recording in recordings:
             own = [p for p in pieces if p.keep and p.file == recording.path.name]
@@ -273,7 +251,9 @@ def _map(
         return read_map(given), read_text(given)
     found = look(paths[0], joint, beside)
     if not found.sure:
-        raise OpenQuestions(found)
+        lines = [f"{found.path}, {question}" for question in found.questions]
+        mend = "give a map: jbf import FILE"
+        raise OpenQuestions(lines, file=found.path, problem=str(found.questions[0]), mend=mend)
     return found.map(), map_text(found)
 
 

@@ -11,8 +11,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,24 @@ from jbf.records.toml_file import number, read_toml, refuse_unknown, table
 _QUOTED = re.compile(r"`[^`]*`")
 RIG = ("drive", "bearing", "lubricant", "load")
 SECTIONS = ("file", "columns", "clocks", "align", "cut", *RIG)
+
+
+class OpenQuestions(InputError):
+    """Information that an import requires is missing.
+
+    Attributes
+    ----------
+    lines
+        Each question, with its file.
+    """
+
+    def __init__(self, lines: Sequence[str], *, problem: str, **place: Any) -> None:
+        self.lines = tuple(lines)
+        more = len(lines) - 1
+        super().__init__(problem=f"{problem} (and {more} more)" if more else problem, **place)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return partial(InputError, **self._fields()), ()
 
 
 @dataclass(frozen=True)
@@ -94,11 +113,19 @@ class Map:
         Raises
         ------
         InputError
-            If a key is unknown, open or missing.
+            If a key is unknown or missing; an `OpenQuestions` if keys are open.
         """
+        questions = [error.within(file=self.path) for error in self.open_questions()]
+        if questions:
+            first = questions[0]
+            raise OpenQuestions(
+                [str(question) for question in questions],
+                problem=first.problem,
+                file=first.file,
+                key=first.key,
+                mend=first.mend,
+            )
         try:
-            for error in self.open_questions():
-                raise error
             for key in (*self.columns, *self.clocks):
                 wanted_unit(key)
             for key in self.clocks:

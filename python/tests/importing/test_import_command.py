@@ -95,8 +95,10 @@ def test_open_entries_are_marked_in_the_written_map_and_refused(capsys: Capture)
     text = Path("map.toml").read_text()
     assert 'time_s = "`time` [?]"' in text
     assert 'rated_torque_n_m = "?"' in text
-    assert "key columns.time_s: is open" in printed(capsys, IMPORT, 2)
-    # Without the map, each question is one line.
+    # Each open entry, and without the map each question, is one line.
+    lines = printed(capsys, IMPORT, 2).splitlines()
+    places = ("columns.time_s", "drive.rated_torque_n_m")
+    assert all(f"key {place}: is open" in line for place, line in zip(places, lines, strict=True))
     lines = printed(capsys, "import log.csv --folder runs", 2).splitlines()
     assert len(lines) == 2
     assert all(line.startswith("jbf: log.csv, ") for line in lines)

@@ -6,7 +6,7 @@ const RIG = {
   torque_constant_n_m_a: "torque per ampere, N m/A", force_constant_n_a: "force per ampere, N/A",
   pitch_m: "travel per revolution, m", gear_ratio: "gear ratio (motor/output)",
 };
-const CHOICES = { motion: ["linear", "rotary"], friction: ["force", "torque", "current", "percent"] };
+const CHOICES = { motion: ["linear", "rotary"], friction: ["force", "torque", "current", "percent", "voltage", "none"] };
 // What a run calls a column that was converted.
 const MADE = { speed_rpm: "velocity_m_s", velocity_rad_s: "velocity_m_s", motor_velocity_rad_s: "velocity_m_s", motor_speed_rpm: "velocity_m_s",
   torque_n_m: "friction_n", motor_torque_n_m: "friction_n", current_a: "friction_n", torque_percent: "friction_n", force_percent: "friction_n",
@@ -112,7 +112,7 @@ export class ImportForm {
     return h("div", { class: "row" }, h("b", {}, "Machine"), fields.map((field) => {
       const common = { "data-key": `rig-${field.section}.${field.key}`, onchange: set(field) };
       const input = CHOICES[field.key]
-        ? h("select", common, CHOICES[field.key].map((c) => h("option", { value: c, selected: c === field.value }, c)))
+        ? h("select", common, [...new Set([...CHOICES[field.key], field.value])].map((c) => h("option", { value: c, selected: c === field.value }, c)))
         : h("input", { class: "short", value: field.value === "?" ? "" : field.value, placeholder: "?", ...common });
       return h("label", {}, `${RIG[field.key] ?? field.key.replaceAll("_", " ")} `, input);
     }));

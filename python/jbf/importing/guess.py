@@ -36,6 +36,14 @@ HEAD = 5_000
 NEVER = ("index", "acceleration", "coefficient", "run")
 """Quantities that never become a column of a run."""
 _TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
+_EXAMPLES = {
+    "m": "[mm]",
+    "m/s": "[mm/s]",
+    "rad": "[deg], [rad], or [counts] / 4096 [counts/rev]",
+    "rad/s": "[rad/s] or [deg/s]",
+    "rpm": "[rpm], [rad/s] or [deg/s]",
+}
+"""Usual units of a column of a run without a unit in the file, by the unit of the column."""
 _BY_UNIT = ("temperature", "pressure", "current", "time", "speed", "force", "torque", "place")
 
 
@@ -261,7 +269,9 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
         return Candidate(key, column, header, False, why, ask)
     if unit is None:
         said = f"the unit {header.unit!r} is not known" if header.unit else "it has no unit"
-        return Candidate(key, column, header, False, why, f"{said}; write it after the column")
+        own = wanted_unit(key).text
+        ask = f"{said}; write it after the column, such as {_EXAMPLES.get(own, f'[{own}]')}"
+        return Candidate(key, column, header, False, why, ask)
     if unit.dimensions == COUNT:
         ask = (
             "how many counts per revolution (or metre)? Write / 4096 [counts/rev] after the column"

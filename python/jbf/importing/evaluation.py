@@ -130,7 +130,10 @@ def converted(found: Quantity, wanted: Unit, key: str) -> Array:
     if found.loose and angle == 0:
         # A bare factor is in SI units, and supplies the dimensions that are missing.
         return values * (found.unit.in_si / wanted.in_si)
-    if angle and found.unit.dimensions[:_RAD] == wanted.dimensions[:_RAD]:
+    if found.unit is ONE and not found.loose:
+        problem = f"has no unit, but {wanted.text} is required"
+        mend = "write a unit in square brackets after each column"
+    elif angle and found.unit.dimensions[:_RAD] == wanted.dimensions[:_RAD]:
         problem, mend = (
             "the unit is ambiguous: revolutions, degrees or radians",
             "give a factor its unit: [mm/rev], [counts/rev]",

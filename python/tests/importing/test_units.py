@@ -152,6 +152,13 @@ def test_expression_functions_refuse_arguments_with_wrong_units(text: str, fragm
         evaluate(parse_expression(text, BARE), VALUES, UNITS)
 
 
+@pytest.mark.parametrize("key", ["angle_rad", "velocity_rad_s", "friction_n"])
+def test_column_without_a_unit_is_refused_with_the_key(key: str) -> None:
+    with pytest.raises(InputError, match="has no unit") as caught:
+        value("F", key)
+    assert caught.value.key == f"columns.{key}"
+
+
 @given(st.text(max_size=40))
 @settings(deadline=None, max_examples=40)
 def test_arbitrary_text_is_parsed_as_an_expression_or_refused_in_one_line(text: str) -> None:

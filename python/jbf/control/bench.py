@@ -92,14 +92,32 @@ def _wrong(name: str, value: float, rule: str) -> InputError:
     return InputError(key=name, problem=f"{value} must be {rule}", mend="correct the value")
 
 
+def check_rotary(model: Model) -> None:
+    """Refuse the model of a linear drive: motor, encoder and tasks of the bench are rotary.
+
+    Raises
+    ------
+    InputError
+        The motion of the model's drive is linear.
+    """
+    drive = model.rig.drive
+    if drive is not None and drive.motion == "linear":
+        raise InputError(
+            problem="the model is of a linear drive, and the simulated bench is rotary",
+            mend="use the model in your own loop: jbf export MODEL",
+        )
+
+
 def core_model(model: Model) -> dict[str, Any]:
     """Convert a model to the form required by the core's bench and compensators.
 
     Raises
     ------
     InputError
-        The model has a user-defined law or effect, which is Python code and cannot run in a loop.
+        The model is of a linear drive, or has a user-defined law or effect, which is Python code
+        and cannot run in a loop.
     """
+    check_rotary(model)
     pages = catalogue.effects()
     if isinstance(catalogue.find_law(model.law), UserLaw):
         raise InputError(

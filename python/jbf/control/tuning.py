@@ -11,7 +11,7 @@ from collections.abc import Hashable
 
 import numpy as np
 
-from jbf.control.bench import THESIS_BENCH, Bench
+from jbf.control.bench import THESIS_BENCH, Bench, check_rotary
 from jbf.control.settings import Settings
 from jbf.errors import InputError
 from jbf.models.model import Model, the_model
@@ -79,9 +79,10 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
     Raises
     ------
     InputError
-        The model's friction exceeds the drive's voltage.
+        The model is of a linear drive, or its friction exceeds the drive's voltage.
     """
-    level_v = friction_level_v(the_model(model), bench)
+    check_rotary(the_model(model))
+    level_v = friction_level_v(model, bench)
     if not 0.0 < level_v < bench.limit_v:
         raise InputError(
             problem=(

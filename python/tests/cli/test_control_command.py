@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from input_checks import Capture, refused
-from jbf import Model, Rig
+from jbf import Drive, Model, Rig
 from jbf.cli import main
 
 
@@ -16,6 +16,7 @@ def folder(working_folder: Path) -> None:
     """Write two models, wrong settings and a motion into the working folder."""
     Model(Rig.thesis("4.2")).save("model.toml")
     Model(Rig.thesis("4.2"), law="lugre").save("lugre.toml")
+    Model(Rig(drive=Drive("linear", "force")), law="coulomb").save("linear.toml")
     Path("wrong.toml").write_text("bandwidth = 3\n")
     speed = [0.02 * math.sin(0.02 * i) for i in range(300)]
     rows = [f"{0.02 * i:.2f},{v:.6f}" for i, v in enumerate(speed)]
@@ -105,6 +106,10 @@ def test_control_tables_reproduce_12_published_cells_within_a_factor_of_2(capsys
         ("run --counts-per-rad 1e12", ["roll-over", "counts_per_rad"]),
         ("run --noise-times -1", ["--noise-times"]),
         ("tune model.toml --limit-v 0.1", ["0.1 V"]),
+        ("run linear.toml", ["linear drive", "rotary", "jbf export"]),
+        ("run model.toml --carried linear.toml", ["linear drive"]),
+        ("tune linear.toml --toml s.toml", ["linear drive"]),
+        ("robustness linear.toml", ["linear drive"]),
         ("robustness model.toml --json model.toml", ["input"]),
     ],
 )

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from jbf.estimation.prepared import Prepared
 from jbf.estimation.samples import Samples
 from jbf.estimation.settings import DEFAULT, NoiseSettings, PeriodSettings, Settings
+from jbf.records.motion.rests import certain_rests
 from jbf.records.motion.roughness import noise_of
 
 Array = npt.NDArray[np.float64]
@@ -29,23 +30,31 @@ def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
     quantisation error of a converter (Widrow 1956), because with coarse quantisation most readings
     equal the preceding ones. A coloured part does not contribute to third differences. It is
     estimated from repeated periods of the motion and from rests. The total is used if it clearly
-    exceeds the white part.
+    exceeds the white part. Third differences also contain friction that changes within a few
+    samples, such as a fast ripple. Repeated periods do not, and replace the white part if they are
+    clearly below it. Rests do not replace it, because the noise may be larger in motion.
     """
     noisy = [i for i, p in enumerate(prepared) if p.has_noise]
     if not noisy:
         return 0.0
     prepared, samples = [prepared[i] for i in noisy], samples.only(noisy)
-    floor, total = _white(prepared, samples), _total_noise(prepared, samples)
+    settings = samples.settings.noise
+    floor, repeats = _white(prepared, samples), _repeat_squares(prepared, samples)
+    repeated = _pooled(repeats, settings)
+    if repeated is not None and settings.min_floor_ratio * repeated < floor:
+        floor = repeated
+    total = _pooled([*repeats, *_squares_at_rest(prepared, settings)], settings)
     if total is None:
         return floor
-    settings = samples.settings.noise
     low, high = settings.min_floor_ratio * floor, settings.max_floor_ratio * floor
     return total if low < total < high else floor
 
 
 def noise_upper_bound(prepared: Sequence[Prepared], samples: Samples) -> float | None:
     """Upper limit of the noise including its coloured part, N; None if it cannot be estimated."""
-    total = _total_noise(prepared, samples)
+    settings = samples.settings.noise
+    squares = [*_repeat_squares(prepared, samples), *_squares_at_rest(prepared, settings)]
+    total = _pooled(squares, settings)
     return None if total is None else max(total, _white(prepared, samples))
 
 
@@ -73,26 +82,45 @@ def _dithered(p: Prepared) -> tuple[Array, float]:
     return p.friction + dither, step**2 / 12.0
 
 
-def _total_noise(prepared: Sequence[Prepared], samples: Samples) -> float | None:
-    """Total noise, N, from repeated periods and rests; None if there are too few samples."""
-    total, weight, settings = 0.0, 0, samples.settings.noise
-    for p, counted in zip(prepared, samples.counted, strict=True):
-        rests = _rest_squares(p.motion.resting, p.friction, settings)
-        for square, count in (*rests, _repeat_square(p, counted, samples.settings)):
-            total += square * count
-            weight += count
-    return None if weight < settings.min_floor_samples else float(np.sqrt(total / weight))
+def _pooled(squares: Sequence[tuple[float, int]], settings: NoiseSettings) -> float | None:
+    """Root of the mean of variances, weighted by their samples; None if there are too few."""
+    weight = sum(count for _, count in squares)
+    if weight < settings.min_floor_samples:
+        return None
+    return float(np.sqrt(sum(square * count for square, count in squares) / weight))
+
+
+def _repeat_squares(prepared: Sequence[Prepared], samples: Samples) -> list[tuple[float, int]]:
+    """Variance of the noise in the repeated periods of each run, and the number of samples."""
+    return [
+        _repeat_square(p, counted, samples.settings)
+        for p, counted in zip(prepared, samples.counted, strict=True)
+    ]
+
+
+def _squares_at_rest(
+    prepared: Sequence[Prepared], settings: NoiseSettings
+) -> list[tuple[float, int]]:
+    """Variance of the noise in the rests of all runs, and the number of samples of each."""
+    return [
+        square for p in prepared for square in _rest_squares(p.motion.resting, p.friction, settings)
+    ]
 
 
 def _rest_squares(resting: Mask, values: Array, settings: NoiseSettings) -> list[tuple[float, int]]:
-    """Variance about a straight line in every long rest, with the number of samples."""
+    """Variance about a straight line in every long rest, with the number of samples.
+
+    The last samples may belong to a motion that the encoder does not yet show.
+    """
+    certain = certain_rests(resting)
     edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
     squares = []
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         # The beginning of a rest may still be a transient.
         begin = first + (end - first) // 4
-        if end - begin >= settings.min_rest_samples:
-            part = _detrended(values[begin:end])
+        within = values[begin:end][certain[begin:end]]
+        if len(within) >= settings.min_rest_samples:
+            part = _detrended(within)
             squares.append((float(part @ part) / (len(part) - 2), len(part)))
     return squares
 

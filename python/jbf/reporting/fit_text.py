@@ -15,6 +15,8 @@ from jbf.reporting.words import law_words, number
 MOST_CORRELATIONS = 10
 ABOVE = 1.25
 """Ratio of residual to noise of the records above which the report adds a note."""
+BELOW = 0.95
+"""Ratio below which the report adds a note."""
 
 
 def noise_words(noise: Noise) -> str:
@@ -70,6 +72,13 @@ def fit_report(fit: Fit) -> str:
             "the residual exceeds the noise of the records: an effect is missing (`jbf "
             "diagnose` identifies it), or the fit ended in a local minimum (choose "
             "other start values: `--start NAME=VALUE`).",
+            4,
+        )
+    if fit.noise_floor is not None and fit.rms < BELOW * fit.noise_floor:
+        lines += hanging(
+            "note: ",
+            "the residual is below the noise of the records: their estimate also contains friction "
+            "that changes within a few samples, such as a fast ripple.",
             4,
         )
     pairs = correlation_pairs(fit)

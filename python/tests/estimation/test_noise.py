@@ -262,6 +262,29 @@ def test_coloured_noise_raises_the_noise_floor_only_to_a_limit(times: float, tak
     assert found == pytest.approx(largest if taken else 0.05, rel=1e-12 if taken else 0.15)
 
 
+def stop_and_go(seed: int, step_s: float, ripple_n: float, count_m: float) -> Run:
+    """Strokes of 50 mm/s with rests, a ripple of 2 mm pitch, and white noise of 0.1 N."""
+    t = step_s * np.arange(round(24.0 / step_s))
+    phase, forward = np.mod(t, 1.2), np.mod(t, 2.4) < 1.2
+    height = np.clip(np.minimum(phase - 0.5, 1.2 - phase) / 0.1, 0.0, 1.0)
+    v = 0.05 * height * np.where(forward, 1.0, -1.0)
+    x = np.concatenate(([0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * step_s)))
+    force = (5.0 + ripple_n * np.sin(2.0 * np.pi * x / 2e-3)) * np.sign(v) + 20.0 * v
+    noisy = force + white(seed, 0.1, len(t))
+    path = count_m * np.round(x / count_m)
+    return Run.from_arrays(t, friction=noisy, position_m=path, name=f"{seed}")
+
+
+@pytest.mark.parametrize(("step_s", "count_m"), [(0.002, 5e-6), (0.002, 1e-6), (0.008, 1e-6)])
+@pytest.mark.parametrize("ripple_n", [0.0, 0.5])
+def test_noise_floor_excludes_a_ripple_and_the_start_of_a_motion_after_a_rest(
+    step_s: float, count_m: float, ripple_n: float
+) -> None:
+    """Five or 20 samples a ripple; a motion of less than a count is not visible to the encoder."""
+    runs = [stop_and_go(seed, step_s, ripple_n, count_m) for seed in range(2)]
+    assert floor_of(Rig(), runs) == pytest.approx(0.1, rel=0.05)
+
+
 def repeated(noise: Array, period: int) -> Run:
     t = STEP_S * np.arange(len(noise))
     v = 0.1 + 0.05 * np.sin(2.0 * np.pi * np.arange(len(noise)) / period)

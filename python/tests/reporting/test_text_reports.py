@@ -60,20 +60,23 @@ def test_fit_report_has_statistics_parameters_and_correlations() -> None:
 
 
 @pytest.mark.parametrize(
-    ("noise_rms", "words", "larger"),
+    ("noise_rms", "words", "note"),
     [
-        (0.5, "= 0.500 N (the residual is 1.05 times the noise)", False),
-        (0.105, "= 0.105 N (the residual is 5.00 times the noise)", True),
-        (None, "= unknown", False),
+        (0.5, "= 0.500 N (the residual is 1.05 times the noise)", None),
+        (0.105, "= 0.105 N (the residual is 5.00 times the noise)", "exceeds"),
+        (0.6, "= 0.600 N (the residual is 0.875 times the noise)", "is below"),
+        (None, "= unknown", None),
     ],
 )
 def test_fit_report_compares_the_residual_with_the_noise_of_the_records(
-    noise_rms: float | None, words: str, larger: bool
+    noise_rms: float | None, words: str, note: str | None
 ) -> None:
     report = replace(fit_by_hand(), noise_floor=noise_rms).summary()
     statistics = {row[0]: row[1] for row in section(report, "[[Fit]]")}
     assert statistics["noise of the records"] == words
-    assert ("exceeds the noise of the records" in " ".join(report.split())) == larger
+    text = " ".join(report.split())
+    for relation in ("exceeds", "is below"):
+        assert (f"{relation} the noise of the records" in text) == (relation == note)
 
 
 def test_fit_report_names_doubtful_errors_and_a_failed_search() -> None:

@@ -5,7 +5,10 @@ The texts are general practical experience and do not depend on the numerical re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from jbf.estimation.campaign import Campaign
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,27 @@ ADVICE = {
 }
 
 
-def advice_on(axis: str) -> Advice:
-    """Return the advice for residual structure along an axis, or of the kind of that name."""
-    return ADVICE.get(axis, NONE)
+CHANNELS = {"record a temperature": "temperature"}
+"""Steps that recommend a further channel, with the quantity in the name of its column."""
+
+
+def advice_on(axis: str, campaign: Campaign | None = None) -> Advice:
+    """Return the advice for residual structure along an axis, or of the kind of that name.
+
+    Parameters
+    ----------
+    campaign
+        The recorded runs. Channels that all of them contain are not recommended.
+    """
+    advice = ADVICE.get(axis, NONE)
+    if campaign is None:
+        return advice
+    columns = [list(p.run.columns()) for p in campaign.prepared]
+    steps = advice.to_do.split("; ")
+    kept = [s for s in steps if s not in CHANNELS or not _in_all(CHANNELS[s], columns)]
+    return replace(advice, to_do="; ".join(kept))
+
+
+def _in_all(quantity: str, columns: Iterable[Iterable[str]]) -> bool:
+    """Whether each run has a column of a quantity."""
+    return all(any(quantity in name for name in names) for names in columns)

@@ -119,7 +119,8 @@ def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
         paragraphs.append(_paragraph(lead, next_experiment, 4))
     elif diagnosis.residual_structure:
         worst = max(diagnosis.residual_structure, key=lambda remainder: remainder.share)
-        paragraphs.append(_paragraph("Next: ", advice_on(worst.axis).to_do, 2))
+        advice = advice_on(worst.axis, diagnosis.after.campaign)
+        paragraphs.append(_paragraph("Next: ", advice.to_do, 2))
     if diagnosis.limitations:
         first, *others = diagnosis.limitations
         more = f" (and {len(others)} more)" if others else ""

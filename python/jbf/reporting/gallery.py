@@ -88,7 +88,7 @@ def _failed(diagnosis: Diagnosis, failure: Failure, made: Mapping[str, Sequence[
     left = means_along(diagnosis.after, failure.axis)
     unit = diagnosis.model.rig.quantities.force
     first, now = _size(failure), _size(left)
-    advice = advice_on(failure.axis)
+    advice = advice_on(failure.axis, diagnosis.after.campaign)
     shares = _shares(diagnosis.before, failure, made)
     causes = listed(f"{name} ({100.0 * s:.0f} % of it)" for name, s in shares.items())
     fell = f"the means fall from {number(first, 2)} to {number(now, 2)} {unit}"
@@ -116,7 +116,7 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
     kind = "bursts" if bursts else remainder.axis
     if kind == "run" and UNCONFIRMED in remainder.where:
         kind = "unconfirmed"
-    advice = advice_on(kind)
+    advice = advice_on(kind, after.campaign)
     ax = one_axes(None, SIZE)
     if remainder.axis == "frequency":
         spectrum(after, ax=ax).set_title("", loc="left")

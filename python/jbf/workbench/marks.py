@@ -25,7 +25,7 @@ def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
     binned = {axis.axis: axis for axis in all_axes(campaign, u_tr)}
     found = []
     for failure in comparison.failures:
-        advice = vars(advice_on(failure.axis))
+        advice = vars(advice_on(failure.axis, campaign))
         mark: dict[str, Any] = {**failure.to_dict(), **advice, "bin": "", "ranges_s": {}}
         axis = binned.get(failure.axis)
         if axis is not None:

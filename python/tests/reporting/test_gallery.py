@@ -12,7 +12,8 @@ from jbf import Diagnosis, Model, ParameterValue, Rig, compare
 from jbf.comparison.bins import Axis
 from jbf.comparison.parts import added_by
 from jbf.diagnosis import Remainder
-from jbf.reporting.advice import ADVICE, NONE, advice_on
+from jbf.estimation.campaign import Campaign
+from jbf.reporting.advice import ADVICE, CHANNELS, NONE, advice_on
 from jbf.reporting.gallery import failure_cards, remainder_cards
 
 
@@ -123,3 +124,38 @@ def test_every_axis_and_kind_of_residual_structure_has_advice_text() -> None:
     kinds = {"frequency", "bursts", "way", "period", "stroke", "parameters", "effects"}
     assert set(ADVICE) == {*get_args(Axis), *kinds, "unconfirmed"}
     assert advice_on("nothing known") is NONE
+
+
+@pytest.mark.parametrize("kind", list(ADVICE))
+@pytest.mark.parametrize("complete", [True, False])
+def test_advice_recommends_no_channel_that_all_runs_contain(kind: str, complete: bool) -> None:
+    """Without a channel in one of the runs, it is still recommended."""
+    first, *others = there_and_back(coulomb) * 2
+    columns = {f"oil_{quantity}_c": np.zeros(len(first)) for quantity in CHANNELS.values()}
+    runs = [replace(first, extra=columns), *others]
+    if complete:
+        runs = [replace(run, extra=columns) for run in runs]
+    advice = advice_on(kind, Campaign.prepare(Rig(), runs))
+    steps = ADVICE[kind].to_do.split("; ")
+    kept = [step for step in steps if not (complete and step in CHANNELS)]
+    assert advice.to_do.split("; ") == kept
+    assert advice.causes == ADVICE[kind].causes
+
+
+def test_every_step_that_recommends_a_channel_is_part_of_an_advice() -> None:
+    assert set(CHANNELS) <= {
+        step for advice in ADVICE.values() for step in advice.to_do.split("; ")
+    }
+
+
+def test_card_of_a_drift_does_not_recommend_a_recorded_temperature() -> None:
+    found = diagnosis_by_hand("unexplained")
+    prepared = found.after.campaign.prepared
+    runs = [replace(p.run, temperature_c=20.0 + 0.0 * p.run.time_s) for p in prepared]
+    after = replace(found.after, campaign=Campaign.prepare(Rig(), runs))
+    remains = (Remainder("time", "it grows", 0.2),)
+    cards = [
+        remainder_cards(replace(found, after=compared, residual_structure=remains))[0]
+        for compared in (found.after, after)
+    ]
+    assert ["temperature" in card.to_do for card in cards] == [True, False]

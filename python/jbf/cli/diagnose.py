@@ -90,7 +90,7 @@ def _add_next_run(parser: Parser) -> None:
         default=60.0,
         help="duration of that run, s (default 60)",
     )
-    limits.add(group, otherwise="as recorded", sharpest="as recorded")
+    limits.add(group, otherwise="as recorded", sharpest="as recorded", longest="as recorded")
 
 
 def run(options: DiagnoseOptions) -> int:

@@ -13,15 +13,17 @@ if TYPE_CHECKING:
     from jbf.diagnosis import Limits
 
 SPEED, SHARPNESS, LOADS = "--max-velocity", "--max-acceleration", "--loads"
+TRAVEL = "--travel"
 
 
-def add(group: Group, *, otherwise: str, sharpest: str, needed: bool = False) -> None:
+def add(group: Group, *, otherwise: str, sharpest: str, longest: str, needed: bool = False) -> None:
     """Add the options that set the operating limits.
 
     Parameters
     ----------
-    otherwise, sharpest
-        Help text for the defaults: of loads and temperatures, and of the acceleration.
+    otherwise, sharpest, longest
+        Help text for the defaults: of loads and temperatures, of the acceleration, and of the
+        travel.
     needed
         Whether the maximum speed is required.
     """
@@ -36,6 +38,12 @@ def add(group: Group, *, otherwise: str, sharpest: str, needed: bool = False) ->
         SHARPNESS,
         metavar="X",
         help=f"largest acceleration, likewise or as '5 rad/s^2' (default: {sharpest})",
+    )
+    group.add_argument(
+        TRAVEL,
+        metavar="X",
+        help="length of the free travel, in which a motion starts at the lower end, in the unit of "
+        f"the rig or as '300 mm' (default: {longest})",
     )
     group.add_argument(
         LOADS,
@@ -58,6 +66,7 @@ class LimitOptions:
 
     max_velocity: str | None
     max_acceleration: str | None
+    travel: str | None
     loads: tuple[str, str] | None
     temperatures_c: tuple[float, float] | None
 
@@ -81,4 +90,5 @@ class LimitOptions:
             duration_s=duration_s,
             load_n=None if self.loads is None else (low, high),
             temperature_c=self.temperatures_c,
+            travel=given(TRAVEL, self.travel, quantities.length),
         )

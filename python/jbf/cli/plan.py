@@ -55,6 +55,7 @@ def add(commands: Commands) -> None:
         parser,
         otherwise="a single value",
         sharpest="that of a sine of the largest speed at 2 rad/s",
+        longest="that of the runs of the model; not limited for a rig",
         needed=True,
     )
     power.add_noise(parser)

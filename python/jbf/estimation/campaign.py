@@ -30,6 +30,7 @@ from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import steady_load
 from jbf.records.findings.repeated_run import copies, repeated
 from jbf.records.findings.slow_temperature import recorded_temperature
+from jbf.records.motion.position import travel_of
 from jbf.records.motion.roughness import noise_of
 from jbf.records.motion.same_logger import further_starts
 from jbf.records.recorded_load import recorded_load
@@ -156,6 +157,16 @@ class Campaign:
     def steady(self) -> bool:
         """Whether a run holds steady states instead of a time series."""
         return any(p.run.steady for p in self.prepared)
+
+    @cached_property
+    def travel(self) -> float | None:
+        """Largest distance between two positions of a run, m (rad for a rotary drive).
+
+        From the recorded position, otherwise from the speed. None for steady states.
+        """
+        return (
+            None if self.steady else max(travel_of(p.run, self.rig.radius_m) for p in self.prepared)
+        )
 
     @property
     def force_has_clock(self) -> bool:

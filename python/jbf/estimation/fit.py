@@ -205,17 +205,20 @@ def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | No
         named[TAU] = replace(named[TAU], stderr=delay.sd_s)
     campaign, samples = problem.campaign, solution.samples.count
     rms = solution.samples.rms(reset.residuals)
+    facts: dict[str, float | int | str] = {
+        "runs": ", ".join(p.run.name for p in campaign.prepared),
+        "samples": samples,
+        "rms": rms,
+    }
+    if campaign.travel is not None:
+        facts["travel"] = campaign.travel
     model = Model(
         campaign.rig,
         problem.law,
         problem.effects,
         named,
         problem.clock,
-        {
-            "runs": ", ".join(p.run.name for p in campaign.prepared),
-            "samples": samples,
-            "rms": rms,
-        },
+        facts,
     )
     return Fit(
         model=model,

@@ -89,7 +89,22 @@ def plan_report(plan: Plan) -> str:
     widest = max(len(run.name) for run in plan.runs)
     for run, words in zip(plan.runs, plan.words, strict=True):
         lines += hanging(f"{run.name:<{widest}}  ", words, 4)
-    return "\n".join([*lines, "", planned_report(plan.planned)])
+    return "\n".join([*lines, "", *travel_lines(plan), "", planned_report(plan.planned)])
+
+
+def travel_lines(plan: Plan) -> list[str]:
+    """State the travel of the motions, and the limit with its source."""
+    unit = plan.planned.model.rig.quantities.length
+    text = f"the motions cover at most {number(plan.travel)} {unit} from their start"
+    if plan.travel_limit is None:
+        text += ". No limit was given: use --travel if the machine has end stops"
+    else:
+        limit = f"{number(plan.travel_limit)} {unit}"
+        source = f"the given {limit}"
+        if plan.travel_source == "recorded":
+            source = f"the {limit} of the runs of the model; change it with --travel"
+        text += f", in the positive direction, within {source}"
+    return hanging("Travel: ", text, 0)
 
 
 def short_plan(plan: Plan) -> str:

@@ -160,11 +160,46 @@ def test_missing_motion_limits_are_taken_from_the_records(rate: float, sharp: fl
 
 
 def test_given_motion_limits_are_not_changed_by_the_records() -> None:
-    given = Limits(0.05, 0.01, 7.0, (1.0, 2.0), (3.0, 4.0))
+    given = Limits(0.05, 0.01, 7.0, (1.0, 2.0), (3.0, 4.0), 0.02)
     assert given.filled(recorded(1.0, (40.0, 100.0), (10.0, 90.0))) == given
     # The default acceleration limit is that of the records.
     slower = Limits(velocity=0.05).filled(recorded(1.0))
     assert slower.acceleration == pytest.approx(0.2, rel=5e-3)
+
+
+@pytest.mark.parametrize("position", [True, False])
+def test_missing_travel_is_the_largest_of_a_recorded_run(position: bool) -> None:
+    """Runs may have different origins: distances between positions of two runs do not count."""
+    t = np.arange(0.0, 20.0, STEP_S)
+    runs = []
+    for k, amplitude in enumerate((0.03, 0.05)):
+        place = {"position_m": 5.0 * k + amplitude * (1.0 - np.cos(t))} if position else {}
+        runs.append(coulomb_run(t, amplitude * np.sin(t), seed=k, **place))
+    assert Limits().filled(Campaign.prepare(Rig(), runs)).travel == pytest.approx(0.1, rel=1e-3)
+
+
+@pytest.mark.parametrize("travel", [2e-3, 0.05, 0.3, 5.0])
+@pytest.mark.parametrize("sharp", [0.05, 0.2, 20.0])
+def test_motions_stay_within_the_travel_from_its_lower_end(travel: float, sharp: float) -> None:
+    found = motions(sharp=sharp, travel=travel)
+    for words, x in found.items():
+        path = np.concatenate(([0.0], np.cumsum(x.velocity[1:] + x.velocity[:-1]))) * 0.5 * STEP_S
+        assert np.ptp(path) <= travel, words
+        assert np.min(path) >= -0.02 * travel, words
+        assert np.max(np.abs(np.diff(x.velocity))) <= 1.01 * sharp * STEP_S, words
+    # Slow and fast motions of both kinds remain, and most of the travel is used.
+    kinds = [sum(words.startswith(kind) for words in found) for kind in ("a two-way", "stop")]
+    assert min(kinds) > 0
+    assert any("constant" in words for words in found)
+    covered = [np.ptp(np.cumsum(x.velocity)) * STEP_S for x in found.values()]
+    assert max(covered) > 0.9 * min(travel, 0.1 * 60.0)
+
+
+def test_travel_that_no_motion_reaches_changes_no_motion() -> None:
+    free, limited = motions(), motions(travel=100.0)
+    assert list(free) == list(limited)
+    for words, x in free.items():
+        assert limited[words].velocity == pytest.approx(x.velocity)
 
 
 def test_limits_of_load_and_temperature_are_those_of_records_that_differ() -> None:
@@ -184,6 +219,7 @@ def test_limits_of_load_and_temperature_are_those_of_records_that_differ() -> No
         ({"velocity": 1.01e6}, "velocity"),
         ({"acceleration": -1.0}, "acceleration = -1"),
         ({"acceleration": np.inf}, "acceleration = inf"),
+        ({"travel": 0.0}, "travel = 0"),
         ({"duration_s": 0.0}, "duration_s = 0"),
         ({"duration_s": 86401.0}, "duration_s = 86401"),
         ({"load_n": (0.0, 5.0)}, "load_n = 0"),

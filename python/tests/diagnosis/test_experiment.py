@@ -1,5 +1,6 @@
 """Proposed next runs: motions, separation of models, and the optimum over all candidates."""
 
+from dataclasses import replace
 from functools import cache
 
 import jbf
@@ -100,6 +101,21 @@ def test_proposed_run_maximises_the_smallest_separation_between_rivals(pairs: in
     assert found.evidence == pytest.approx(evidence, rel=1e-4)
     assert words in found.words
     assert found.run.velocity == pytest.approx(run.velocity)
+
+
+@pytest.mark.parametrize("travel_m", [None, 0.05])
+def test_proposed_run_stays_within_the_given_or_the_recorded_travel(travel_m: float | None) -> None:
+    tried = four_effects()
+    limit_m = travel_m or tried.campaign.travel
+    assert limit_m is not None
+    limits = replace(LIMITS, travel=travel_m)
+    proposals = propose(tried, [PAIR], limits), propose_detection_run(tried, (), PAIR[1], limits)
+    for found in proposals:
+        assert isinstance(found, Experiment)
+        assert found.run.position_m is not None or found.run.angle_rad is not None
+        moved_m = np.cumsum(found.run.velocity) * found.run.duration_s / (len(found.run) - 1)
+        assert 0.0 < np.ptp(moved_m) < 1.01 * limit_m
+        assert f"travel of {limit_m:.3g} m" in found.words
 
 
 def test_separation_of_a_proposed_run_is_the_root_mean_square_difference() -> None:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from by_hand import LAW, Array
-from jbf import InputError, Limits, Model, Rig, Run, plan, planned_power
+from by_hand import LAW, Array, coulomb
+from jbf import InputError, Limits, Model, Rig, Run, fit, plan, planned_power
 from jbf.cli import main
 from jbf.diagnosis.evidence import price_of
 from jbf.diagnosis.experiment_design.excitations import excitations, run_from_motion
@@ -195,6 +195,44 @@ def test_plan_command_writes_runs_that_the_power_command_reads(
     assert "inertia" in effects
     assert ("dry_load_dependence" in effects) == bool(loads)
     assert main(["power", str(rig), str(out), "--law", "coulomb", "--noise", "0.1"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "limit_m", "source"),
+    [
+        (["--travel", "150 mm"], 0.15, "given"),
+        (["--travel", "0.15"], 0.15, "given"),
+        ([], 0.2, "recorded"),
+    ],
+)
+def test_plan_stays_within_the_given_or_the_recorded_travel(
+    options: list[str], limit_m: float, source: str, tmp_path: Path
+) -> None:
+    """The runs of the model cover 0.2 m."""
+    path, table, out = tmp_path / "model.toml", tmp_path / "plan.json", tmp_path / "plan"
+    t = 0.02 * np.arange(1000.0)
+    friction = coulomb(t, 0.1 * np.sin(t), t) + 0.1 * np.random.default_rng(0).normal(size=1000)
+    run = Run.from_arrays(t, 0.1 * np.sin(t), friction, position_m=1.0 - 0.1 * np.cos(t))
+    fit(Rig(), [run], law="coulomb").model.save(path)
+    command = ["plan", str(path), "--minutes", "1", "--run-s", "20", "--max-velocity", "0.2"]
+    command += ["--folder", str(out), "--json", str(table), *options]
+    assert main(command) == 0
+    found = json.loads(table.read_text())
+    assert found["travel_limit"] == pytest.approx(limit_m, rel=1e-3)
+    assert found["travel_source"] == source
+    paths = [run.position_m for run in read_runs([out], Rig(), need_friction=False)]
+    travels = [float(np.ptp(path)) for path in paths if path is not None]
+    assert len(travels) == 3
+    assert max(travels) == pytest.approx(found["travel"], rel=1e-3)
+    assert max(travels) <= limit_m
+
+
+def test_plan_without_a_travel_reports_the_travel_of_its_motions() -> None:
+    found, table = planned(), planned().to_dict()
+    assert (found.travel_limit, found.travel_source) == (None, None)
+    paths = [run.position_m for run in found.runs]
+    assert table["travel"] == max(np.ptp(path) for path in paths if path is not None)
+    assert "--travel" in found.summary()
 
 
 def test_plan_command_without_the_noise_is_rejected(

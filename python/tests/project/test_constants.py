@@ -20,7 +20,7 @@ NUMERICAL = {
         diagnosis.check: SURE
         diagnosis.decoys: DRAWS SURE
         diagnosis.experiment_design.excitations: MOST_SAMPLES RATES_RAD_S SHARES STOP_SHARES REST_S
-        diagnosis.experiment_design.excitations: USUAL_RATE_RAD_S
+        diagnosis.experiment_design.excitations: USUAL_RATE_RAD_S REACH
         diagnosis.experiment_design.next_run: LEAST_SAMPLES
         diagnosis.experiment_design.plan: ENOUGH MORE
         diagnosis.power.detection_limits: LEVELS NEARLY_ALL BEYOND

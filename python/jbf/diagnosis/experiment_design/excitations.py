@@ -36,6 +36,11 @@ REST_S = 8.0
 """Duration of a rest of a stop-and-go motion, s. It enters no verdict."""
 USUAL_RATE_RAD_S = 2.0
 """Rate of a sine at which a drive is assumed to reach its largest speed. It enters no verdict."""
+REACH = 0.98
+"""Share of the travel that a motion is designed for; the rest covers the sampling.
+
+It enters no verdict.
+"""
 MOST = 1e6
 """Upper limit of any speed, acceleration or load of a rig, SI units. It only limits the input."""
 LONGEST_S = 86400.0
@@ -59,6 +64,10 @@ class Limits:
     temperature_c
         Lowest and highest temperature to record at, C. From the runs: the recorded temperatures,
         where they differ.
+    travel
+        Largest distance between two positions of a run, in m (rad for a rotary drive). Motions
+        start near the lower end, in the positive direction. From the runs: the largest distance
+        recorded.
 
     Raises
     ------
@@ -76,9 +85,10 @@ class Limits:
     duration_s: float = 60.0
     load_n: tuple[float, float] | None = None
     temperature_c: tuple[float, float] | None = None
+    travel: float | None = None
 
     def __post_init__(self) -> None:
-        named = {name: getattr(self, name) for name in ("velocity", "acceleration")}
+        named = {name: getattr(self, name) for name in ("velocity", "acceleration", "travel")}
         named["duration_s"] = self.duration_s
         pairs = [(name, value) for name, value in named.items() if value is not None]
         pairs += [("load_n", value) for value in self.load_n or ()]
@@ -122,7 +132,8 @@ class Limits:
         least_k = campaign.settings.conditions.min_temperature_difference_k
         if celsius is None and (campaign.temperatures_k or 0.0) >= least_k:
             celsius = campaign.temperature_range_c
-        return Limits(top, acceleration, self.duration_s, load, celsius)
+        travel = self.travel or campaign.travel
+        return Limits(top, acceleration, self.duration_s, load, celsius, travel)
 
 
 @dataclass(frozen=True)
@@ -148,7 +159,10 @@ class Excitation:
 
 
 def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Iterator[Excitation]:
-    """Generate motions within complete limits; each begins at rest."""
+    """Generate motions within complete limits; each begins at rest.
+
+    Without a travel, the path is not limited.
+    """
     loads = (None,) if limits.load_n is None else tuple(dict.fromkeys(limits.load_n))
     temperatures = (
         (None,) if limits.temperature_c is None else tuple(dict.fromkeys(limits.temperature_c))
@@ -156,54 +170,100 @@ def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Itera
     top, acceleration = limits.velocity, limits.acceleration
     assert top is not None
     assert acceleration is not None
+    travel = np.inf if limits.travel is None else limits.travel
     time = np.arange(0.0, limits.duration_s, step_s)
-    for words, velocity in _motions(time, top, acceleration, speed_unit):
+    seen = set()
+    for words, velocity in _motions(time, top, acceleration, REACH * travel, speed_unit):
         if np.max(np.abs(np.diff(velocity)), initial=0.0) > 1.01 * acceleration * step_s:
             continue
+        # A short travel limits the speed of several motions to the same value.
+        if words in seen or not _within(path_of(velocity, step_s), travel):
+            continue
+        seen.add(words)
         for load, celsius in itertools.product(loads, temperatures):
             under = "" if load is None else f" under {load:.4g} N"
             at = "" if celsius is None else f", the machine constantly at {celsius:.3g} C,"
             yield Excitation(words + under + at, velocity, load, celsius)
 
 
-def _motions(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tuple[str, Array]]:
+def path_of(velocity: Array, step_s: float) -> Array:
+    """Path of a motion from its start, from the speed at equal time steps."""
+    mean = 0.5 * (velocity[1:] + velocity[:-1])
+    path: Array = np.concatenate(([0.0], np.cumsum(mean * step_s)))
+    return path
+
+
+def _within(path: Array, travel: float) -> bool:
+    """Whether a path that starts near the lower end of the travel stays within it."""
+    return bool(np.ptp(path) <= travel and np.min(path) >= (REACH - 1.0) * travel)
+
+
+def _motions(
+    t: Array, top: float, acceleration: float, reach: float, unit: str
+) -> Iterator[tuple[str, Array]]:
+    """Generate motions that cover at most `reach` where their speed can be lowered for it."""
     duration = float(t[-1]) if len(t) else 0.0
     # The start lasts long enough that its acceleration is at most half of the limit.
     start = np.clip(t * 0.5 * acceleration / top, 0.0, 1.0)
     for share in SHARES:
         for w in RATES_RAD_S:
             if w * duration > 4.0 * np.pi:
-                yield _sine(share * top, w, unit), share * top * np.sin(w * t)
+                speed = _sine_speed(share * top, w, reach)
+                yield _sine(speed, w, unit), speed * np.sin(w * t)
     for w in RATES_RAD_S:
         if w * duration > 4.0 * np.pi:
             name = f"a one-way sine from {0.1 * top:.3g} to {top:.3g} {unit} at {w:g} rad/s"
             yield name, top * start * (0.55 + 0.45 * np.sin(w * t))
     for share in (1.0, 0.3):
         yield f"a run at a constant {share * top:.3g} {unit}", share * top * start
+        if share * top * duration > reach:
+            speed = min(share * top, 0.5 * np.sqrt(reach * acceleration))
+            ramp = 2.0 * speed / acceleration
+            name = f"strokes at a constant {speed:.3g} {unit}, both directions"
+            yield name, _strokes(t, speed, ramp, reach / speed - ramp, 0.0)
     for share in STOP_SHARES:
-        yield _stops(share * top, unit), _stop_and_go(t, share * top, acceleration)[0]
-    yield from _mixed(t, top, acceleration, unit)
+        speed = _stop_speed(share * top, acceleration, reach)
+        yield _stops(speed, unit), _stop_and_go(t, speed, acceleration, reach)[0]
+    yield from _mixed(t, top, acceleration, reach, unit)
 
 
 def _sine(speed: float, w: float, unit: str) -> str:
     return f"a two-way sine of {speed:.3g} {unit} at {w:g} rad/s"
 
 
+def _sine_speed(speed: float, w: float, reach: float) -> float:
+    """Amplitude of a sine at rate `w` that covers at most `reach`."""
+    return min(speed, 0.5 * reach * w)
+
+
 def _stops(speed: float, unit: str) -> str:
     return f"stop and go to {speed:.3g} {unit}, both directions, with rests of {REST_S:g} s"
 
 
-def _stop_and_go(t: Array, speed: float, acceleration: float) -> tuple[Array, float]:
+def _stop_speed(speed: float, acceleration: float, reach: float) -> float:
+    """Speed of a stop-and-go motion whose ramps cover at most half of `reach`."""
+    return min(speed, 0.5 * reach, float(np.sqrt(0.5 * reach * acceleration / 1.05)))
+
+
+def _stop_and_go(t: Array, speed: float, acceleration: float, reach: float) -> tuple[Array, float]:
     """Velocity of a stop-and-go motion, and the duration of one forward and backward stroke, s."""
     ramp = max(1.0, 1.05 * speed / acceleration)
-    cycle = 2.0 * ramp + 3.0 + REST_S
+    hold = min(3.0, reach / speed - ramp)
+    return _strokes(t, speed, ramp, hold, REST_S), 2.0 * (2.0 * ramp + hold + REST_S)
+
+
+def _strokes(t: Array, speed: float, ramp: float, hold: float, rest: float) -> Array:
+    """Velocity of strokes in alternate directions, each after a rest; durations in s."""
+    cycle = 2.0 * ramp + hold + rest
     phase = np.mod(t, cycle)
-    height = np.clip(np.minimum(phase - REST_S, cycle - phase) / ramp, 0.0, 1.0)
-    direction = np.where(np.mod(t, 2.0 * cycle) < cycle, 1.0, -1.0)
-    return speed * height * direction, 2.0 * cycle
+    height = np.clip(np.minimum(phase - rest, cycle - phase) / ramp, 0.0, 1.0)
+    velocity: Array = speed * height * np.where(np.mod(t, 2.0 * cycle) < cycle, 1.0, -1.0)
+    return velocity
 
 
-def _mixed(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tuple[str, Array]]:
+def _mixed(
+    t: Array, top: float, acceleration: float, reach: float, unit: str
+) -> Iterator[tuple[str, Array]]:
     """Combined motions: stop and go, a fast sine, and a fast sine of small stroke in sequence.
 
     Each part ends at rest, where the next part begins.
@@ -214,7 +274,8 @@ def _mixed(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tup
         s: max((w for w in RATES_RAD_S if s * top * w <= acceleration), default=0.0) for s in SHARES
     }
     for share in STOP_SHARES:
-        first, after_s = _stop_and_go(t, share * top, acceleration)
+        stop_speed = _stop_speed(share * top, acceleration, reach)
+        first, after_s = _stop_and_go(t, stop_speed, acceleration, reach)
         for short in SHARES[1:]:
             # If the full amplitude is within the acceleration limit, so are smaller amplitudes.
             if not rates[1.0]:
@@ -225,10 +286,12 @@ def _mixed(t: Array, top: float, acceleration: float, unit: str) -> Iterator[tup
             if waves < 2.0:
                 continue
             then_s = after_s + waves * np.pi / rates[1.0]
-            velocity = np.where(t < after_s, first, top * np.sin(rates[1.0] * (t - after_s)))
-            last = short * top * np.sin(rates[short] * (t - then_s))
-            sines = (_sine(top, rates[1.0], unit), _sine(short * top, rates[short], unit))
-            parts = (_stops(share * top, unit), *sines)
+            fast, small = (_sine_speed(s * top, rates[s], reach) for s in (1.0, short))
+            velocity = np.where(t < after_s, first, fast * np.sin(rates[1.0] * (t - after_s)))
+            # After an odd number of half-waves, the motion is at the far end and turns back.
+            last = (-1.0) ** waves * small * np.sin(rates[short] * (t - then_s))
+            sines = (_sine(fast, rates[1.0], unit), _sine(small, rates[short], unit))
+            parts = (_stops(stop_speed, unit), *sines)
             yield ", then ".join(parts), np.where(t < then_s, velocity, last)
 
 
@@ -245,15 +308,22 @@ def run_from_motion(rig: Rig, excitation: Excitation, step_s: float, *, linear: 
     """Convert a motion to a run, with the position of a slide or the angle of a shaft."""
     velocity = excitation.velocity
     time = np.arange(len(velocity)) * step_s
-    path = np.concatenate(([0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * step_s)))
+    path = path_of(velocity, step_s)
     bearing = rig.bearing
     radius = 1.0 if bearing is None else bearing.radius_m
-    place = {"position_m": path} if linear else {"angle_rad": path / radius}
     load_n = excitation.load_n or core_load_n(rig)
     load = None if load_n is None else np.full(len(time), load_n)
     temperature = excitation.temperature_c
     celsius = None if temperature is None else np.full(len(time), temperature)
-    run = Run.from_arrays(time, velocity, load_n=load, temperature_c=celsius, name="next", **place)
+    run = Run.from_arrays(
+        time,
+        velocity,
+        angle_rad=None if linear else path / radius,
+        position_m=path if linear else None,
+        load_n=load,
+        temperature_c=celsius,
+        name="next",
+    )
     return run_on(rig, run)
 
 

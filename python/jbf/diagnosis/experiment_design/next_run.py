@@ -121,6 +121,14 @@ def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits
     return filled, max(min(step_s, most_s), filled.duration_s / MOST_SAMPLES)
 
 
+def travel_words(given: Limits | None, filled: Limits, unit: str) -> str:
+    """Name the travel of a proposed run, and whether it was recorded or given."""
+    if filled.travel is None:
+        return ""
+    recorded = "" if given is not None and given.travel is not None else "recorded "
+    return f" within the {recorded}travel of {filled.travel:.3g} {unit}"
+
+
 def motions(
     candidates: Candidates, limits: Limits, step_s: float
 ) -> Iterator[tuple[Excitation, Run, Driven]]:
@@ -162,7 +170,8 @@ def propose(
     missing = missing_columns(name for effects in every for name in effects)
     if missing:
         return f"no run can be proposed: {', '.join(sorted(missing))} cannot be simulated"
-    limits, step_s = filled_limits(candidates, limits)
+    quantities = candidates.campaign.rig.quantities
+    filled, step_s = filled_limits(candidates, limits)
     models = {}
     for effects in every:
         candidates.converge(effects)
@@ -180,7 +189,7 @@ def propose(
         )
         return (least,)
 
-    best = _best_motion(candidates, limits, step_s, least_separation)
+    best = _best_motion(candidates, filled, step_s, least_separation)
     names = _names(rivals)
     if best is None or best[0][0] < candidates.policy.experiments.min_evidence:
         return (
@@ -190,10 +199,11 @@ def propose(
     (evidence,), excitation, run, _ = best
     sigma = float(np.sqrt(evidence / len(run)))
     noise_rms = max(model.noise_rms for model in models.values())
-    unit = candidates.campaign.rig.quantities.force
     words = (
-        f"record {excitation.words} for {limits.duration_s:g} s: there the predictions of {names} "
-        f"differ by {sigma * noise_rms:.2g} {unit} RMS after refitting, {sigma:.2g} times the noise"
+        f"record {excitation.words} for {filled.duration_s:g} s"
+        f"{travel_words(limits, filled, quantities.length)}: there the predictions of {names} "
+        f"differ by {sigma * noise_rms:.2g} {quantities.force} RMS after refitting, "
+        f"{sigma:.2g} times the noise"
     )
     return Experiment(words, run, sigma * noise_rms, sigma, evidence)
 
@@ -236,7 +246,7 @@ def propose_detection_run(
     candidates: Candidates, present: Names, hidden: Sequence[str], limits: Limits | None = None
 ) -> Experiment | str:
     """Propose the run that would show most of the effects not detectable in the present runs."""
-    limits, step_s = filled_limits(candidates, limits)
+    filled, step_s = filled_limits(candidates, limits)
     candidates.converge(present)
     base = Rival(candidates.fitted(present))
     richer = {name: at_usual_strength(candidates, present, name) for name in hidden}
@@ -262,19 +272,21 @@ def propose_detection_run(
         return round(sum(chances), 2), float(sum(np.log1p(e) for e in evidence.values()))
 
     listed = ", ".join(hidden)
-    best = _best_motion(candidates, limits, step_s, expected_detections)
+    best = _best_motion(candidates, filled, step_s, expected_detections)
     evidence = {} if best is None else evidence_in(best[3])
     clear = {name: e for name, e in evidence.items() if e > 2.0 * settings.min_evidence}
     if best is None or not clear:
         return (
             f"{listed}: not detectable at a typical strength, neither in these runs nor in another "
-            "motion within the limits of speed and acceleration"
+            "motion within the limits of speed, acceleration and travel"
         )
     _, excitation, run, _ = best
     which = "them" if len(clear) == len(hidden) else ", ".join(clear)
     words = (
         f"{listed}: not detectable in these runs at a typical strength; record "
-        f"{excitation.words} for {limits.duration_s:g} s, which would show {which}"
+        f"{excitation.words} for {filled.duration_s:g} s"
+        f"{travel_words(limits, filled, candidates.campaign.rig.quantities.length)}, "
+        f"which would show {which}"
     )
     mean = float(np.exp(np.mean(np.log(list(clear.values())))))
     sigma = float(np.sqrt(mean / len(run)))

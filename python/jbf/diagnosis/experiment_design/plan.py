@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,7 @@ from jbf.estimation.likelihood import effective_share
 from jbf.models.driven import Driven
 from jbf.models.model import Model
 from jbf.records.arguments import of_kind
+from jbf.records.motion.position import travel_of
 from jbf.records.run import Run
 from jbf.records.toml_file import number
 from jbf.results import Result
@@ -71,6 +72,11 @@ class Plan(Result):
         Description of each motion.
     planned
         Power of these runs.
+    travel_limit
+        Largest distance between two positions of a run, in m (rad for a rotary drive); None if it
+        is not limited.
+    travel_source
+        `given` as a limit, or `recorded` in the runs of the model; None without a limit.
 
     Examples
     --------
@@ -84,6 +90,13 @@ class Plan(Result):
     runs: tuple[Run, ...]
     words: tuple[str, ...]
     planned: PlannedPower
+    travel_limit: float | None = None
+    travel_source: Literal["given", "recorded"] | None = None
+
+    @property
+    def travel(self) -> float:
+        """Largest distance between two positions of a planned run."""
+        return max(travel_of(run, self.planned.model.rig.radius_m) for run in self.runs)
 
     def to_dict(self) -> dict[str, Any]:
         """Return a JSON-serialisable dict."""
@@ -91,7 +104,13 @@ class Plan(Result):
             {"run": run.name, "motion": words}
             for run, words in zip(self.runs, self.words, strict=True)
         ]
-        return {"plan": motions, **self.planned.to_dict()}
+        return {
+            "plan": motions,
+            "travel": self.travel,
+            "travel_limit": self.travel_limit,
+            "travel_source": self.travel_source,
+            **self.planned.to_dict(),
+        }
 
 
 @one_blas_thread
@@ -111,7 +130,8 @@ def plan(
     model
         Assumed model of the machine: from a fit, or a `Model` with values of a data sheet.
     limits
-        Limits of the rig; its speed must be given, and `duration_s` is that of each run.
+        Limits of the rig; its speed must be given, and `duration_s` is that of each run. The travel
+        is by default that of the runs to which the model was fitted.
     minutes
         Total duration of all runs, min.
     noise_rms
@@ -151,6 +171,10 @@ def plan(
         )
     if limits.acceleration is None:
         limits = replace(limits, acceleration=USUAL_RATE_RAD_S * limits.velocity)
+    recorded = model.fit.get("travel")
+    source: Literal["given", "recorded"] | None = None if limits.travel is None else "given"
+    if source is None and isinstance(recorded, float) and recorded > 0.0:
+        limits, source = replace(limits, travel=recorded), "recorded"
     count = int(min(60.0 * minutes / limits.duration_s, 2.0 * MOST_RUNS) + 1e-9)
     if count < LEAST_RUNS:
         raise InputError(
@@ -181,7 +205,8 @@ def plan(
     chosen = _chosen(information, free, prices, count)
     runs = tuple(replace(motions[k][1], name=f"{i:02d}") for i, k in enumerate(chosen, 1))
     words = tuple(motions[k][0].words for k in chosen)
-    return Plan(runs, words, planned_power(model, runs, noise_rms=noise_rms, policy=policy))
+    power = planned_power(model, runs, noise_rms=noise_rms, policy=policy)
+    return Plan(runs, words, power, limits.travel, source)
 
 
 def _effects(candidates: Candidates, model: Model) -> list[Strength]:

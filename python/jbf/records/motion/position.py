@@ -48,6 +48,15 @@ def recorded_position(run: Run, radius_m: float | None) -> Position | None:
     return None
 
 
+def travel_of(run: Run, radius_m: float | None) -> float:
+    """Return the largest distance between two positions of a run, m (rad for a rotary drive)."""
+    position = recorded_position(run, radius_m)
+    if position is not None:
+        return float(np.ptp(position.path_m))
+    steps = 0.5 * (run.velocity[1:] + run.velocity[:-1]) * np.diff(run.time_s)
+    return float(np.ptp(np.concatenate(([0.0], np.cumsum(steps)))))
+
+
 def _position_from_ratio(time: Array, angle: Array, speed: Array) -> Position | None:
     """Convert an angle of unknown radius to a path, by its ratio to the speed.
 

@@ -46,20 +46,27 @@ typedef struct {
   uint32_t count; /* bearings on the shaft */
 } jbf_bearing;
 
-/* An imposed motion at one instant; on a linear axis angle_rad is the place in m. A temperature is
- * what effects of temperature ask for: NAN where none is measured, which is as at their reference. */
+/* Imposed motion at one instant.
+ *
+ * angle_rad          on a linear axis the position, m
+ * temperature_c      NAN if it is not measured; effects of temperature then act as at their reference
+ * weight_offset_rad  angle over which a weight acts minus angle_rad; zero, except for a joint behind
+ *                    other moving joints, whose link turns with all of them
+ */
 typedef struct {
-  float time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c;
+  float time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c, weight_offset_rad;
 } jbf_motion_f32;
 
 typedef struct {
-  double time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c;
+  double time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, temperature_c,
+      weight_offset_rad;
 } jbf_motion_f64;
 
-/* A whole run: columns, each of so many samples; temperature_c may be null. */
+/* A whole run: columns of `samples` values; temperature_c and weight_offset_rad may be NULL. */
 typedef struct {
   size_t samples;
-  const double *time_s, *velocity_m_s, *acceleration_m_s2, *angle_rad, *load_n, *temperature_c;
+  const double *time_s, *velocity_m_s, *acceleration_m_s2, *angle_rad, *load_n, *temperature_c,
+      *weight_offset_rad;
 } jbf_record;
 
 /* Which parameter, which rule, which value; texts end with a zero. */

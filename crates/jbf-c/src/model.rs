@@ -146,16 +146,15 @@ pub unsafe fn whole<T: Real, L: Law<T>>(
     }
     let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n] =
         columns.map(|c| slice::from_raw_parts(c, r.samples));
-    let temperature_c =
-        (!r.temperature_c.is_null()).then(|| slice::from_raw_parts(r.temperature_c, r.samples));
+    let optional = |c: *const f64| (!c.is_null()).then(|| slice::from_raw_parts(c, r.samples));
     let record = Record {
         time_s,
         velocity_m_s,
         acceleration_m_s2,
         angle_rad,
-        weight_offset_rad: None,
+        weight_offset_rad: optional(r.weight_offset_rad),
         load_n,
-        temperature_c,
+        temperature_c: optional(r.temperature_c),
     };
     let out = slice::from_raw_parts_mut(out_n, r.samples);
     predict(model, &record, max_step_s, |i, reading| {

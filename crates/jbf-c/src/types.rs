@@ -57,6 +57,8 @@ pub struct CMotion<T> {
     pub load_n: T,
     /// Temperature, C; NaN if it is not measured.
     pub temperature_c: T,
+    /// Angle over which a weight acts minus the shaft angle, rad.
+    pub weight_offset_rad: T,
 }
 
 impl<T: Real> From<&CMotion<T>> for Motion<T> {
@@ -65,7 +67,8 @@ impl<T: Real> From<&CMotion<T>> for Motion<T> {
             .with_time_s(m.time_s)
             .with_velocity_m_s(m.velocity_m_s)
             .with_acceleration_m_s2(m.acceleration_m_s2)
-            .with_angle_rad(m.angle_rad);
+            .with_angle_rad(m.angle_rad)
+            .with_weight_offset_rad(m.weight_offset_rad);
         if m.temperature_c.value().is_nan() {
             motion
         } else {
@@ -92,6 +95,8 @@ pub struct CRecord {
     pub load_n: *const f64,
     /// Temperature, C; null if it was not recorded.
     pub temperature_c: *const f64,
+    /// Angle over which a weight acts minus the shaft angle, rad; null for the shaft angle itself.
+    pub weight_offset_rad: *const f64,
 }
 
 /// Error report: the parameter, its value and the violated rule.

@@ -61,7 +61,7 @@ static const double RATE[] = {8.0, 0.1, 0.2, 1e-5, 0.01, 5.0};
     MUST(jbf_##law##_##kind##_effect(model, "sensor_lag", &lag_s, 1, error) == JBF_OK);            \
     MUST(jbf_##law##_##kind##_effect(model, "time_delay", &delay_s, 1, NULL) == JBF_OK);           \
     /* A run, and steps that are none. */                                                          \
-    jbf_motion_##kind motion = {0, 0, 0, 0, 104, NAN};                                             \
+    jbf_motion_##kind motion = {0, 0, 0, 0, 104, NAN, 0};                                          \
     MUST(jbf_##law##_##kind##_start(NULL, state, &motion) == 0);                                   \
     MUST(jbf_##law##_##kind##_start(model, NULL, &motion) == 0);                                   \
     MUST(jbf_##law##_##kind##_start(model, state, NULL) == 0);                                     \
@@ -71,6 +71,7 @@ static const double RATE[] = {8.0, 0.1, 0.2, 1e-5, 0.01, 5.0};
       motion.velocity_m_s = (real)(0.05 * sin(0.02 * i));                                          \
       motion.angle_rad += (real)0.002 * motion.velocity_m_s / (real)0.0127;                        \
       motion.temperature_c = i % 2 ? (real)40 : (real)NAN;                                         \
+      motion.weight_offset_rad = (real)(0.01 * i);                                                 \
       MUST(isfinite(jbf_##law##_##kind##_step(model, state, &motion, (real)0.002)));               \
     }                                                                                              \
     MUST(jbf_##law##_##kind##_step(NULL, state, &motion, 1) == 0);                                 \
@@ -79,7 +80,7 @@ static const double RATE[] = {8.0, 0.1, 0.2, 1e-5, 0.01, 5.0};
     motion.velocity_m_s = (real)INFINITY;                                                          \
     MUST(isfinite(jbf_##law##_##kind##_step(model, state, &motion, (real)0.002)));                 \
     /* A record. */                                                                                \
-    double *columns = malloc(6 * SAMPLES * sizeof *columns);                                       \
+    double *columns = malloc(7 * SAMPLES * sizeof *columns);                                       \
     real *out = malloc(SAMPLES * sizeof *out);                                                     \
     MUST(columns && out);                                                                          \
     for (int i = 0; i < SAMPLES; i++) {                                                            \
@@ -89,6 +90,7 @@ static const double RATE[] = {8.0, 0.1, 0.2, 1e-5, 0.01, 5.0};
       columns[3 * SAMPLES + i] = 0.1 * i;                                                          \
       columns[4 * SAMPLES + i] = 104;                                                              \
       columns[5 * SAMPLES + i] = 40;                                                               \
+      columns[6 * SAMPLES + i] = 0.2 * i;                                                          \
     }                                                                                              \
     jbf_record record = {SAMPLES,                                                                  \
                          columns,                                                                  \
@@ -96,7 +98,8 @@ static const double RATE[] = {8.0, 0.1, 0.2, 1e-5, 0.01, 5.0};
                          columns + 2 * SAMPLES,                                                    \
                          columns + 3 * SAMPLES,                                                    \
                          columns + 4 * SAMPLES,                                                    \
-                         columns + 5 * SAMPLES};                                                   \
+                         columns + 5 * SAMPLES,                                                    \
+                         columns + 6 * SAMPLES};                                                   \
     MUST(jbf_##law##_##kind##_predict(NULL, &record, 0.02, out) == JBF_NULL);                      \
     MUST(jbf_##law##_##kind##_predict(model, NULL, 0.02, out) == JBF_NULL);                        \
     MUST(jbf_##law##_##kind##_predict(model, &record, 0.02, NULL) == JBF_NULL);                    \
@@ -104,6 +107,7 @@ static const double RATE[] = {8.0, 0.1, 0.2, 1e-5, 0.01, 5.0};
     for (int i = 0; i < SAMPLES; i++)                                                              \
       MUST(isfinite(out[i]));                                                                      \
     record.temperature_c = NULL;                                                                   \
+    record.weight_offset_rad = NULL;                                                               \
     MUST(jbf_##law##_##kind##_predict(model, &record, 0.02, out) == JBF_OK);                       \
     record.load_n = NULL;                                                                          \
     MUST(jbf_##law##_##kind##_predict(model, &record, 0.02, out) == JBF_NULL);                     \

@@ -36,13 +36,16 @@ fn any<T: Real>(bytes: &mut Unstructured<'_>) -> Result<T> {
 }
 
 fn motion<T: Real>(bytes: &mut Unstructured<'_>, time_s: T) -> Result<CMotion<T>> {
+    let [velocity_m_s, acceleration_m_s2, angle_rad] = [any(bytes)?, any(bytes)?, any(bytes)?];
     Ok(CMotion {
         time_s,
-        velocity_m_s: any(bytes)?,
-        acceleration_m_s2: any(bytes)?,
-        angle_rad: any(bytes)?,
+        velocity_m_s,
+        acceleration_m_s2,
+        angle_rad,
         load_n: any(bytes)?,
         temperature_c: any(bytes)?,
+        // Not from the bytes: the inputs of the corpus keep their meaning.
+        weight_offset_rad: T::of(0.5) * angle_rad,
     })
 }
 
@@ -184,7 +187,7 @@ macro_rules! laws {
                 Ok(())
             }
 
-            unsafe fn record(model: *const Chain<$kind, Law>, rows: &[CMotion<$kind>], warm: bool) {
+            unsafe fn record(model: *const Chain<$kind, Law>, rows: &[CMotion<$kind>], optional: bool) {
                 let column = |of: fn(&CMotion<$kind>) -> $kind| -> Vec<f64> {
                     rows.iter().map(|m| f64::from(of(m))).collect()
                 };
@@ -195,6 +198,7 @@ macro_rules! laws {
                 let angle_rad = column(|m| m.angle_rad);
                 let load_n: Vec<f64> = column(|m| m.load_n).iter().map(|n| n.abs().max(1.0)).collect();
                 let temperature_c = vec![40.0; rows.len()];
+                let weight_offset_rad = column(|m| m.weight_offset_rad);
                 let record = CRecord {
                     samples: rows.len().min(6),
                     time_s: time_s.as_ptr(),
@@ -202,7 +206,8 @@ macro_rules! laws {
                     acceleration_m_s2: acceleration_m_s2.as_ptr(),
                     angle_rad: angle_rad.as_ptr(),
                     load_n: load_n.as_ptr(),
-                    temperature_c: if warm { temperature_c.as_ptr() } else { null() },
+                    temperature_c: if optional { temperature_c.as_ptr() } else { null() },
+                    weight_offset_rad: if optional { weight_offset_rad.as_ptr() } else { null() },
                 };
                 let mut out: Vec<$kind> = vec![0.0; rows.len()];
                 assert_eq!(jbf_c::$predict(null(), &record, 0.02, out.as_mut_ptr()), NULL);

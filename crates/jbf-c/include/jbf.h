@@ -62,7 +62,8 @@ typedef struct {
       weight_offset_rad;
 } jbf_motion_f64;
 
-/* A whole run: columns of `samples` values; temperature_c and weight_offset_rad may be NULL. */
+/* A whole run: columns of `samples` values; temperature_c and weight_offset_rad may be NULL. A motion
+ * that starts or stops between two samples requires an additional sample at that instant. */
 typedef struct {
   size_t samples;
   const double *time_s, *velocity_m_s, *acceleration_m_s2, *angle_rad, *load_n, *temperature_c,
@@ -83,7 +84,8 @@ typedef struct {
  * effect   add an effect by its name, with its parameters in the order of its page
  * start    the state at the first sample; gives the reading there, N
  * step     advance to a motion dt_s later; gives the reading there, N
- * predict  readings (N) along a record, as `jbf predict` gives them with max_step_s = 0.02
+ * predict  readings (N) along a record; `jbf predict` uses max_step_s = 0.02 and the record that
+ *          `jbf.export.record` returns
  */
 #define JBF_DECLARE(law, kind, real, model_words, state_words)                                      \
   typedef struct {                                                                                 \

@@ -23,7 +23,8 @@ pub const FASTEST_FILM_1_S: f64 = 2.8 / SHORTEST_FILM_STEP_S;
 /// of each sample to `sink` with its index.
 ///
 /// Steps are shorter where the law requires it, down to [`SHORTEST_FILM_STEP_S`], and land on every
-/// reversal.
+/// reversal. A motion that starts or stops between two samples requires an additional sample at that
+/// instant; without it the motion starts or stops at the sample.
 ///
 /// The function is inlined into its caller, so that a caller compiled for a wider instruction set
 /// includes all of it.

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from input_checks import Capture
 from jbf import cli, export
-from jbf.models.chain import MAX_STEP_S, estimated_motion
+from jbf.models.chain import MAX_STEP_S
 
 ROOT = Path(__file__).resolve().parents[3]
 Rows = dict[str, list[list[str]]]
@@ -19,6 +19,7 @@ RUST_MAIN = """
 mod drag;
 mod gear;
 mod gms;
+mod joint;
 mod slider;
 mod warm;
 
@@ -29,7 +30,7 @@ use jbf_core::{Chain, Motion, Real};
 
 fn main() {
     let text = std::fs::read_to_string(std::env::args().nth(1).unwrap()).unwrap();
-    let mut columns: [Vec<f64>; 6] = Default::default();
+    let mut columns: [Vec<f64>; 7] = Default::default();
     for line in text.lines() {
         for (column, cell) in columns.iter_mut().zip(line.split(' ')) {
             column.push(cell.parse().unwrap());
@@ -40,52 +41,56 @@ fn main() {
         "gear" => run(gear::model::<f64>().unwrap(), gear::model::<f32>().unwrap(), &columns),
         "warm" => run(warm::model::<f64>().unwrap(), warm::model::<f32>().unwrap(), &columns),
         "gms" => run(gms::model::<f64>().unwrap(), gms::model::<f32>().unwrap(), &columns),
+        "joint" => run(joint::model::<f64>().unwrap(), joint::model::<f32>().unwrap(), &columns),
         _ => run(slider::model::<f64>().unwrap(), slider::model::<f32>().unwrap(), &columns),
     }
 }
 
 fn step<T: Real, L: Named<T>, E: EffectSet<T>>(
     chain: &Chain<T, L, E>,
-    c: &[Vec<f64>; 6],
-    dt_s: f64,
+    c: &[Vec<f64>; 7],
 ) -> Vec<T> {
     let motion = |i: usize| {
         let motion = Motion::at_rest(T::of(c[4][i]))
             .with_time_s(T::of(c[0][i]))
             .with_velocity_m_s(T::of(c[1][i]))
             .with_acceleration_m_s2(T::of(c[2][i]))
-            .with_angle_rad(T::of(c[3][i]));
+            .with_angle_rad(T::of(c[3][i]))
+            .with_weight_offset_rad(T::of(if c[6][i].is_nan() { 0.0 } else { c[6][i] }));
         if c[5][i].is_nan() { motion } else { motion.with_temperature_c(T::of(c[5][i])) }
     };
     let mut state = chain.start(&motion(0));
     let mut out = vec![state.reading_n];
     for i in 1..c[0].len() {
-        out.push(chain.step(&mut state, &motion(i), T::of(dt_s)));
+        out.push(chain.step(&mut state, &motion(i), T::of(c[0][i] - c[0][i - 1])));
     }
     out
 }
 
-fn run<L, E, S, F>(model: Chain<f64, L, E>, small: Chain<f32, S, F>, c: &[Vec<f64>; 6])
+fn optional(column: &[f64]) -> Option<&[f64]> {
+    (!column[0].is_nan()).then_some(column)
+}
+
+fn run<L, E, S, F>(model: Chain<f64, L, E>, small: Chain<f32, S, F>, c: &[Vec<f64>; 7])
 where
     L: Named<f64>,
     E: EffectSet<f64>,
     S: Named<f32>,
     F: EffectSet<f32>,
 {
-    let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, celsius] = c;
-    let temperature_c = (!celsius[0].is_nan()).then_some(celsius.as_slice());
+    let [time_s, velocity_m_s, acceleration_m_s2, angle_rad, load_n, celsius, offset] = c;
     let record = Record {
         time_s,
         velocity_m_s,
         acceleration_m_s2,
         angle_rad,
         load_n,
-        temperature_c,
-        weight_offset_rad: None,
+        temperature_c: optional(celsius),
+        weight_offset_rad: optional(offset),
     };
     let mut predicted = vec![0.0; time_s.len()];
     predict(&model, &record, MAX_STEP_S, |i, f| predicted[i] = f);
-    let (f64s, f32s) = (step(&model, c, 0.01), step(&small, c, 0.01));
+    let (f64s, f32s) = (step(&model, c), step(&small, c));
     for ((a, b), c) in predicted.iter().zip(f64s).zip(f32s) {
         println!("{:016x} {:016x} {:08x}", a.to_bits(), b.to_bits(), c.to_bits());
     }
@@ -100,14 +105,15 @@ C_MAIN = """
 #include "model.h"
 
 #define MAX_ROWS 5000
-static double column[6][MAX_ROWS], predicted[MAX_ROWS];
+static double column[7][MAX_ROWS], predicted[MAX_ROWS];
 
 int main(int argc, char **argv) {
   size_t n = 0;
   FILE *file = argc > 1 ? fopen(argv[1], "r") : NULL;
   if (!file) return 1;
-  while (n < MAX_ROWS && fscanf(file, "%lf %lf %lf %lf %lf %lf", &column[0][n], &column[1][n],
-                            &column[2][n], &column[3][n], &column[4][n], &column[5][n]) == 6)
+  while (n < MAX_ROWS && fscanf(file, "%lf %lf %lf %lf %lf %lf %lf", &column[0][n], &column[1][n],
+                            &column[2][n], &column[3][n], &column[4][n], &column[5][n],
+                            &column[6][n]) == 7)
     n++;
   model_f64 model;
   model_f64_state state;
@@ -121,16 +127,19 @@ int main(int argc, char **argv) {
   const double wrong = -1.0;
   if (model_f64_init(NULL, &error) != JBF_NULL) return 3;
   const double *celsius = isnan(column[5][0]) ? NULL : column[5];
-  jbf_record record = {n, column[0], column[1], column[2], column[3], column[4], celsius};
+  const double *offset = isnan(column[6][0]) ? NULL : column[6];
+  jbf_record record = {n, column[0], column[1], column[2], column[3], column[4], celsius, offset};
   if (model_f64_predict(&model, &record, MAX_STEP_S, predicted)) return 4;
   for (size_t i = 0; i < n; i++) {
-    jbf_motion_f64 m = {column[0][i], column[1][i], column[2][i],
-                        column[3][i], column[4][i], column[5][i]};
+    jbf_motion_f64 m = {column[0][i], column[1][i], column[2][i], column[3][i],
+                        column[4][i], column[5][i], offset ? offset[i] : 0};
     jbf_motion_f32 s = {(float)m.time_s, (float)m.velocity_m_s,
                         (float)m.acceleration_m_s2,
-                        (float)m.angle_rad, (float)m.load_n, (float)m.temperature_c};
-    double f = i ? model_f64_step(&model, &state, &m, 0.01) : model_f64_start(&model, &state, &m);
-    float g = i ? model_f32_step(&small, &small_state, &s, (float)0.01)
+                        (float)m.angle_rad, (float)m.load_n, (float)m.temperature_c,
+                        (float)m.weight_offset_rad};
+    double dt_s = i ? m.time_s - column[0][i - 1] : 0;
+    double f = i ? model_f64_step(&model, &state, &m, dt_s) : model_f64_start(&model, &state, &m);
+    float g = i ? model_f32_step(&small, &small_state, &s, (float)dt_s)
                 : model_f32_start(&small, &small_state, &s);
     unsigned long long a, b;
     unsigned c;
@@ -171,17 +180,29 @@ def models() -> dict[str, jbf.Model]:
         "gear": jbf.Model(
             jbf.Rig(), law="elasto_plastic", effects=["dry_load_dependence", *TEMPERATURE_EFFECTS]
         ),
+        "joint": jbf.Model(
+            jbf.Rig(drive=jbf.Drive("rotary", "torque")),
+            law="coulomb",
+            effects=["gravity"],
+            parameters={"gravity.G": 5.0, "gravity.theta_0_rad": 0.7},
+        ),
         "warm": jbf.Model(jbf.Rig.thesis("4.2"), effects=["vogel_viscosity"]),
     }
 
 
 def motion(model: jbf.Model) -> jbf.Run:
-    """A sine with a rest, and a rising temperature if an effect requires it."""
+    """A sine with a rest, and a rising temperature if an effect requires it.
+
+    The joint is behind another moving joint.
+    """
     time_s = np.arange(0.0, 8.0, 0.01)
     speed = 0.05 * np.sin(2.0 * time_s) * (np.abs(time_s - 4.0) > 0.5)
     path = np.cumsum(speed) * 0.01
     thermal = {"vogel_viscosity", *TEMPERATURE_EFFECTS} & set(model.effects)
     celsius = 25.0 + 2.0 * time_s if thermal else None
+    if model.rig.drive is not None:
+        link = {"weight_angle_rad": path + 0.9 * np.sin(0.4 * time_s)}
+        return jbf.Run.from_arrays(time_s, speed, angle_rad=path, extra=link)
     if model.rig.bearing is None:
         return jbf.Run("motion", time_s, speed, position_m=path, temperature_c=celsius)
     angle = path / model.rig.bearing.radius_m
@@ -198,17 +219,16 @@ def run(*command: object, folder: Path) -> str:
 
 @pytest.fixture(scope="module")
 def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the estimated motion of each model."""
+    """A folder with the motion of each model: its columns, NaN where one was not recorded."""
     if shutil.which("cargo") is None or not (ROOT / "crates" / "jbf-c").is_dir():
         pytest.skip("needs cargo and the source tree")
     folder = tmp_path_factory.mktemp("export")
     for name, model in models().items():
-        record, m = motion(model), estimated_motion(model.rig, motion(model))
-        load = np.full(len(record), 104.0 if model.rig.load else 1.0)
-        missing = np.full(len(record), np.nan)
-        celsius = missing if record.temperature_c is None else record.temperature_c
-        columns = (record.time_s, m.velocity, m.acceleration, m.angle_rad, load, celsius)
-        rows = zip(*(c.tolist() for c in columns), strict=True)
+        r = export.record(model, motion(model))
+        columns = (r.time_s, r.velocity_m_s, r.acceleration_m_s2, r.angle_rad, r.load_n)
+        missing = np.full(len(r.time_s), np.nan)
+        optional = (missing if c is None else c for c in (r.temperature_c, r.weight_offset_rad))
+        rows = zip(*(c.tolist() for c in (*columns, *optional)), strict=True)
         text = "\n".join(" ".join(map(repr, row)) for row in rows)
         (folder / f"{name}.txt").write_text(text + "\n")
     return folder
@@ -241,8 +261,9 @@ def bits(text: str) -> float:
 @pytest.mark.parametrize("name", models())
 def test_exported_rust_predicts_the_same_bits_as_the_model(rust: Rows, name: str) -> None:
     model = models()[name]
-    force = [bits(row[0]) for row in rust[name] if row]
-    assert force == model.predict(motion(model)).tolist()
+    force = np.array([bits(row[0]) for row in rust[name] if row])
+    samples = export.record(model, motion(model)).samples
+    assert force[samples].tolist() == model.predict(motion(model)).tolist()
     assert len(set(force)) > 100
 
 
@@ -267,7 +288,7 @@ def test_exported_c_returns_the_bits_of_exported_rust(
     folder.mkdir()
     (folder / "model.h").write_text(export.c(model))
     (folder / "main.c").write_text(C_MAIN)
-    run("cargo", "build", "--quiet", "-p", "jbf-c", folder=ROOT)
+    run("cargo", "build", "--quiet", "-p", "jbf-c", "--target-dir", ROOT / "target", folder=ROOT)
     options = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1"]
     options += [f"-DMAX_STEP_S={MAX_STEP_S!r}", f"-DEFFECT=jbf_{model.law}_f64_effect"]
     include, library = ROOT / "crates" / "jbf-c" / "include", ROOT / "target/debug/libjbf_c.a"

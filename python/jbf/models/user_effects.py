@@ -14,7 +14,6 @@
 
 from __future__ import annotations
 
-import inspect
 import runpy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -27,6 +26,7 @@ import numpy.typing as npt
 from jbf.errors import InputError, JbfError, quoted
 from jbf.models import catalogue
 from jbf.models.catalogue import Effect, Parameter, Stage
+from jbf.models.registration import Registration, Texts
 from jbf.records.run import PathLike
 
 Array = npt.NDArray[np.float64]
@@ -50,6 +50,31 @@ class UserEffect(Effect):
     function: Callable[..., Any] = field(default=lambda: 0.0, compare=False)
     analytic: dict[str, bool] = field(default_factory=dict, compare=False)
     called: str = "effect"
+
+    @classmethod
+    def registered(cls, given: Registration, stage: Stage, texts: Texts) -> UserEffect:
+        """Return the entry of a function whose name and parameters have been checked.
+
+        Raises
+        ------
+        InputError
+            A parameter is not an argument of the function, or an argument has no name.
+        """
+        return cls(
+            name=given.name,
+            stage=stage,
+            needs=(),
+            refused={},
+            moves_jumps=False,
+            spreads_jumps=False,
+            peaks=None,
+            longest_step_s=np.inf,
+            parameters=given.parameters,
+            columns=given.columns(),
+            function=given.function,
+            called=given.kind,
+            **texts,
+        )
 
     def force(self, columns: Mapping[str, Array], values: Sequence[float]) -> Array:
         """Return the force at every sample, N, shape (n,).
@@ -217,40 +242,20 @@ def register_effect(
     True
     >>> jbf.forget_effect("drag")
     """
-    own = name if name is not None else function.__name__
-    pages = tuple(parameters)
-
-    def wrong(problem: str, mend: str) -> InputError:
-        return InputError(problem=f"the effect {quoted(own)} {problem}", mend=mend)
-
-    if not own.isidentifier():
-        raise wrong("has an invalid name", "use letters, digits and _: name=...")
-    if own in catalogue.built_in():
-        raise wrong("is in the catalogue already", "choose another name")
+    given = Registration.of("effect", function, name, parameters)
+    given.check_name(catalogue.built_in())
     if stage not in STAGES:
         known = " or ".join(STAGES)
-        raise wrong(f"cannot be at the stage {quoted(stage)}", f"choose {known}")
-    if not pages:
-        raise wrong("has no parameters", "give at least one jbf.Parameter with a null")
-    check_pages(pages, wrong)
-    if all(p.null is None for p in pages):
-        raise wrong("never vanishes", "give one parameter null=VALUE, at which the force is zero")
-    page = UserEffect(
-        name=own,
-        stage=STAGES[stage],
-        summary=summary or (inspect.getdoc(function) or "a user-defined effect").splitlines()[0],
-        equation=equation or "a user-defined function",
-        source=source or f"{getattr(function, '__module__', 'unknown')}",
-        limits=limits or "not specified",
-        needs=(),
-        refused={},
-        moves_jumps=False,
-        spreads_jumps=False,
-        peaks=None,
-        longest_step_s=np.inf,
-        parameters=pages,
-        columns=columns_of(function, pages, wrong),
-        function=function,
+        raise given.refused(f"cannot be at the stage {quoted(stage)}", f"choose {known}")
+    if not given.parameters:
+        raise given.refused("has no parameters", "give at least one jbf.Parameter with a null")
+    given.check_parameters()
+    if all(p.null is None for p in given.parameters):
+        raise given.refused(
+            "never vanishes", "give one parameter null=VALUE, at which the force is zero"
+        )
+    page = UserEffect.registered(
+        given, STAGES[stage], given.texts(summary, equation, source, limits)
     )
     catalogue.put(page)
     return page
@@ -281,55 +286,6 @@ def forget_effect(name: str) -> None:
         raise InputError(
             problem=f"{quoted(name)} is not a user-defined effect", mend="check the name"
         )
-
-
-def check_pages(pages: Sequence[Parameter], wrong: Callable[[str, str], InputError]) -> None:
-    """Raise the error built by `wrong` if a parameter lacks a valid name, bounds or start."""
-    names = [p.name for p in pages]
-    if len(set(names)) < len(names):
-        raise wrong("has two parameters of the same name", "rename one")
-    for p in pages:
-        place = f"has a parameter {quoted(p.name)}"
-        if not p.name.isidentifier():
-            raise wrong(f"{place} that is not a valid name", "use letters, digits and _")
-        if not (np.isfinite(p.lower) and np.isfinite(p.upper) and p.lower < p.upper):
-            raise wrong(f"{place} without bounds", "give lower and upper, finite and in order")
-        if not p.starts:
-            raise wrong(f"{place} without a starting value", "give starts=(value,)")
-        if not all(p.lower <= s <= p.upper for s in p.starts):
-            raise wrong(
-                f"{place} that starts outside its bounds", "choose a start within the bounds"
-            )
-        if p.log and p.lower <= 0.0:
-            raise wrong(
-                f"{place} whose logarithm does not exist", "set lower above 0, or log=False"
-            )
-        if p.null is not None and not p.lower <= p.null <= p.upper:
-            raise wrong(
-                f"{place} with its null outside its bounds", "extend the bounds to the null"
-            )
-
-
-def columns_of(
-    function: Callable[..., Any],
-    pages: Sequence[Parameter],
-    wrong: Callable[[str, str], InputError],
-) -> tuple[str, ...]:
-    """Return the arguments of the function that are columns."""
-    kinds = inspect.Parameter
-    names = {p.name for p in pages}
-    found = []
-    for argument in inspect.signature(function).parameters.values():
-        if argument.kind not in (kinds.POSITIONAL_OR_KEYWORD, kinds.KEYWORD_ONLY):
-            raise wrong(f"takes {argument}", "name every column and parameter explicitly")
-        if argument.name in names:
-            names.remove(argument.name)
-        else:
-            found.append(argument.name)
-    if names:
-        missing = ", ".join(sorted(names))
-        raise wrong(f"does not take its parameter {missing}", "add it to the function's arguments")
-    return tuple(found)
 
 
 def load_effects(path: PathLike) -> None:

@@ -18,7 +18,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -29,7 +28,8 @@ import numpy.typing as npt
 from jbf.errors import InputError, quoted
 from jbf.models import catalogue
 from jbf.models.catalogue import Law, Parameter
-from jbf.models.user_effects import MOTION_COLUMNS, UserEffect, check_pages, columns_of
+from jbf.models.registration import Registration
+from jbf.models.user_effects import MOTION_COLUMNS, UserEffect
 from jbf.models.vocabulary import AUTO
 
 Array = npt.NDArray[np.float64]
@@ -104,51 +104,20 @@ def register_law(
     'dry'
     >>> jbf.forget_law("dry")
     """
-    own = name if name is not None else function.__name__
-    pages = tuple(parameters)
-
-    def wrong(problem: str, mend: str) -> InputError:
-        return InputError(problem=f"the law {quoted(own)} {problem}", mend=mend)
-
-    if not own.isidentifier() or own == AUTO:
-        raise wrong("has an invalid name", f"use letters, digits and _, not {AUTO}: name=...")
-    if own in catalogue.built_in_laws():
-        raise wrong("is in the catalogue already", "choose another name")
-    check_pages(pages, wrong)
-    words = {
-        "summary": summary or (inspect.getdoc(function) or "a user-defined law").splitlines()[0],
-        "equation": equation or "a user-defined function",
-        "source": source or f"{getattr(function, '__module__', 'unknown')}",
-        "limits": limits or "not specified",
-    }
-    force = UserEffect(
-        name=own,
-        stage="other friction",
-        needs=(),
-        refused={},
-        moves_jumps=False,
-        spreads_jumps=False,
-        peaks=None,
-        longest_step_s=np.inf,
-        parameters=pages,
-        columns=columns_of(function, pages, wrong),
-        function=function,
-        called="law",
-        summary=words["summary"],
-        equation=words["equation"],
-        source=words["source"],
-        limits=words["limits"],
-    )
+    given = Registration.of("law", function, name, parameters)
+    given.check_name(catalogue.built_in_laws(), reserved=AUTO)
+    given.check_parameters()
+    texts = given.texts(summary, equation, source, limits)
     page = UserLaw(
-        name=own,
+        name=given.name,
         needs_bearing=False,
         has_film=False,
         has_bristle=False,
         has_memory=False,
         rust_type="",
-        parameters=pages,
-        force=force,
-        **words,
+        parameters=given.parameters,
+        force=UserEffect.registered(given, "other friction", texts),
+        **texts,
     )
     catalogue.put_law(page)
     return page

@@ -50,6 +50,8 @@ powers stay finite up to this limit.
 """
 SHORTEST_S = 1e-12
 """Shortest plausible time step between samples, s."""
+ANGLES = ("angle_rad", "weight_angle_rad")
+"""Columns that may restart at each turn."""
 MOTION = ("velocity_m_s", "position_m", "angle_rad")
 """Columns that define the motion; one of them is sufficient."""
 
@@ -69,6 +71,11 @@ def frozen(values: npt.ArrayLike) -> Array:
     array = np.array(values, dtype=np.float64, order="C")
     array.flags.writeable = False
     return array
+
+
+def unwrapped(column: str, values: Array) -> Array:
+    """Return the values of a column, without the jumps of an angle that restarts at each turn."""
+    return np.unwrap(values) if column in ANGLES else values
 
 
 def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:

@@ -26,6 +26,7 @@ from jbf.records.checks import (
     frozen,
     listed,
     selection,
+    unwrapped,
 )
 from jbf.records.csv_output import csv_of_columns
 from jbf.records.derived_columns import derived_speed_column, fill_gaps
@@ -366,10 +367,10 @@ class Run(Shown):
     def at(self, time_s: Array, friction: Array) -> Run:
         """Return the run at other instants within it, with the friction there, N.
 
-        All other columns are interpolated linearly.
+        All other columns are interpolated linearly; angles that restart at each turn are unwrapped.
         """
         others = {
-            attribute(name): frozen(np.interp(time_s, self.time_s, values))
+            attribute(name): frozen(np.interp(time_s, self.time_s, unwrapped(name, values)))
             for name, values in self._arrays().items()
             if name not in ("time_s", "friction_n")
         }

@@ -63,6 +63,20 @@ def test_weight_angle_that_restarts_each_turn_gives_the_same_fit(arm: Path) -> N
     assert fitted(wrapped).rms == pytest.approx(fitted(runs).rms, rel=1e-6)
 
 
+@pytest.mark.parametrize("effects", [["gravity"], ["gravity", "time_delay"]])
+def test_weight_angle_that_restarts_each_turn_gives_the_same_prediction(effects: list[str]) -> None:
+    values = {"gravity.G": WEIGHT, "time_delay.tau_s": 0.033}
+    kept = {name: v for name, v in values.items() if name.split(".")[0] in effects}
+    model = jbf.Model(RIG, law="coulomb", effects=effects, parameters=kept)
+    angle, speed = 1.1 * np.sin(0.8 * TIME_S), 0.88 * np.cos(0.8 * TIME_S)
+    link = angle + 4.0 * np.sin(0.4 * TIME_S)
+    turned, restarting = (
+        jbf.Run.from_arrays(TIME_S, speed, angle_rad=angle, extra={"weight_angle_rad": a})
+        for a in (link, np.angle(np.exp(1j * link)))
+    )
+    np.testing.assert_allclose(model.predict(restarting), model.predict(turned), atol=1e-9)
+
+
 def test_import_map_defines_the_weight_angle_by_an_expression(tmp_path: Path) -> None:
     file = tmp_path / "arm.csv"
     header = "t [s],q2 [deg],q3 [deg],dq3 [rad/s],tau3 [N m]"

@@ -4,7 +4,7 @@ mod common;
 
 use jbf_core::effect::{Effects, CATALOGUE};
 use jbf_core::law::journal::{k0_from_original, Journal, Parameters};
-use jbf_core::{Bearing, Clock, Error};
+use jbf_core::{Bearing, Chain, Clock, Error, Motion};
 
 fn build(bearing: Bearing, load_n: f64, p: Parameters<f64>) -> Result<(), Error> {
     Journal::new(&bearing, load_n, &p, Clock::Journal).map(|_| ())
@@ -59,6 +59,24 @@ fn invalid_size_of_a_bearing_is_refused_by_name() {
     ] {
         let error = build(bearing, 104.0, Parameters::TABLE_4_2).expect_err(name);
         assert_eq!(error.name(), name, "{error}");
+    }
+}
+
+/// In single precision the viscous coefficient overflows before the load number underflows.
+#[test]
+fn friction_of_a_law_with_a_tiny_load_is_finite_or_the_load_is_refused() {
+    for exponent in 20..46 {
+        let load_n = 10.0_f64.powi(-exponent);
+        let built = Journal::<f32>::new(
+            &Bearing::THESIS,
+            load_n,
+            &common::table_4_2(),
+            Clock::Journal,
+        );
+        let Ok(law) = built else { continue };
+        let chain = Chain::round(law, Effects::NONE, Some(&Bearing::THESIS));
+        let reading_n = chain.start(&Motion::at_rest(0.0)).reading_n;
+        assert!(reading_n.is_finite(), "{load_n} N: {reading_n}");
     }
 }
 

@@ -50,13 +50,14 @@ impl<T: Real> Journal<T> {
             .iter()
             .all(|x| x.is_finite());
         let load_number = law.nominal.load_number;
-        // The inverse load number of the lightest load of the law is checked too.
-        let lightest = law.under(T::ZERO);
+        // The coefficients under the lightest load of the law are checked too.
+        let per_load = law.under(T::ZERO).inverse_load_number;
         check(
             folded
                 && load_number > T::ZERO
                 && load_number.is_finite()
-                && lightest.inverse_load_number.is_finite(),
+                && per_load.is_finite()
+                && (law.viscous_s_m * per_load).is_finite(),
             "load_number",
             load_number.value(),
             "or another combination of the dimensions overflows: check their units",

@@ -73,28 +73,28 @@ class Alignment:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for the ledger."""
-        found: dict[str, Any] = {"by": self.by, "offset_s": self.offset_s}
+        content: dict[str, Any] = {"by": self.by, "offset_s": self.offset_s}
         if self.signal:
-            found["signal"] = self.signal
-            found["drift_ppm"] = self.drift_ppm
-            found["pivot_s"] = self.pivot_s
-            found["offset_std_s"] = self.offset_std_s
-            found["correlation"] = self.correlation
+            content["signal"] = self.signal
+            content["drift_ppm"] = self.drift_ppm
+            content["pivot_s"] = self.pivot_s
+            content["offset_std_s"] = self.offset_std_s
+            content["correlation"] = self.correlation
         if self.dates_s is not None:
-            found["dates_s"] = self.dates_s
-        return found | {"text": str(self)}
+            content["dates_s"] = self.dates_s
+        return content | {"text": str(self)}
 
     @property
     def brief(self) -> str:
         """Text that states the offset and the drift."""
         beyond = self.offset_s - (self.dates_s or 0.0)
-        way = "behind" if beyond >= 0.0 else "ahead of"
+        direction = "behind" if beyond >= 0.0 else "ahead of"
         digits = int(np.clip(2 - np.floor(np.log10(self.offset_std_s or 1e-2)), 1, 6))
-        found = f"{abs(beyond):.{digits}f} s {way} {self.main.name}'s"
+        text = f"{abs(beyond):.{digits}f} s {direction} {self.main.name}'s"
         if self.drift_ppm:
             slow = "slow" if self.drift_ppm > 0.0 else "fast"
-            found += f" at mid-record and {abs(self.drift_ppm):.3g} ppm {slow}"
-        return found
+            text += f" at mid-record and {abs(self.drift_ppm):.3g} ppm {slow}"
+        return text
 
     def __str__(self) -> str:
         if self.by == "dates":
@@ -131,14 +131,14 @@ def align(
         If there is no information to align a file, or its signal does not determine the offset.
     """
     _check_keys(source, mapping)
-    found = []
+    alignments = []
     for file in source.files[1:]:
         if any(source.file_of(channel.table) == file for channel in channels):
             try:
-                found.append(_aligned(source, mapping, channels, clocks, read_signal, file))
+                alignments.append(_aligned(source, mapping, channels, clocks, read_signal, file))
             except InputError as error:
                 raise error.within(file=file) from None
-    return found
+    return alignments
 
 
 def _check_keys(source: SideBySide, mapping: Map) -> None:
@@ -163,14 +163,14 @@ def _aligned(
     file: Path,
 ) -> Alignment:
     main, clock = source.path, clocks[file]
-    instants = [_date_ns(source, mapping, channels, clocks[of], of) for of in (main, file)]
+    instants = [_date_ns(source, mapping, channels, clocks[path], path) for path in (main, file)]
     dates_s = None
     if instants[0] is not None and instants[1] is not None:
         dates_s = (instants[1] - instants[0]) / 1e9
     clock.offset_s = dates_s or 0.0
     stem = stem_of(file)
-    wanted = mapping.align.get(stem)
-    if wanted is None:
+    requested = mapping.align.get(stem)
+    if requested is None:
         if dates_s is None:
             problem = f"its clock is separate from that of {main.name}"
             mend = (
@@ -179,10 +179,10 @@ def _aligned(
             )
             raise InputError(problem=problem, mend=mend)
         return Alignment(file, main, "dates", dates_s, dates_s=dates_s)
-    if not isinstance(wanted, str):
-        clock.offset_s += wanted
+    if not isinstance(requested, str):
+        clock.offset_s += requested
         return Alignment(file, main, "stated", clock.offset_s, dates_s=dates_s)
-    by_main, by_file = _signals(source, mapping, channels, file, wanted)
+    by_main, by_file = _signals(source, mapping, channels, file, requested)
     streams = read_signal(by_main), read_signal(by_file)
     try:
         fit = refine(*streams, find_offset(*streams))
@@ -205,7 +205,7 @@ def _aligned(
         1e6 * fit.drift,
         clock.pivot_s,
         dates_s,
-        wanted,
+        requested,
         fit.offset_std_s,
         fit.correlation,
     )
@@ -223,11 +223,11 @@ def _signals(
         raise InputError(file=mapping.path, key=key, problem=problem, mend=mend)
     tables = tables_of(source, mapping.options)
     names, places = column_names(tables), located(tables)
-    known = [f"{table.name}/{column.name}" for table in tables for column in table.columns]
-    found: dict[Path, Channel] = {}
+    all_columns = [f"{table.name}/{column.name}" for table in tables for column in table.columns]
+    channel_of_file: dict[Path, Channel] = {}
     for side in sides.groups():
         try:
-            node = parse_expression(side.strip(), names, known)
+            node = parse_expression(side.strip(), names, all_columns)
         except InputError as error:
             raise InputError(
                 file=mapping.path, key=key, problem=error.problem, mend=error.mend
@@ -235,13 +235,13 @@ def _signals(
         used = {places[reference.column][0].name for reference in references(node)}
         if len(used) == 1:
             table = next(t for t in tables if t.name in used)
-            of = source.file_of(table)
+            path = source.file_of(table)
             clock = _clock_of_table(source, mapping, channels, table)
-            found[of] = Channel(SIGNAL_COLUMN, side.strip(), node, table, clock, ONE)
-    if source.path not in found or file not in found:
+            channel_of_file[path] = Channel(SIGNAL_COLUMN, side.strip(), node, table, clock, ONE)
+    if source.path not in channel_of_file or file not in channel_of_file:
         problem = f"needs a signal of {source.path.name} and one of {file.name}"
         raise InputError(file=mapping.path, key=key, problem=problem, mend=mend)
-    return found[source.path], found[file]
+    return channel_of_file[source.path], channel_of_file[file]
 
 
 def _clock_of_table(

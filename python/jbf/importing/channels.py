@@ -45,18 +45,18 @@ def channels_of(source: Source, mapping: Map) -> list[Channel]:
     """
     tables = tables_of(source, mapping.options)
     names = column_names(tables)
-    known = [column.name for table in tables for column in table.columns]
+    all_columns = [column.name for table in tables for column in table.columns]
     places = located(tables)
-    wanted = {key: text for key, text in mapping.columns.items() if key != "time_s"}
+    expressions = {key: text for key, text in mapping.columns.items() if key != "time_s"}
     if mapping.cut.by and mapping.cut.column is not None:
-        wanted[CUT_COLUMN] = mapping.cut.column
+        expressions[CUT_COLUMN] = mapping.cut.column
     if mapping.cut.keep is not None:
-        wanted[KEPT_COLUMN] = mapping.cut.keep.difference
-    found = []
-    for key, text in wanted.items():
+        expressions[KEPT_COLUMN] = mapping.cut.keep.difference
+    channels = []
+    for key, text in expressions.items():
         section = {CUT_COLUMN: "cut.column", KEPT_COLUMN: "cut.keep"}.get(key, f"columns.{key}")
         try:
-            node = parse_expression(text, names, known)
+            node = parse_expression(text, names, all_columns)
         except InputError as error:
             raise InputError(key=section, problem=error.problem, mend=error.mend) from None
         of_tables = {places[r.column][0].name for r in references(node)}
@@ -66,12 +66,12 @@ def channels_of(source: Source, mapping: Map) -> list[Channel]:
             )
             mend = "use columns of one group; columns are not resampled here"
             raise InputError(key=section, problem=f"{text} {problem}", mend=mend)
-        (of,) = of_tables
-        table = next(t for t in tables if t.name == of)
+        (table_name,) = of_tables
+        table = next(t for t in tables if t.name == table_name)
         clock = clock_of(key, table, tables, mapping, names, places)
         unit = ONE if key in OF_CUTTING else wanted_unit(key)
-        found.append(Channel(key, text, node, table, clock, unit))
-    return found
+        channels.append(Channel(key, text, node, table, clock, unit))
+    return channels
 
 
 def tables_of(source: Source, options: Options) -> tuple[Table, ...]:

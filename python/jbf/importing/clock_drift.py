@@ -78,13 +78,13 @@ class _Window:
 
     def interpolated(self, at: Array) -> tuple[Array, Array]:
         """Interpolate the faster record and its slope at given instants (cubic Hermite)."""
-        left = np.clip(np.searchsorted(self.fast_s, at, side="right") - 1, 0, len(self.fast_s) - 2)
-        width = self.fast_s[left + 1] - self.fast_s[left]
-        u = np.clip((at - self.fast_s[left]) / width, 0.0, 1.0)
-        rise = self.fast[left + 1] - self.fast[left]
-        low, high = self.slope[left] * width, self.slope[left + 1] * width
+        index = np.clip(np.searchsorted(self.fast_s, at, side="right") - 1, 0, len(self.fast_s) - 2)
+        width = self.fast_s[index + 1] - self.fast_s[index]
+        u = np.clip((at - self.fast_s[index]) / width, 0.0, 1.0)
+        rise = self.fast[index + 1] - self.fast[index]
+        low, high = self.slope[index] * width, self.slope[index + 1] * width
         bend, twist = 3.0 * rise - 2.0 * low - high, low + high - 2.0 * rise
-        value = self.fast[left] + u * (low + u * (bend + u * twist))
+        value = self.fast[index] + u * (low + u * (bend + u * twist))
         return value, (low + u * (2.0 * bend + 3.0 * u * twist)) / width
 
     def thinned(self, by: int) -> _Window:
@@ -118,8 +118,8 @@ class _Problem:
         (first_a, last_a), (first_b, last_b) = span(main), span(other)
         first = max(first_b, first_a - coarse.offset_s)
         last = min(last_b, last_a - coarse.offset_s)
-        whole = coarse.pivot_s == 0.5 * (first_b + last_b)
-        self.pivot_s = 0.5 * (first + last) if whole else coarse.pivot_s
+        full_overlap = coarse.pivot_s == 0.5 * (first_b + last_b)
+        self.pivot_s = 0.5 * (first + last) if full_overlap else coarse.pivot_s
         self.first_s, self.last_s = first, last
         self.reach_s = coarse.lobe_s + MOST_DRIFT * (last - first)
         self.windows = self._windows(main, other)
@@ -135,7 +135,7 @@ class _Problem:
         edges = np.linspace(first, last, count + 1)
         longest = min(MOST_SLOW * self.step, MOST_FAST * usual_step(fast))
         width = 2 * max(int(self.coarse.lobe_s / usual_step(fast)) // 2, 1) + 1
-        found = []
+        windows = []
         for low, high in pairwise(edges.tolist()):
             half = 0.5 * min(high - low, longest)
             middle = 0.5 * (low + high)
@@ -145,20 +145,20 @@ class _Problem:
             if len(rows) > 1 and len(around) > 4:
                 smooth = _smoothed(around[:, 1], width)
                 slope = np.gradient(smooth, around[:, 0])
-                found.append(_Window(rows[:, 0], rows[:, 1], around[:, 0], smooth, slope))
-        return found
+                windows.append(_Window(rows[:, 0], rows[:, 1], around[:, 0], smooth, slope))
+        return windows
 
     def solved(self) -> ClockFit:
         """Return the estimate of the clock."""
         start = self._start()
         solution = self._descended(start, with_drift=True)
         drift, error, clusters = solution[1], *self._drift_error(solution)
-        kept = (
+        significant = (
             clusters >= LEAST_WINDOWS
             and abs(drift) > SIGNIFICANT * error
             and abs(drift) * (self.last_s - self.first_s) > SMALLEST * self.step
         )
-        if not kept:
+        if not significant:
             solution = self._descended((start[0], 0.0), with_drift=False)
         offset = self._centred(*solution)
         within = self._correlation_within_windows(offset, solution[1])
@@ -254,7 +254,7 @@ class _Problem:
     def _descended(self, start: tuple[float, float], *, with_drift: bool) -> tuple[float, float]:
         """Minimise by Gauss-Newton iterations and return the best point visited."""
         best = point = start
-        least = 1.0 - self._correlation(*start) ** 2
+        smallest = 1.0 - self._correlation(*start) ** 2
         lever = max(self.last_s - self.first_s, self.step)
         for _ in range(ITERATIONS):
             residual, design = self._linearised(point, with_drift=with_drift)
@@ -267,9 +267,9 @@ class _Problem:
                 float(np.clip(point[0] + by, *self._offset_bounds())),
                 float(np.clip(point[1] + drift_by, -MOST_DRIFT, MOST_DRIFT)),
             )
-            left = 1.0 - self._correlation(*point) ** 2
-            if left < least:
-                best, least = point, left
+            misfit = 1.0 - self._correlation(*point) ** 2
+            if misfit < smallest:
+                best, smallest = point, misfit
             if abs(by) < 1e-4 * self.step and abs(drift_by) * lever < 1e-4 * self.step:
                 break
         return best
@@ -286,9 +286,9 @@ class _Problem:
         if self.coarse.lobe_s >= 2.0 * self.step:
             return offset  # a smooth signal: Gauss-Newton finds its minimum
         around = offset + np.linspace(-1.0, 1.0, 8 * LATTICE + 1) * self.step
-        left = np.array([1.0 - self._correlation(o, drift) ** 2 for o in around])
-        level = left.min() + 0.02 * (min(left[0], left[-1]) - left.min())
-        alike = np.flatnonzero(left <= level)
+        misfits = np.array([1.0 - self._correlation(o, drift) ** 2 for o in around])
+        level = misfits.min() + 0.02 * (min(misfits[0], misfits[-1]) - misfits.min())
+        alike = np.flatnonzero(misfits <= level)
         if not alike.size or np.ptp(alike) + 1 > alike.size:
             return offset
         middle = offset + (float(np.mean(alike)) / (4 * LATTICE) - 1.0) * self.step
@@ -305,8 +305,8 @@ class _Problem:
             meat += np.outer(score, score)
         bread = np.linalg.pinv(self._curvature(at, with_drift=with_drift))
         count = max(len(self.windows), 2)
-        found: Array = bread @ meat @ bread * count / (count - 1)
-        return found
+        covariance: Array = bread @ meat @ bread * count / (count - 1)
+        return covariance
 
     def _curvature(self, at: tuple[float, float], *, with_drift: bool) -> Array:
         """Return the second derivatives of half the sum of squares, by finite differences.
@@ -319,17 +319,17 @@ class _Problem:
         power = len(slow) * float(np.var(slow))
 
         def squares(change: Array) -> float:
-            left = 1.0 - self._correlation(at[0] + change[0], at[1] + change[1]) ** 2
-            return 0.5 * power * left
+            misfit = 1.0 - self._correlation(at[0] + change[0], at[1] + change[1]) ** 2
+            return 0.5 * power * misfit
 
         size = 2 if with_drift else 1
-        found = np.zeros((size, size))
+        hessian = np.zeros((size, size))
         for i in range(size):
             for j in range(i + 1):
                 a, b = steps[i], steps[j]
                 mixed = squares(a + b) - squares(a - b) - squares(b - a) + squares(-a - b)
-                found[i, j] = found[j, i] = mixed / (4.0 * a[i] * b[j])
-        return found
+                hessian[i, j] = hessian[j, i] = mixed / (4.0 * a[i] * b[j])
+        return hessian
 
     def _drift_error(self, at: tuple[float, float]) -> tuple[float, float]:
         """Return the standard error of the drift, and the effective number of windows."""
@@ -367,7 +367,7 @@ def _smoothed(values: Array, width: int) -> Array:
     """
     from scipy.ndimage import uniform_filter1d
 
-    found = np.asarray(values, dtype=np.float64)
+    smoothed = np.asarray(values, dtype=np.float64)
     for _ in range(3):
-        found = uniform_filter1d(found, width, mode="nearest")
-    return found
+        smoothed = uniform_filter1d(smoothed, width, mode="nearest")
+    return smoothed

@@ -138,12 +138,12 @@ def _on_grid(
     count = int(np.floor((last_s - first_s) / step + 0.5)) + 1
     total, number = np.zeros(count), np.zeros(count)
     for block in stream.blocks(*stream.rows_between(0, first_s, last_s)):
-        good = block[np.isfinite(block[:, 1])]
-        cell = np.clip(np.rint((good[:, 0] - first_s) / step), 0, count - 1).astype(np.intp)
-        total += np.bincount(cell, good[:, 1], count)
+        finite = block[np.isfinite(block[:, 1])]
+        cell = np.clip(np.rint((finite[:, 0] - first_s) / step), 0, count - 1).astype(np.intp)
+        total += np.bincount(cell, finite[:, 1], count)
         number += np.bincount(cell, minlength=count)
-    known = number > 0
-    cells = np.flatnonzero(known)
+    has_samples = number > 0
+    cells = np.flatnonzero(has_samples)
     if len(cells) < LEAST_SAMPLES:
         raise InputError(problem="the common signal has too few samples", mend=MEND)
     values = total[cells] / number[cells]
@@ -156,14 +156,14 @@ def _on_grid(
         signal = np.interp(np.arange(count), cells, values)
         widest = 3.0 * max(float(np.median(np.diff(cells))), 1.0)
         gaps = np.flatnonzero(np.diff(cells) > widest)
-        known = np.ones(count, dtype=bool)
+        has_samples = np.ones(count, dtype=bool)
         for gap in gaps:
-            known[cells[gap] + 1 : cells[gap + 1]] = False
-        known[: cells[0]] = known[cells[-1] + 1 :] = False
-        signal[~known] = 0.0
+            has_samples[cells[gap] + 1 : cells[gap + 1]] = False
+        has_samples[: cells[0]] = has_samples[cells[-1] + 1 :] = False
+        signal[~has_samples] = 0.0
     else:
         signal[cells] = values
-    return signal, known
+    return signal, has_samples
 
 
 def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Mask]:
@@ -176,8 +176,8 @@ def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Ma
     size = next_fast_len(len(a) + len(b) - 1, real=True)
 
     def spectrum(values: Array) -> npt.NDArray[np.complex128]:
-        found: npt.NDArray[np.complex128] = rfft(values, size)
-        return found
+        transform: npt.NDArray[np.complex128] = rfft(values, size)
+        return transform
 
     def sums(left: npt.NDArray[np.complex128], right: npt.NDArray[np.complex128]) -> Array:
         circular = irfft(left * right.conj(), size)
@@ -229,8 +229,8 @@ def _clear_peak(r: Array, allowed: Mask, offsets: Array) -> tuple[int, int, int]
             f"{abs(r[rival]):.3f})"
         )
         raise InputError(problem=problem, mend=MEND)
-    reached = np.flatnonzero(allowed)
-    if low <= reached[0] + 1 or high >= reached[-1] - 1:
+    admissible = np.flatnonzero(allowed)
+    if low <= admissible[0] + 1 or high >= admissible[-1] - 1:
         problem = (
             f"the common signal does not determine the offset: {offsets[low]:.4g} s to "
             f"{offsets[high]:.4g} s fit equally"

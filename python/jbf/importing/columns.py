@@ -179,9 +179,9 @@ def split_unit(text: str) -> tuple[str, str]:
             return name, unit
         loose.append((name, unit))
     if loose:
-        return max(loose, key=lambda found: len(found[1]))
-    found = unit_of_name(shown)
-    return (shown, "") if found is None else (shown, found[1].text)
+        return max(loose, key=lambda stem_and_unit: len(stem_and_unit[1]))
+    stem_and_unit = unit_of_name(shown)
+    return (shown, "") if stem_and_unit is None else (shown, stem_and_unit[1].text)
 
 
 def understood(text: str, unit: str = "") -> Header:
@@ -198,17 +198,17 @@ def understood(text: str, unit: str = "") -> Header:
     words = [word.lower() for word in _SPLIT.split(name) if word]
     unit = unit or stated or next((_CLOCKS[word] for word in words if word in _CLOCKS), "")
     if not stated or parse_unit(stated) is None:
-        spoken = words
+        lower_words = words
     else:
         # A unit at the end of a name is not one of its words.
         tail = None if name.endswith("_1") else unit_of_name(name)
-        spoken = [w.lower() for w in _SPLIT.split(name if tail is None else tail[0]) if w]
-    spoken, numbers = _unnumbered(spoken, parse_unit(unit))
-    kinds = [(word, _BY_WORD[word]) for word in spoken if word in _BY_WORD]
-    kinds += [(word, _ALSO[word]) for word in spoken if word in _ALSO]
-    if "cell" in spoken or "zelle" in spoken:
+        lower_words = [w.lower() for w in _SPLIT.split(name if tail is None else tail[0]) if w]
+    lower_words, numbers = _unnumbered(lower_words, parse_unit(unit))
+    kinds = [(word, _BY_WORD[word]) for word in lower_words if word in _BY_WORD]
+    kinds += [(word, _ALSO[word]) for word in lower_words if word in _ALSO]
+    if "cell" in lower_words or "zelle" in lower_words:
         kinds = [("loadcell", "force")]
-    kinds += [(w, k) for w in spoken if w not in _BY_WORD and (k := _within(w)) is not None]
+    kinds += [(w, k) for w in lower_words if w not in _BY_WORD and (k := _within(w)) is not None]
     return Header(
         name=name,
         unit=unit,
@@ -217,26 +217,26 @@ def understood(text: str, unit: str = "") -> Header:
         motor=any(word in _MOTOR or word.startswith("motor") for word in words),
         setpoint=any(_is_setpoint(word) for word in words) and not _ACTUAL.intersection(words),
         modelled=any(word in _MODELLED for word in words) and not _ACTUAL.intersection(words),
-        turning=any(word in _ANGLES for word in spoken),
-        label="_".join([w for w in spoken if _is_label(w)] + numbers),
+        turning=any(word in _ANGLES for word in lower_words),
+        label="_".join([w for w in lower_words if _is_label(w)] + numbers),
     )
 
 
 def _unnumbered(words: list[str], unit: Unit | None) -> tuple[list[str], list[str]]:
     """Split numbers off the ends of quantity words such as `q1`; return both."""
-    found, numbers = [], []
+    stems, numbers = [], []
     for word in words:
         match = _NUMBERED.fullmatch(word)
-        known = match is not None and (match[1] in _BY_WORD or match[1] in _GENERIC)
-        if known and match is not None:
+        is_quantity = match is not None and (match[1] in _BY_WORD or match[1] in _GENERIC)
+        if is_quantity and match is not None:
             kinds = {_BY_WORD.get(match[1], ""), _ALSO.get(match[1], "")} & KINDS.keys()
             fits = unit is None or any(unit.dimensions in KINDS[kind] for kind in kinds)
             if fits or not kinds:
-                found.append(match[1])
+                stems.append(match[1])
                 numbers.append(match[2])
                 continue
-        found.append(word)
-    return found, numbers
+        stems.append(word)
+    return stems, numbers
 
 
 def _is_setpoint(word: str) -> bool:
@@ -245,8 +245,8 @@ def _is_setpoint(word: str) -> bool:
 
 
 def _is_label(word: str) -> bool:
-    known = word in _BY_WORD or word in _MOTOR or _is_setpoint(word) or word in _ACTUAL
-    return not known and word not in _GENERIC and _within(word) is None
+    has_meaning = word in _BY_WORD or word in _MOTOR or _is_setpoint(word) or word in _ACTUAL
+    return not has_meaning and word not in _GENERIC and _within(word) is None
 
 
 def _within(word: str) -> str | None:

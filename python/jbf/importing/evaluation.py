@@ -115,7 +115,7 @@ def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str])
     return _sum(node.sign, left, right)
 
 
-def converted(found: Quantity, wanted: Unit, key: str) -> Array:
+def converted(quantity: Quantity, target: Unit, key: str) -> Array:
     """Convert values to the unit that the name of a column implies.
 
     Raises
@@ -123,23 +123,23 @@ def converted(found: Quantity, wanted: Unit, key: str) -> Array:
     InputError
         If the values have other dimensions. The error names no file.
     """
-    values = np.asarray(found.value, dtype=np.float64)
-    if found.unit.fits(wanted):
-        return found.unit.converted(values, wanted)
-    angle = wanted.dimensions[_RAD] - found.unit.dimensions[_RAD]
-    if found.loose and angle == 0:
+    values = np.asarray(quantity.value, dtype=np.float64)
+    if quantity.unit.fits(target):
+        return quantity.unit.converted(values, target)
+    angle = target.dimensions[_RAD] - quantity.unit.dimensions[_RAD]
+    if quantity.loose and angle == 0:
         # A bare factor is in SI units, and supplies the dimensions that are missing.
-        return values * (found.unit.in_si / wanted.in_si)
-    if found.unit is ONE and not found.loose:
-        problem = f"has no unit, but {wanted.text} is required"
+        return values * (quantity.unit.in_si / target.in_si)
+    if quantity.unit is ONE and not quantity.loose:
+        problem = f"has no unit, but {target.text} is required"
         mend = "write a unit in square brackets after each column"
-    elif angle and found.unit.dimensions[:_RAD] == wanted.dimensions[:_RAD]:
+    elif angle and quantity.unit.dimensions[:_RAD] == target.dimensions[:_RAD]:
         problem, mend = (
             "the unit is ambiguous: revolutions, degrees or radians",
             "give a factor its unit: [mm/rev], [counts/rev]",
         )
     else:
-        problem = f"has the unit {found.unit.text}, but {wanted.text} is required"
+        problem = f"has the unit {quantity.unit.text}, but {target.text} is required"
         mend = "give columns and factors their units in square brackets"
     raise InputError(key=f"columns.{key}", problem=problem, mend=mend)
 
@@ -195,8 +195,8 @@ def _root(inner: Quantity) -> Value:
             mend="divide by a unit first",
         )
     with np.errstate(invalid="ignore"):
-        found: Value = np.sqrt(np.asarray(inner.value) * inner.unit.in_si)
-    return found
+        root: Value = np.sqrt(np.asarray(inner.value) * inner.unit.in_si)
+    return root
 
 
 def _not_twice(node: Binary, left: Quantity, right: Quantity) -> None:

@@ -88,14 +88,14 @@ def written(name: str) -> str:
     return f"`{name}`"
 
 
-def parse_expression(text: str, names: Mapping[str, str], known: Sequence[str] = ()) -> Node:
+def parse_expression(text: str, names: Mapping[str, str], columns: Sequence[str] = ()) -> Node:
     """Parse an expression into a tree.
 
     Parameters
     ----------
     names
         Permitted names, and the column that each denotes.
-    known
+    columns
         Columns to suggest if a name is unknown; the keys of `names` by default.
 
     Raises
@@ -103,42 +103,42 @@ def parse_expression(text: str, names: Mapping[str, str], known: Sequence[str] =
     InputError
         If the text is not an expression, or names an unknown column. The error names no file.
     """
-    return _Parser(text, names, known or list(names)).parse()
+    return _Parser(text, names, columns or list(names)).parse()
 
 
 class _Parser:
     """Recursive-descent parser; `at` is the index of the next character."""
 
-    def __init__(self, text: str, names: Mapping[str, str], known: Sequence[str]) -> None:
+    def __init__(self, text: str, names: Mapping[str, str], columns: Sequence[str]) -> None:
         self.text = text
         self.names = names
-        self.known = known
+        self.columns = columns
         self.longest_first = sorted((n for n in names if n), key=len, reverse=True)
         self.at = 0
         self.depth = 0
 
     def parse(self) -> Node:
-        found = self._sum()
+        tree = self._sum()
         self._skip()
         if self.at < len(self.text):
             raise self._wrong(f"{quoted(self.text[self.at :])} is not understood")
-        return found
+        return tree
 
     def _sum(self) -> Node:
         self.depth += 1
         if self.depth > _DEEPEST:
             raise self._wrong("has too many brackets")
-        found = self._product()
+        tree = self._product()
         while sign := self._one_of("+-"):
-            found = Binary(sign, found, self._product())  # type: ignore[arg-type]
+            tree = Binary(sign, tree, self._product())  # type: ignore[arg-type]
         self.depth -= 1
-        return found
+        return tree
 
     def _product(self) -> Node:
-        found = self._signed()
+        tree = self._signed()
         while sign := self._one_of("*/"):
-            found = Binary(sign, found, self._signed())  # type: ignore[arg-type]
-        return found
+            tree = Binary(sign, tree, self._signed())  # type: ignore[arg-type]
+        return tree
 
     def _signed(self) -> Node:
         minus = False
@@ -220,7 +220,7 @@ class _Parser:
 
     def _no_column(self, word: str) -> InputError:
         problem = f"{quoted(self.text)}: the file has no column {quoted(word.strip())}"
-        return InputError(problem=problem, mend=did_you_mean(word, self.known))
+        return InputError(problem=problem, mend=did_you_mean(word, self.columns))
 
     def _wrong(self, problem: str) -> InputError:
         mend = "write columns and numbers with + - * / and brackets, units as [N m] after them"

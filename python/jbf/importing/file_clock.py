@@ -50,8 +50,8 @@ class FileClock:
         """
         time = _time(node, values, units)
         if self.origin_s is None:
-            known = time[np.isfinite(time)]
-            self.origin_s = float(np.floor(known[0])) if _is_since_1970(time) else 0.0
+            finite = time[np.isfinite(time)]
+            self.origin_s = float(np.floor(finite[0])) if _is_since_1970(time) else 0.0
         if not self.origin_s:
             return self.corrected(time)
         column = _column_since_1970(node, values, units)

@@ -92,7 +92,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     made_in: dict[str, Path] = {}
     several = len(source.tables) > 1
     tables = tuple(with_units_of_joint_states(table) for table in source.tables)
-    whole = Counter(column.name for table in tables for column in table.columns)
+    occurrences = Counter(column.name for table in tables for column in table.columns)
     joints = _joints(tables)
     by_voltage = not any(
         c.key in FRICTION and c.key != "voltage_v" for table in tables for c in _candidates(table)
@@ -106,52 +106,52 @@ def guess(source: Source, joint: str | None = None) -> Guess:
             Question(f"[{table.name}]" if several else "file", q) for q in table.questions
         ]
         head = source.head(table, HEAD)
-        heads |= {qualified(table, name, whole): values for name, values in head.items()}
-        found = [
-            replace(c, called=qualified(table, c.column.name, whole))
+        heads |= {qualified(table, name, occurrences): values for name, values in head.items()}
+        candidates = [
+            replace(c, called=qualified(table, c.column.name, occurrences))
             for c in _candidates(table)
             if (c.header.label not in joints or c.header.label == joint)
             and (by_voltage or c.key != "voltage_v")
         ]
         whole_head = len(next(iter(head.values()), ())) < HEAD
-        blank = [c for c in found if whole_head and not np.isfinite(head[c.column.name]).any()]
-        found = [c for c in found if c not in blank]
+        blank = [c for c in candidates if whole_head and not np.isfinite(head[c.column.name]).any()]
+        candidates = [c for c in candidates if c not in blank]
         # Each of several groups has its own clock; no single line of the map names them all.
         own_clock = several and table.clock is not None
         time, open_ = (None, []) if own_clock else guess_time(table, head)
         if time is not None and several:
-            time = replace(time, expression=_qualified(time.expression, table, whole))
-        taken = {} if time is None else {time.key: time}
-        for key in dict.fromkeys(c.key for c in found):
-            rivals = [c for c in found if c.key == key]
+            time = replace(time, expression=_qualified(time.expression, table, occurrences))
+        chosen = {} if time is None else {time.key: time}
+        for key in dict.fromkeys(c.key for c in candidates):
+            rivals = [c for c in candidates if c.key == key]
             if key in ("temperature_c", "pressure_pa") and not _one(rivals, key):
                 # Columns that no model requires are left out without a question.
                 ignored |= {c.column.name: f"several columns may be {key}" for c in rivals}
                 continue
-            entry, rest, asked = _chosen(key, rivals)
-            taken[key] = entry
+            entry, rest, open_questions = _chosen(key, rivals)
+            chosen[key] = entry
             ignored |= dict.fromkeys(rest, f"another column is used for {key}")
-            of = made_in.get(key, file_of(source, table))
-            if key in FRICTION or of == file_of(source, table):
-                questions += asked
-        if not several or len(taken) > (0 if time is None else 1):
+            file = made_in.get(key, file_of(source, table))
+            if key in FRICTION or file == file_of(source, table):
+                questions += open_questions
+        if not several or len(chosen) > (0 if time is None else 1):
             questions += open_ if file_of(source, table) == source.path else _placed(open_, table)
-            for key, entry in taken.items():
+            for key, entry in chosen.items():
                 if key not in entries:
                     entries[key] = entry
                     made_in[key] = file_of(source, table)
-                    other = time is not None and time is not entries.get("time_s")
-                    if other and key != "time_s" and time is not None:
+                    separate_clock = time is not None and time is not entries.get("time_s")
+                    if separate_clock and key != "time_s" and time is not None:
                         clocks[key] = time.expression
                 elif key not in (*FRICTION, "time_s") and made_in[key] != file_of(source, table):
                     # The clock of the main file is that of the recording.
                     ignored[column_of(entry)] = f"{key} is read from {made_in[key].name}"
                 elif key != "time_s":
-                    ask = (
+                    message = (
                         f"is also in [{table.name}]; set table under [file], or write the full name"
                     )
-                    questions.append(Question(key, ask))
-        ignored |= _unused_columns(table, found, time)
+                    questions.append(Question(key, message))
+        ignored |= _unused_columns(table, candidates, time)
         ignored |= {c.column.name: "contains no value" for c in blank}
     if "load_n_m" in entries and not any(key in entries for key in FRICTION):
         entries["torque_n_m"] = replace(entries.pop("load_n_m"), key="torque_n_m")
@@ -169,9 +169,9 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         entries["time_s"] = by_motion
         unit = by_motion.expression[by_motion.expression.rindex("[") :]
         # The unit of times in another file is independent.
-        of = made_in["time_s"]
+        file = made_in["time_s"]
         clocks = {
-            key: text.replace(f"[{OPEN}]", unit) if made_in[key] == of else text
+            key: text.replace(f"[{OPEN}]", unit) if made_in[key] == file else text
             for key, text in clocks.items()
         }
     questions += contradictions(entries, tables, heads)
@@ -190,12 +190,12 @@ def guess(source: Source, joint: str | None = None) -> Guess:
 
 def _joints(tables: Sequence[Table]) -> list[str]:
     """Return the labels of joints if several joints have both a friction and a motion."""
-    found: dict[bool, list[str]] = {True: [], False: []}
+    labels: dict[bool, list[str]] = {True: [], False: []}
     for table in tables:
         for candidate in _candidates(table):
             if candidate.key in (*FRICTION, *MOTION) and candidate.header.label:
-                found[candidate.key in FRICTION].append(candidate.header.label)
-    both = [label for label in dict.fromkeys(found[False]) if label in found[True]]
+                labels[candidate.key in FRICTION].append(candidate.header.label)
+    both = [label for label in dict.fromkeys(labels[False]) if label in labels[True]]
     return both if len(both) > 1 else []
 
 
@@ -204,12 +204,12 @@ def _placed(questions: list[Question], table: Table) -> list[Question]:
     return [replace(question, place=f"{table.name}/{question.place}") for question in questions]
 
 
-def _qualified(expression: str, table: Table, whole: Counter[str]) -> str:
+def _qualified(expression: str, table: Table, occurrences: Counter[str]) -> str:
     """Add the table name to the columns of a time expression whose names occur in other tables."""
     for column in table.columns:
-        if whole[column.name] > 1:
+        if occurrences[column.name] > 1:
             expression = expression.replace(
-                written(column.name), written(qualified(table, column.name, whole))
+                written(column.name), written(qualified(table, column.name, occurrences))
             )
     return expression
 
@@ -219,8 +219,8 @@ def _order(key: str) -> int:
 
 
 def _candidates(table: Table) -> list[Candidate]:
-    found = [c for column in table.columns if (c := _candidate(column, table)) is not None]
-    return [c for c in found if c.key != "time_s"]
+    candidates = [c for column in table.columns if (c := _candidate(column, table)) is not None]
+    return [c for c in candidates if c.key != "time_s"]
 
 
 def _candidate(column: Column, table: Table) -> Candidate | None:
@@ -229,8 +229,10 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
     if column.name in KNOWN:
         header = understood(column.name)
         if column.unit and not _fits(column.unit, column.name):
-            ask = f"its unit {column.unit} contradicts its name ({wanted_unit(column.name).text})"
-            return Candidate(column.name, column, header, False, "by name", ask)
+            question = (
+                f"its unit {column.unit} contradicts its name ({wanted_unit(column.name).text})"
+            )
+            return Candidate(column.name, column, header, False, "by name", question)
         return Candidate(column.name, column, header, True, "name of a jbf column")
     header = understood(column.name, column.unit)
     if header.kind is None and not header.setpoint:
@@ -249,8 +251,8 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
         if kind == "time":
             return None  # a time without a unit of time: the time is searched for elsewhere
         if kind is not None and header.sure:
-            ask = f"{header.unit} is not a unit of {kind}; write its unit"
-            return Candidate(_key(kind, header), column, header, False, why, ask)
+            question = f"{header.unit} is not a unit of {kind}; write its unit"
+            return Candidate(_key(kind, header), column, header, False, why, question)
         kind = next((k for k in _BY_UNIT if unit.dimensions in KINDS[k]), None)
         if kind == "torque" and unit.dimensions == NONE:
             kind = None
@@ -259,24 +261,28 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
         return None
     key = _key(kind, header)
     if header.unit in ASK:
-        ask = (
+        question = (
             f"the unit {header.unit} is ambiguous: {ASK[header.unit]}; write one of "
             "them after the column"
         )
-        return Candidate(key, column, header, False, why, ask)
+        return Candidate(key, column, header, False, why, question)
     if kind == "voltage" and not header.motor:
-        ask = "is this the motor's voltage? If so, replace [?] by [V]; results are then in volts"
-        return Candidate(key, column, header, False, why, ask)
+        question = (
+            "is this the motor's voltage? If so, replace [?] by [V]; results are then in volts"
+        )
+        return Candidate(key, column, header, False, why, question)
     if unit is None:
-        said = f"the unit {header.unit!r} is not known" if header.unit else "it has no unit"
-        own = wanted_unit(key).text
-        ask = f"{said}; write it after the column, such as {_EXAMPLES.get(own, f'[{own}]')}"
-        return Candidate(key, column, header, False, why, ask)
+        problem = f"the unit {header.unit!r} is not known" if header.unit else "it has no unit"
+        target = wanted_unit(key).text
+        question = (
+            f"{problem}; write it after the column, such as {_EXAMPLES.get(target, f'[{target}]')}"
+        )
+        return Candidate(key, column, header, False, why, question)
     if unit.dimensions == COUNT:
-        ask = (
+        question = (
             "how many counts per revolution (or metre)? Write / 4096 [counts/rev] after the column"
         )
-        return Candidate(key, column, header, False, why, ask)
+        return Candidate(key, column, header, False, why, question)
     sure = why == "by name" or len(header.name) <= 2
     return Candidate(key, column, header, sure, "by name and unit" if why == "by name" else why)
 
@@ -318,8 +324,8 @@ def _key(kind: str, header: Header) -> str:
 
 def _one(rivals: list[Candidate], key: str) -> bool:
     """Return whether the choice among the candidates is unambiguous."""
-    own = [c for c in rivals if c.column.name == key]
-    return len(own) == 1 or (len(rivals) == 1 and rivals[0].sure)
+    exact = [c for c in rivals if c.column.name == key]
+    return len(exact) == 1 or (len(rivals) == 1 and rivals[0].sure)
 
 
 def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
@@ -328,15 +334,15 @@ def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Q
     named = [c for c in rivals if c.why != "by unit"]
     if named and len(named) < len(rivals):
         # A candidate identified by its name takes precedence over those identified by unit only.
-        entry, rest, asked = _chosen(key, named)
-        return entry, [*rest, *(c.called for c in rivals if c not in named)], asked
-    own = [c for c in rivals if c.column.name == key]
-    if own or len(sure) == 1 or len(rivals) == 1:
-        best = (own or sure or rivals)[0]
+        entry, rest, open_questions = _chosen(key, named)
+        return entry, [*rest, *(c.called for c in rivals if c not in named)], open_questions
+    exact = [c for c in rivals if c.column.name == key]
+    if exact or len(sure) == 1 or len(rivals) == 1:
+        best = (exact or sure or rivals)[0]
         questions = [] if best.question is None else [Question(best.column.name, best.question)]
         if not best.sure and best.question is None and key in (*FRICTION, *MOTION):
-            ask = f"is it {key}? Only its unit indicates this; write it into the map"
-            questions = [Question(best.column.name, ask)]
+            question = f"is it {key}? Only its unit indicates this; write it into the map"
+            questions = [Question(best.column.name, question)]
         rest = [c.column.name for c in rivals if c is not best]
         return Entry(key, best.expression, best.why, not questions), rest, questions
     names = ", ".join(c.called for c in rivals)
@@ -352,28 +358,32 @@ def _missing(entries: Mapping[str, Entry], source: Source, lone_motion: bool) ->
     """Return questions for a missing friction or motion; a motion alone is a coast-down."""
     names = [c.name for t in source.tables for c in t.columns]
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
-    found = []
+    questions = []
     if not any(key in entries for key in FRICTION) and not lone_motion:
         if "load_n" in entries:
-            ask = (
+            question = (
                 f"is {entries['load_n'].expression} the friction or the load? For "
                 "friction write friction_n"
             )
         else:
-            ask = (
+            question = (
                 f"which column is the friction force or torque? Columns: {shown}. For "
                 'a coast-down write friction = "none" and the moved mass or inertia '
                 "under [drive]"
             )
-        found.append(Question("friction", ask))
+        questions.append(Question("friction", question))
     if not any(key in entries for key in MOTION):
-        found.append(Question("motion", f"which column is a position or a speed? Columns: {shown}"))
-    return found
+        questions.append(
+            Question("motion", f"which column is a position or a speed? Columns: {shown}")
+        )
+    return questions
 
 
-def _unused_columns(table: Table, found: list[Candidate], time: Entry | None) -> dict[str, str]:
-    used = {c.column.name for c in found}
-    left = {}
+def _unused_columns(
+    table: Table, candidates: list[Candidate], time: Entry | None
+) -> dict[str, str]:
+    used = {c.column.name for c in candidates}
+    reasons = {}
     for column in table.columns:
         if (
             column.name in used
@@ -394,5 +404,5 @@ def _unused_columns(table: Table, found: list[Candidate], time: Entry | None) ->
             why = "not known"
         else:
             why = f"{header.kind}: not used"
-        left[column.name] = why
-    return left
+        reasons[column.name] = why
+    return reasons

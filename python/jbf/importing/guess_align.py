@@ -87,21 +87,21 @@ def _tried(
         if any(f"[{OPEN}]" in channel.clock for channel in channels):
             return None if align else InputError(problem="a time is unknown")
         with TemporaryDirectory(prefix="jbf-align-") as folder:
-            (found,) = aligned(source, mapping, channels, Path(folder))
+            (alignment,) = aligned(source, mapping, channels, Path(folder))
     except InputError as error:
         return error
-    if found.by == "dates":
-        return str(found)
-    return f"{found.brief}: correlation {abs(found.correlation or 0.0):.3f}"
+    if alignment.by == "dates":
+        return str(alignment)
+    return f"{alignment.brief}: correlation {abs(alignment.correlation or 0.0):.3f}"
 
 
 def _shared(source: SideBySide, file: Path) -> list[str]:
     """Return pairs of equally named columns of the main file and another file, as in the map."""
     by_name: tuple[dict[str, str], dict[str, str]] = ({}, {})
     for table in source.tables:
-        of = source.file_of(table)
-        if of in (source.path, file):
-            place = by_name[of == file]
+        path = source.file_of(table)
+        if path in (source.path, file):
+            place = by_name[path == file]
             for column in table.columns:
                 if _may_be_common(column, table):
                     name = understood(column.name).name.lower()

@@ -38,33 +38,33 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
         return {}, []
     motion = "linear" if linear else "rotary"
     drive: dict[str, Any] = {"motion": motion}
-    asked: list[str] = []
+    open_keys: list[str] = []
     if "friction_n" in keys:
         drive["friction"] = "force"
     elif keys & {"torque_n_m", "motor_torque_n_m"}:
         drive["friction"] = "torque"
     elif "torque_percent" in keys:
         drive["friction"] = "percent"
-        asked.append("rated_torque_n_m")
+        open_keys.append("rated_torque_n_m")
     elif "force_percent" in keys:
         drive["friction"] = "percent"
-        asked.append("rated_force_n")
+        open_keys.append("rated_force_n")
     elif "current_a" in keys:
         drive["friction"] = "current"
-        asked.append("torque_constant_n_m_a")
+        open_keys.append("torque_constant_n_m_a")
     elif "voltage_v" in keys:
         drive["friction"] = "voltage"
     elif lone_motion:
         drive["friction"] = "none"
-        asked.append("mass_kg" if linear else "inertia_kg_m2")
+        open_keys.append("mass_kg" if linear else "inertia_kg_m2")
     else:
         drive["friction"] = OPEN  # the friction itself is a question
     of_motor = any(key.startswith("motor_") for key in keys)
-    if linear and (of_motor or set(asked) & {"rated_torque_n_m", "torque_constant_n_m_a"}):
-        asked.append("pitch_m")
-    drive |= dict.fromkeys(asked, OPEN)
+    if linear and (of_motor or set(open_keys) & {"rated_torque_n_m", "torque_constant_n_m_a"}):
+        open_keys.append("pitch_m")
+    drive |= dict.fromkeys(open_keys, OPEN)
     return {"drive": drive}, [
-        Question(f"drive.{key}", f"{_ASKS[key]} Write it into the map") for key in asked
+        Question(f"drive.{key}", f"{_ASKS[key]} Write it into the map") for key in open_keys
     ]
 
 
@@ -84,22 +84,22 @@ def assumed_machine(sections: Mapping[str, Mapping[str, Any]]) -> str | None:
 
 def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
     """Rename entries by machine type: on a slide, a recorded torque is that of the motor."""
-    found = dict(entries)
-    places = [key for key in ("position_m", "velocity_m_s") if key in found]
-    of_torque = found.keys() & {"torque_n_m", "current_a", "torque_percent", "voltage_v"}
-    if of_torque and places and all(found[k].expression.endswith(f"[{OPEN}]") for k in places):
+    renamed = dict(entries)
+    places = [key for key in ("position_m", "velocity_m_s") if key in renamed]
+    of_torque = renamed.keys() & {"torque_n_m", "current_a", "torque_percent", "voltage_v"}
+    if of_torque and places and all(renamed[k].expression.endswith(f"[{OPEN}]") for k in places):
         # If a torque is recorded, a position without a unit is more often an angle.
         for key, turning in (("position_m", "angle_rad"), ("velocity_m_s", "velocity_rad_s")):
-            if key in found and turning not in found:
-                found[turning] = replace(found.pop(key), key=turning)
-        return found
+            if key in renamed and turning not in renamed:
+                renamed[turning] = replace(renamed.pop(key), key=turning)
+        return renamed
     linear = bool(places)
-    if not linear or ("friction_n" in found and "velocity_m_s" in found):
-        return found
+    if not linear or ("friction_n" in renamed and "velocity_m_s" in renamed):
+        return renamed
     for key in ("torque_n_m", "angle_rad", "velocity_rad_s", "speed_rpm"):
-        if key in found and f"motor_{key}" not in found:
-            found[f"motor_{key}"] = replace(found.pop(key), key=f"motor_{key}")
-    return found
+        if key in renamed and f"motor_{key}" not in renamed:
+            renamed[f"motor_{key}"] = replace(renamed.pop(key), key=f"motor_{key}")
+    return renamed
 
 
 def redundant_motor_columns(entries: Mapping[str, Entry]) -> list[str]:
@@ -129,11 +129,11 @@ def force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[
         return [Question("torque_n_m", f"which is the friction: {both}?")]
     lever = f"{force.expression} * {OPEN} [mm]"
     entries["torque_n_m"] = Entry("torque_n_m", lever, force.why, sure=False)
-    ask = (
+    question = (
         f"at what radius does {force.expression} act? Write it in place of the {OPEN}; "
         "for a journal bearing write friction_n and [bearing] (docs/import.md)"
     )
-    return [Question("torque_n_m", ask)]
+    return [Question("torque_n_m", question)]
 
 
 def column_of(entry: Entry) -> str:

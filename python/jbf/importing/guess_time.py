@@ -35,8 +35,8 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
     """Return the map entry for the time of a table, and open questions about it."""
     if table.clock is not None:
         return Entry("time_s", written(table.clock), "clock of the format"), []
-    own = [c for c in table.columns if c.name == "time_s" and c.kind == "number"]
-    if own:
+    exact = [c for c in table.columns if c.name == "time_s" and c.kind == "number"]
+    if exact:
         return Entry("time_s", written("time_s"), "name of a jbf column"), []
     pairs = _stamps_in_two_columns(table, head)
     in_pairs = {name for pair in pairs for name in pair}
@@ -72,18 +72,18 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
         return _one_of([c.name for c in numbers])
     if table.rate_hz is not None:
         return None, []
-    ask = (
+    question = (
         "no column contains it; name the column, or set rate_hz (samples per second) "
         "under [file], or steady = true for steady states (a Stribeck curve)"
     )
-    return None, [Question("time_s", ask)]
+    return None, [Question("time_s", question)]
 
 
 def _one_of(candidates: Sequence[str]) -> Found:
     """Ask which of several times is that of the recording."""
     names = ", ".join(candidates)
-    ask = f"which of these is it: {names}? Those of other channels belong under [clocks]"
-    return Entry("time_s", OPEN, f"one of: {names}", sure=False), [Question("time_s", ask)]
+    question = f"which of these is it: {names}? Those of other channels belong under [clocks]"
+    return Entry("time_s", OPEN, f"one of: {names}", sure=False), [Question("time_s", question)]
 
 
 def _stamps_in_two_columns(table: Table, head: Mapping[str, Values]) -> list[tuple[str, str]]:
@@ -119,8 +119,8 @@ def time_by_motion(
     for pair in PAIRS:
         if not all(key in entries for key in pair):
             continue
-        known = [entries[key].sure for key in pair]
-        if any(known) != all(known):
+        certain = [entries[key].sure for key in pair]
+        if any(certain) != all(certain):
             continue
         assumed = {key: _in_its_unit(entries[key]) for key in pair}
         for unit in ("s", "ms", "us", "min"):
@@ -171,34 +171,34 @@ def _of_number(column: Column, step: float | None = None) -> Found:
         text = written(column.name) + ("" if in_name else f" [{column.unit}]")
         unit = parse_unit(header.unit)
         if step is not None and unit is not None and step * unit.in_si < SHORTEST_S:
-            ask = (
+            question = (
                 f"the times of {text} would be {step * unit.in_si:.2g} s apart, which "
                 "is not plausible: write its unit after the column"
             )
             open_text = f"{written(header.name)} [{OPEN}]"
             entry = Entry("time_s", open_text, "by name", sure=False)
-            return entry, [Question(column.name, ask)]
+            return entry, [Question(column.name, question)]
         return Entry("time_s", text, "by name and unit"), []
     if header.unit:
-        ask = (
+        question = (
             f"{header.unit} is not a unit of time; write one such as [min] or [ms] after the column"
         )
     else:
-        ask = "it has no unit; write [s], [ms] or [us] after the column"
+        question = "it has no unit; write [s], [ms] or [us] after the column"
         if step is not None:
-            ask += f" (it increases by {step:.4g} per row)"
+            question += f" (it increases by {step:.4g} per row)"
     entry = Entry("time_s", f"{written(column.name)} [{OPEN}]", "by name", sure=False)
-    return entry, [Question(column.name, ask)]
+    return entry, [Question(column.name, question)]
 
 
 def _since_1970(column: Column, values: Values) -> Entry | None:
     """Return an entry for a number without a unit if it counts from 1970 in exactly one unit."""
-    known = np.asarray(values, dtype=np.float64)
-    known = known[np.isfinite(known)]
-    if understood(column.name, column.unit).unit or not known.size:
+    times = np.asarray(values, dtype=np.float64)
+    times = times[np.isfinite(times)]
+    if understood(column.name, column.unit).unit or not times.size:
         return None
     for unit, size in (("s", 1.0), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)):
-        if _FROM_S * size < known.min() and known.max() < _TO_S * size:
+        if _FROM_S * size < times.min() and times.max() < _TO_S * size:
             why = f"{unit} since 1970, from the magnitude"
             return Entry("time_s", f"{written(column.name)} [{unit}]", why)
     return None
@@ -206,10 +206,10 @@ def _since_1970(column: Column, values: Values) -> Entry | None:
 
 def _runs_forward(values: Values) -> bool:
     """Return whether a column may be a clock: it increases, except where a recording restarts."""
-    known = np.asarray(values, dtype=np.float64)
-    steps = np.diff(known[np.isfinite(known)])
+    times = np.asarray(values, dtype=np.float64)
+    steps = np.diff(times[np.isfinite(times)])
     steps = steps[steps != 0.0]
-    if len(known) < FEW:
+    if len(times) < FEW:
         return True
     return bool(len(steps) and np.mean(steps > 0.0) > FORWARD)
 

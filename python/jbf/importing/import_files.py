@@ -67,8 +67,8 @@ def look(path: PathLike, joint: str | None = None, beside: Sequence[PathLike] = 
     (True, 'time_s')
     """
     with open_recording(path, _further(beside)) as source:
-        found = guess(source, joint)
-        return with_alignment(found, source) if isinstance(source, SideBySide) else found
+        proposal = guess(source, joint)
+        return with_alignment(proposal, source) if isinstance(source, SideBySide) else proposal
 
 
 def import_files(
@@ -155,8 +155,8 @@ def import_files(
             recordings[0].notes.append(machine)
         pieces = _pieces(recordings, mapping)
         for recording in recordings:
-            own = [p for p in pieces if p.keep and p.file == recording.path.name]
-            check_loads(recording, own, mapping)
+            run_pieces = [p for p in pieces if p.keep and p.file == recording.path.name]
+            check_loads(recording, run_pieces, mapping)
         ledger = ledger_of(recordings, pieces, mapping)
         pictures = tuple(overview(recording) for recording in recordings)
         temporary = None
@@ -199,8 +199,8 @@ def read_recording(
     >>> rig.quantities.motion, len(runs)
     ('linear', 1)
     """
-    found = import_files(files, map, whole=whole, joint=joint, beside=beside, progress=progress)
-    return found.rig, found.runs
+    campaign = import_files(files, map, whole=whole, joint=joint, beside=beside, progress=progress)
+    return campaign.rig, campaign.runs
 
 
 def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
@@ -212,7 +212,7 @@ def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
     for at, path in enumerate(paths):
         if not os.path.isdir(path):
             check_readable(path, pipes=False)
-        if path.name in [other.name for other in paths[:at]]:
+        if path.name in [earlier.name for earlier in paths[:at]]:
             raise InputError(
                 file=path, problem="another file has the same name", mend="rename one of them"
             )
@@ -249,12 +249,14 @@ def _map(
         return given, text
     if given is not None:
         return read_map(given), read_text(given)
-    found = look(paths[0], joint, beside)
-    if not found.sure:
-        lines = [f"{found.path}, {question}" for question in found.questions]
+    proposal = look(paths[0], joint, beside)
+    if not proposal.sure:
+        lines = [f"{proposal.path}, {question}" for question in proposal.questions]
         mend = "give a map: jbf import FILE"
-        raise OpenQuestions(lines, file=found.path, problem=str(found.questions[0]), mend=mend)
-    return found.map(), map_text(found)
+        raise OpenQuestions(
+            lines, file=proposal.path, problem=str(proposal.questions[0]), mend=mend
+        )
+    return proposal.map(), map_text(proposal)
 
 
 def _read(path: Path, mapping: Map, folder: Path, progress: Report | None) -> Recording:

@@ -33,8 +33,8 @@ class JointNotChosen(InputError):
 
     def __init__(self, path: Path, joints: Sequence[str], named: str | None) -> None:
         self.joints = tuple(joints)
-        held = f"contains the joints {', '.join(joints)}"
-        problem = held if named is None else f"{held}, but not {named}"
+        contents = f"contains the joints {', '.join(joints)}"
+        problem = contents if named is None else f"{contents}, but not {named}"
         mend = f"choose one: --joint {joints[0]}, or --joint all with --folder"
         super().__init__(file=path, problem=problem, mend=mend)
 
@@ -45,13 +45,13 @@ class JointNotChosen(InputError):
 def with_units_of_joint_states(table: Table) -> Table:
     """Add the units of revolute joints (`sensor_msgs/JointState`) to a table without units."""
     words = {c.name: set(re.findall("[a-z]+", c.name.lower())) for c in table.columns}
-    there = {word for found in words.values() for word in found}
-    units = next((units for needed, units in JOINT_UNITS if needed <= there), {})
+    all_words = {word for column_words in words.values() for word in column_words}
+    units = next((units for needed, units in JOINT_UNITS if needed <= all_words), {})
     if not units or any(c.unit for c in table.columns if words[c.name] & units.keys()):
         return table
     columns = []
     for column in table.columns:
-        said = [unit for word, unit in units.items() if word in words[column.name]]
-        bare = len(said) == 1 and not understood(column.name).unit
-        columns.append(replace(column, unit=said[0]) if bare else column)
+        matching = [unit for word, unit in units.items() if word in words[column.name]]
+        bare = len(matching) == 1 and not understood(column.name).unit
+        columns.append(replace(column, unit=matching[0]) if bare else column)
     return replace(table, columns=tuple(columns))

@@ -51,7 +51,7 @@ def ledger_of(
 
 
 def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
-    own = [piece for piece in pieces if piece.file == recording.path.name]
+    file_pieces = [piece for piece in pieces if piece.file == recording.path.name]
     return {
         "file": recording.path.name,
         "sha256": file_hash(recording.path),
@@ -63,8 +63,8 @@ def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
             {k: v for k, v in asdict(d).items() if v is not None} for d in recording.dropped
         ],
         "notes": recording.notes,
-        "runs": [_span(piece) | {"name": piece.name} for piece in own if piece.keep],
-        "left_out": [_span(piece) | {"why": piece.why} for piece in own if not piece.keep],
+        "runs": [_span(piece) | {"name": piece.name} for piece in file_pieces if piece.keep],
+        "left_out": [_span(piece) | {"why": piece.why} for piece in file_pieces if not piece.keep],
     }
 
 
@@ -87,19 +87,19 @@ def _further_files(recording: Recording) -> dict[str, Any]:
 
 
 def _span(piece: Piece) -> dict[str, Any]:
-    found: dict[str, Any] = {"from_s": piece.from_s, "to_s": piece.to_s}
-    return found | ({"stretch": piece.segment + 1} if piece.segment else {})
+    content: dict[str, Any] = {"from_s": piece.from_s, "to_s": piece.to_s}
+    return content | ({"stretch": piece.segment + 1} if piece.segment else {})
 
 
 def ledgers_of_runs(paths: Iterable[Path | None]) -> list[dict[str, Any]]:
     """Return the ledgers in the folders of given runs; unreadable ledgers are skipped."""
     folders = dict.fromkeys(path.resolve().parent for path in paths if path is not None)
-    found = []
+    ledgers = []
     for folder in folders:
         try:
             content = json.loads((folder / NAME).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             continue
         if isinstance(content, dict) and isinstance(content.get("files"), list):
-            found.append(content)
-    return found
+            ledgers.append(content)
+    return ledgers

@@ -37,16 +37,16 @@ CHOICES = {
 
 def map_was_written_for(text: str, file_name: str) -> bool:
     """Return whether an inspection of a file of that name wrote this map."""
-    made = re.search(r"^#   jbf import (.+) --map ", text, re.MULTILINE)
-    return made is not None and Path(made[1]).name == file_name
+    command = re.search(r"^#   jbf import (.+) --map ", text, re.MULTILINE)
+    return command is not None and Path(command[1]).name == file_name
 
 
 def map_text(guess: Guess, name: str = "map.toml") -> str:
     """Return the text of the map, with comments."""
     parts = [_HEAD.format(file=guess.path, map=name)]
     if guess.questions:
-        asked = "\n".join(f"#   {question}" for question in guess.questions)
-        parts.append(f"# Open:\n{asked}\n")
+        questions = "\n".join(f"#   {question}" for question in guess.questions)
+        parts.append(f"# Open:\n{questions}\n")
     if guess.beside:
         names = ", ".join(_quoted(_relative(path, guess.path)) for path in guess.beside)
         parts.append(
@@ -69,8 +69,10 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
     lines += [f"# not taken: {name} ({why})" for name, why in guess.ignored.items()]
     parts.append("\n".join(lines) + "\n")
     if guess.clocks:
-        own = [f"{key} = {_quoted(text)}" for key, text in guess.clocks.items()]
-        parts.append("\n".join(["# Columns with a time of their own.", "[clocks]", *own]) + "\n")
+        assignments = [f"{key} = {_quoted(text)}" for key, text in guess.clocks.items()]
+        parts.append(
+            "\n".join(["# Columns with a time of their own.", "[clocks]", *assignments]) + "\n"
+        )
     parts += _align(guess)
     parts.append(_cut(guess))
     machine = assumed_machine(guess.rig)
@@ -130,6 +132,6 @@ def _cut(guess: Guess) -> str:
         for column in table.columns:
             header = understood(column.name, column.unit)
             if header.kind == "run" or header.setpoint:
-                way = "run" if header.kind == "run" else "set_point"
-                return f"{_CUT.format(way=way)}# column = {_quoted(f'`{column.name}`')}\n"
+                method = "run" if header.kind == "run" else "set_point"
+                return f"{_CUT.format(way=method)}# column = {_quoted(f'`{column.name}`')}\n"
     return _CUT.format(way="rests")

@@ -140,14 +140,14 @@ class Map:
 
     def _complete(self) -> None:
         coasts = self.rig.get("drive", {}).get("friction") == "none"
-        for wanted, what in ((FRICTION, "a friction"), (MOTION, "a motion")):
-            if wanted is FRICTION and coasts:
+        for keys, noun in ((FRICTION, "a friction"), (MOTION, "a motion")):
+            if keys is FRICTION and coasts:
                 continue
-            if not any(key in self.columns for key in wanted):
+            if not any(key in self.columns for key in keys):
                 raise InputError(
                     key="columns",
-                    problem=f"contains no column for {what}",
-                    mend=f"give one of {', '.join(wanted)}",
+                    problem=f"contains no column for {noun}",
+                    mend=f"give one of {', '.join(keys)}",
                 )
         if not self.rig:
             raise InputError(
@@ -217,10 +217,10 @@ def _further_paths(names: object, folder: Path) -> tuple[Path, ...]:
 
 
 def _align(section: Mapping[str, Any]) -> dict[str, str | float]:
-    found: dict[str, str | float] = {}
+    offsets: dict[str, str | float] = {}
     for key, value in section.items():
         if isinstance(value, str):
-            found[key] = value
+            offsets[key] = value
             continue
         try:
             seconds = number(value, f"align.{key}")
@@ -232,12 +232,12 @@ def _align(section: Mapping[str, Any]) -> dict[str, str | float]:
             raise InputError(
                 key=f"align.{key}", problem=f"{value!r} is not a signal or an offset", mend=mend
             )
-        found[key] = seconds
-    return found
+        offsets[key] = seconds
+    return offsets
 
 
 def _texts(content: Mapping[str, Any], section: str) -> dict[str, str]:
-    found = {}
+    texts = {}
     for key, value in table(content.get(section, {}), section).items():
         if not isinstance(value, str):
             raise InputError(
@@ -245,8 +245,8 @@ def _texts(content: Mapping[str, Any], section: str) -> dict[str, str]:
                 problem=f"{value!r} is not text",
                 mend='write an expression in quotes, such as "Force [N] / 2"',
             )
-        found[key] = value
-    return found
+        texts[key] = value
+    return texts
 
 
 _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
@@ -268,23 +268,23 @@ def _options(section: Mapping[str, Any]) -> Options:
     refuse_unknown(section, [*(f.name for f in fields(Options)), "beside"], "file.")
     given = dict(section)
     for key, value in given.items():
-        kind, wanted = _KINDS[key]
-        good = isinstance(value, kind) and isinstance(value, bool) == (kind is bool)
+        kind, expected = _KINDS[key]
+        valid = isinstance(value, kind) and isinstance(value, bool) == (kind is bool)
         if key == "decimal":
-            good = value in (",", ".")
+            valid = value in (",", ".")
         elif key == "dates":
-            good = value in ("day_first", "month_first")
+            valid = value in ("day_first", "month_first")
         elif key == "rate_hz":
-            good = good and 0.0 < value <= LARGEST
+            valid = valid and 0.0 < value <= LARGEST
         elif key in ("header", "units"):
-            good = good and value >= 0
+            valid = valid and value >= 0
         elif key == "delimiter":
-            good = good and len(value) == 1
+            valid = valid and len(value) == 1
         elif key == "empty":
-            good = good and all(isinstance(word, str) for word in value)
-        if not good:
+            valid = valid and all(isinstance(word, str) for word in value)
+        if not valid:
             raise InputError(
-                key=f"file.{key}", problem=f"{value!r} is not valid", mend=f"write {wanted}"
+                key=f"file.{key}", problem=f"{value!r} is not valid", mend=f"write {expected}"
             )
     if "empty" in given:
         given["empty"] = tuple(given["empty"])

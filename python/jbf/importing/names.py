@@ -14,35 +14,37 @@ def column_names(tables: Sequence[Table]) -> dict[str, str]:
 
     A column name that occurs in several tables is valid only together with the name of its table.
     """
-    whole = Counter(column.name for table in tables for column in table.columns)
-    found: dict[str, str] = {}
+    occurrences = Counter(column.name for table in tables for column in table.columns)
+    column_of_name: dict[str, str] = {}
     bare: Counter[str] = Counter()
     shorter: dict[str, str] = {}
     for table in tables:
         for column in table.columns:
-            if whole[column.name] == 1:
-                found[column.name] = column.name
-            found[f"{table.name}/{column.name}"] = qualified(table, column.name, whole)
+            if occurrences[column.name] == 1:
+                column_of_name[column.name] = column.name
+            column_of_name[f"{table.name}/{column.name}"] = qualified(
+                table, column.name, occurrences
+            )
             name = understood(column.name).name
             for short in (name, *([f"{table.name}/{name}"] if table.name else [])):
                 bare[short] += 1
-                shorter[short] = qualified(table, column.name, whole)
+                shorter[short] = qualified(table, column.name, occurrences)
     for name, column_name in shorter.items():
         if bare[name] == 1:
-            found.setdefault(name, column_name)
-    return found
+            column_of_name.setdefault(name, column_name)
+    return column_of_name
 
 
-def qualified(table: Table, name: str, whole: Counter[str]) -> str:
+def qualified(table: Table, name: str, occurrences: Counter[str]) -> str:
     """Return the name of a column, with that of its table if it occurs in several tables."""
-    return name if whole[name] == 1 else f"{table.name}/{name}"
+    return name if occurrences[name] == 1 else f"{table.name}/{name}"
 
 
 def located(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
     """Return the table and its column for each name that `column_names` returns."""
-    whole = Counter(column.name for table in tables for column in table.columns)
+    occurrences = Counter(column.name for table in tables for column in table.columns)
     return {
-        qualified(table, column.name, whole): (table, column.name)
+        qualified(table, column.name, occurrences): (table, column.name)
         for table in tables
         for column in table.columns
     }

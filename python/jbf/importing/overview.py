@@ -47,9 +47,9 @@ def overview(recording: Recording) -> Overview:
         offset = max(offset, begin + starts[-1]) + stream.at(end - 1) - begin
     curves = {}
     for keys in (FRICTION, MOTION, LOADS):
-        found = recording.stream_of(*keys)
-        if found is not None:
-            curves[found[1]] = _curve(*found, starts)
+        stream_and_column = recording.stream_of(*keys)
+        if stream_and_column is not None:
+            curves[stream_and_column[1]] = _curve(*stream_and_column, starts)
     return Overview(recording.path.name, tuple(starts), curves)
 
 

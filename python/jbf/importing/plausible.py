@@ -32,7 +32,7 @@ def contradictions(
     by_key: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
 ) -> list[Question]:
     """Return a question for each speed that is not the change of its position."""
-    found = []
+    questions = []
     for place, speed in PAIRS:
         if not {place, speed, "time_s"} <= by_key.keys():
             continue
@@ -40,10 +40,12 @@ def contradictions(
             continue
         ratio = speed_ratio(by_key, (place, speed), tables, heads)
         if ratio is not None and not 1.0 / OFF < ratio < OFF:
-            of = f"{by_key[speed].expression} is {ratio:.4g} times the derivative of"
-            ask = f"{of} {by_key[place].expression}: one unit, or that of the time, is wrong"
-            found.append(Question(speed, f"{ask}; write the right unit after the column"))
-    return found
+            statement = f"{by_key[speed].expression} is {ratio:.4g} times the derivative of"
+            question = (
+                f"{statement} {by_key[place].expression}: one unit, or that of the time, is wrong"
+            )
+            questions.append(Question(speed, f"{question}; write the right unit after the column"))
+    return questions
 
 
 def speed_ratio(
@@ -64,8 +66,8 @@ def speed_ratio(
         return None
     if len({len(column) for column in values}) != 1 or len(values[0]) < _LEAST:
         return None
-    good = np.all(np.isfinite(values), axis=0)
-    time, place, speed = (column[good] for column in values)
+    finite = np.all(np.isfinite(values), axis=0)
+    time, place, speed = (column[finite] for column in values)
     steps = np.diff(time)
     if len(time) < _LEAST or not (steps > 0.0).any():
         return None

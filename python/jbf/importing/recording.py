@@ -62,8 +62,10 @@ def read_recording(
             recording.alignments = aligned(source, mapping, channels, folder, recording.clocks)
         groups = Counter((channel.table.name, channel.clock) for channel in channels)
         for number, (name, clock) in enumerate(groups):
-            own = [c for c in channels if (c.table.name, c.clock) == (name, clock)]
-            _read_stream(source, mapping, own, folder / f"{number}.f64", recording, report)
+            stream_channels = [c for c in channels if (c.table.name, c.clock) == (name, clock)]
+            _read_stream(
+                source, mapping, stream_channels, folder / f"{number}.f64", recording, report
+            )
         _check_segments(recording)
         if isinstance(source, SideBySide):
             keep_common_span(recording)
@@ -114,14 +116,14 @@ def _read_stream(
     recording: Recording,
     report: Report | None,
 ) -> None:
-    of = file_of(source, channels[0].table)
+    path = file_of(source, channels[0].table)
     try:
         _spool(source, mapping, channels, file, recording, report)
     except InputError as error:
-        raise error.within(file=of) from None
+        raise error.within(file=path) from None
     if isinstance(source, SideBySide) and len(recording.streams[-1].segments) > 1:
         problem = "its time restarts, but files recorded together need one stretch each"
-        raise InputError(file=of, problem=problem, mend="save its stretches as separate files")
+        raise InputError(file=path, problem=problem, mend="save its stretches as separate files")
 
 
 def _spool(
@@ -142,7 +144,7 @@ def _spool(
     used = list(dict.fromkeys(r.column for node in nodes for r in references(node)))
     words = _Words(recording)
     stream = Stream(("time_s", *(c.key for c in channels)), file)
-    of = file_of(source, table)
+    path = file_of(source, table)
     line = TimeLine(lambda row: source.row_of(table, row))
     file.touch()
     for block in source.blocks(table, [places[name][1] for name in used]):
@@ -151,9 +153,9 @@ def _spool(
         if time_node is None:
             assert rate is not None
             time = np.arange(line.seen, line.seen + count) / rate
-            time = recording.clock_of(of).corrected(time)
+            time = recording.clock_of(path).corrected(time)
         else:
-            time = recording.seconds(of, time_node, values, units)
+            time = recording.seconds(path, time_node, values, units)
         columns = [np.broadcast_to(time, (count,))]
         for channel in channels:
             column = _values(channel, values, units, words)
@@ -162,28 +164,28 @@ def _spool(
                 column = keep.holds(column)
             columns.append(np.broadcast_to(column, (count,)))
         rows = np.column_stack(columns)
-        kept = rows[line.keep(rows[:, 0])]
-        _check_sizes(stream.columns, kept)
-        stream.append(kept)
+        kept_rows = rows[line.keep(rows[:, 0])]
+        _check_sizes(stream.columns, kept_rows)
+        stream.append(kept_rows)
         if report is not None:
             done, total = source.read_bytes()
             if not total:
                 done, total = line.seen, table.rows or 0
-            report(f"reading {of.name}", done, total)
+            report(f"reading {path.name}", done, total)
     stream.segments = line.segments(stream.rows)
     if stream.rows == 0:
         raise InputError(
             problem="contains no samples", mend="name another file, or correct the map"
         )
-    dropped = [Dropped(*found) for found in source.skipped_rows()] + line.dropped()
+    dropped = [Dropped(*skipped) for skipped in source.skipped_rows()] + line.dropped()
     if stream.needed:
-        lacking = sum(int((~stream.complete(block)).sum()) for block in stream.blocks())
-        dropped.append(Dropped(lacking, "a value is missing"))
-    recording.dropped += [replace(d, file=_further(of, recording)) for d in dropped]
-    stream.source = of
+        incomplete = sum(int((~stream.complete(block)).sum()) for block in stream.blocks())
+        dropped.append(Dropped(incomplete, "a value is missing"))
+    recording.dropped += [replace(d, file=_further(path, recording)) for d in dropped]
+    stream.source = path
     recording.notes += unwrapped(stream)
     recording.streams.append(stream)
-    if of == recording.path:
+    if path == recording.path:
         recording.start = recording.start or table.start
     for at in stream.empty:
         key = stream.columns[at]
@@ -233,8 +235,8 @@ class _Words:
         for word in dict.fromkeys(words.tolist()):
             if word not in self.labels:
                 self.labels.append(word)
-        known = {word: float(code) for code, word in enumerate(self.labels)}
-        return np.array([known[word] for word in words.tolist()], dtype=np.float64)
+        code_of_word = {word: float(code) for code, word in enumerate(self.labels)}
+        return np.array([code_of_word[word] for word in words.tolist()], dtype=np.float64)
 
 
 def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
@@ -257,10 +259,10 @@ def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> 
     InputError
         With the file, and the time and value of the first such load.
     """
-    found = recording.stream_of("load_n")
-    if found is None:
+    load_stream = recording.stream_of("load_n")
+    if load_stream is None:
         return
-    stream, key = found
+    stream, key = load_stream
     at = stream.columns.index(key)
     for piece in pieces:
         first, end = stream.rows_between(piece.segment, piece.from_s, piece.to_s)
@@ -269,13 +271,13 @@ def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> 
             if not low.any():
                 continue
             time, load = block[low][0][[0, at]]
-            usual = float(np.nanmedian(np.abs(stream.read(first, end)[:, at])))
-            least = f"{mapping.columns['load_n']} > {LOADED * usual:.2g} [N]"
+            typical = float(np.nanmedian(np.abs(stream.read(first, end)[:, at])))
+            condition = f"{mapping.columns['load_n']} > {LOADED * typical:.2g} [N]"
             raise InputError(
                 file=recording.path,
                 key="columns.load_n",
                 problem=f"a load of {load:g} N at {time:g} s is not above zero",
-                mend=f"keep = '{least}' under [cut] removes such rows; otherwise "
+                mend=f"keep = '{condition}' under [cut] removes such rows; otherwise "
                 "correct its sign or zero",
             )
 
@@ -293,7 +295,7 @@ def _described(
     ]
     times = stream.read(0, min(stream.rows, 20_000))[:, 0]
     steps = np.diff(times)
-    usual = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else None
+    median_step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else None
     clock = f"{rate:g} Hz, stated" if channel.clock == RATE else channel.clock.replace("`", "")
     if recording.steady:
         clock = STEADY
@@ -305,7 +307,9 @@ def _described(
         "read": read,
         "unit": channel.unit.text,
         "clock": clock,
-        "rate_hz": None if usual is None or recording.steady else float(f"{1.0 / usual:.6g}"),
+        "rate_hz": None
+        if median_step is None or recording.steady
+        else float(f"{1.0 / median_step:.6g}"),
         "samples": stream.rows,
     }
 

@@ -23,8 +23,8 @@ Array = npt.NDArray[np.float64]
 def run_columns(recording: Recording) -> list[str]:
     """Return the columns of the runs of a recording, known columns first."""
     keys = [stream.columns[at] for stream in recording.streams for at in _written(stream)[1:]]
-    known = [key for key in COLUMNS if key in keys or key == "time_s"]
-    return known + [key for key in keys if key not in COLUMNS]
+    standard = [key for key in COLUMNS if key in keys or key == "time_s"]
+    return standard + [key for key in keys if key not in COLUMNS]
 
 
 def _written(stream: Stream) -> list[int]:
@@ -45,23 +45,25 @@ def run_text(recording: Recording, piece: Piece) -> Iterator[str]:
 def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator[Array]:
     """Yield the rows of a run, shape (n, columns), with NaN for missing samples."""
     parts = [_Part(stream, piece) for stream in recording.streams]
-    taken = [_written(p.stream) for p in parts]
+    indices = [_written(p.stream) for p in parts]
     places = [
-        [columns.index(part.stream.columns[at]) for at in own]
-        for part, own in zip(parts, taken, strict=True)
+        [columns.index(part.stream.columns[at]) for at in columns_of_part]
+        for part, columns_of_part in zip(parts, indices, strict=True)
     ]
     while True:
         # Fill every part, not only the first that has rows.
-        there = [part.fill() for part in parts]
-        if not any(there):
+        filled = [part.fill() for part in parts]
+        if not any(filled):
             return
         # Process rows only up to the last time that every clock has reached.
         horizon = min((p.last for p in parts if p.has_rows), default=np.inf)
         blocks = [part.take(horizon) for part in parts]
         times = np.unique(np.concatenate([block[:, 0] for block in blocks]))
         rows = np.full((len(times), len(columns)), np.nan)
-        for block, own, into in zip(blocks, taken, places, strict=True):
-            rows[np.searchsorted(times, block[:, 0])[:, None], np.array(into)] = block[:, own]
+        for block, columns_of_part, into in zip(blocks, indices, places, strict=True):
+            rows[np.searchsorted(times, block[:, 0])[:, None], np.array(into)] = block[
+                :, columns_of_part
+            ]
         rows[:, columns.index("time_s")] = times
         full = np.isfinite(rows).sum(axis=1) > 1
         if full.any():
@@ -98,8 +100,8 @@ class _Part:
     def take(self, horizon: float) -> Array:
         """Return and remove the buffered rows up to an instant."""
         count = int(np.searchsorted(self.rows[:, 0], horizon, side="right"))
-        taken, self.rows = self.rows[:count], self.rows[count:]
-        return taken
+        rows, self.rows = self.rows[:count], self.rows[count:]
+        return rows
 
 
 def _lines(block: Array) -> str:

@@ -33,10 +33,10 @@ class SideBySide(Source):
         self._reading = sources[0]
         tables = []
         chosen = _chosen(sources, options.table)
-        for source, own in zip(sources, chosen, strict=True):
+        for source, source_tables in zip(sources, chosen, strict=True):
             stem = stem_of(source.path)
-            for table in own:
-                name = stem if len(own) == 1 else f"{stem}/{table.name}"
+            for table in source_tables:
+                name = stem if len(source_tables) == 1 else f"{stem}/{table.name}"
                 self._origins[name] = source, table
                 tables.append(replace(table, name=name))
         self.tables = tuple(tables)
@@ -122,8 +122,10 @@ def _chosen(sources: Sequence[Source], name: str | None) -> list[tuple[Table, ..
         return [source.tables for source in sources]
     named = [tuple(t for t in source.tables if t.name == name) for source in sources]
     if not any(named):
-        known = ", ".join(t.name for source in sources for t in source.tables if t.name)
+        available = ", ".join(t.name for source in sources for t in source.tables if t.name)
         problem = f'no file contains "{name}"'
-        mend = f"they contain: {known}" if known else "omit it"
+        mend = f"they contain: {available}" if available else "omit it"
         raise InputError(key="file.table", problem=problem, mend=mend)
-    return [own or source.tables for own, source in zip(named, sources, strict=True)]
+    return [
+        named_tables or source.tables for named_tables, source in zip(named, sources, strict=True)
+    ]

@@ -77,8 +77,8 @@ class Stream:
 
     def append(self, block: Array) -> None:
         """Append rows, shape (n, columns)."""
-        lacking = np.isnan(block).sum(axis=0)
-        self.missing = lacking if self.missing is None else self.missing + lacking
+        missing = np.isnan(block).sum(axis=0)
+        self.missing = missing if self.missing is None else self.missing + missing
         with self.file.open("ab") as file:
             np.ascontiguousarray(block, dtype=np.float64).tofile(file)
         self.rows += len(block)

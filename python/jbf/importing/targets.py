@@ -33,16 +33,16 @@ def wanted_unit(key: str) -> Unit:
     """
     if key not in KNOWN:
         near = closest(key, [k for k in KNOWN if k.count("_") == key.count("_")], _ALIKE)
-        found = unit_of_name(key)
-        if near is None and found is not None:
+        stem_and_unit = unit_of_name(key)
+        if near is None and stem_and_unit is not None:
             # A known quantity must have its standard name: the name must not state another unit.
-            near = _STEMS.get(found[0])
+            near = _STEMS.get(stem_and_unit[0])
         if near is not None:
             raise InputError(
                 key=f"columns.{key}", problem="is not known", mend=f"did you mean {quoted(near)}?"
             )
-    found = unit_of_name(key)
-    if found is None:
+    stem_and_unit = unit_of_name(key)
+    if stem_and_unit is None:
         raise InputError(
             key=f"columns.{key}",
             problem="is not known, and its name ends in no unit",
@@ -51,4 +51,4 @@ def wanted_unit(key: str) -> Unit:
                 "as setpoint_rpm"
             ),
         )
-    return found[1]
+    return stem_and_unit[1]

@@ -62,7 +62,7 @@ class TimeLine:
         return keep
 
     def _one_by_one(self, times: Array, rows: npt.NDArray[np.intp], keep: Mask) -> None:
-        kept = self._kept
+        count = self._kept
         for row, now in zip(rows.tolist(), times[rows].tolist(), strict=True):
             if self._first is None:
                 self._first = now
@@ -80,10 +80,10 @@ class TimeLine:
                         f"{self._last:.12g} s to {now:.12g} s",
                         mend="sort the rows, or import the later part as a separate file",
                     )
-                self._starts.append(kept)
+                self._starts.append(count)
                 self._first = now
             self._last = now
-            kept += 1
+            count += 1
 
     def segments(self, rows: int) -> list[tuple[int, int]]:
         """Return the first row and end of each segment, counted in kept rows.
@@ -105,9 +105,9 @@ class TimeLine:
 
     def dropped(self) -> list[Dropped]:
         """Return the omitted rows and the reasons."""
-        found = []
+        omitted = []
         if self._repeats:
-            found.append(Dropped(self._repeats, "time repeats", self._first_repeat))
+            omitted.append(Dropped(self._repeats, "time repeats", self._first_repeat))
         if self._timeless:
-            found.append(Dropped(self._timeless, "time is missing"))
-        return found
+            omitted.append(Dropped(self._timeless, "time is missing"))
+        return omitted

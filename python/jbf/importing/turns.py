@@ -45,7 +45,7 @@ def _unwrapped_blocks(stream: Stream, column: int) -> Iterator[Array]:
     row = 0
     for block in stream.blocks():
         values = block[:, column]
-        found = np.empty_like(values)
+        continuous = np.empty_like(values)
         for at, value in enumerate(values.tolist()):
             if row + at in starts:
                 turns, last = 0.0, math.nan
@@ -53,8 +53,8 @@ def _unwrapped_blocks(stream: Stream, column: int) -> Iterator[Array]:
                 turns -= 1.0
             elif last - value > math.pi:
                 turns += 1.0
-            found[at] = value + turns * _TURN
+            continuous[at] = value + turns * _TURN
             if value == value:
                 last = value
         row += len(values)
-        yield found
+        yield continuous

@@ -13,17 +13,17 @@ from jbf.importing.spool import Stream
 def cut_at_changes(stream: Stream, column: str, why: str) -> list[Cut]:
     """Return a cut at each change of value; a missing value counts as the value before it."""
     at = stream.columns.index(column)
-    found: list[Cut] = []
+    cuts: list[Cut] = []
     for segment, (first, end) in enumerate(stream.segments):
         before, before_s = math.nan, math.nan
         for block in stream.blocks(first, end):
-            there = np.isfinite(block[:, at])
-            times, values = block[there, 0], block[there, at]
+            finite = np.isfinite(block[:, at])
+            times, values = block[finite, 0], block[finite, at]
             if not len(values):
                 continue
             previous = np.concatenate(([before], values[:-1]))
             ago = np.concatenate(([before_s], times[:-1]))
             for i in np.flatnonzero((values != previous) & ~np.isnan(previous)):
-                found.append(Cut(segment, float(ago[i]), float(times[i]), why))
+                cuts.append(Cut(segment, float(ago[i]), float(times[i]), why))
             before, before_s = float(values[-1]), float(times[-1])
-    return found
+    return cuts

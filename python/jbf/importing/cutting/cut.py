@@ -34,7 +34,7 @@ every stop.
 
 def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
     """Return the pieces of a recording in order of time, including those that are left out."""
-    timed = [way for way in settings.by or () if way in ("rests", "cycles", "motion")]
+    timed = [method for method in settings.by or () if method in ("rests", "cycles", "motion")]
     if recording.steady and timed:
         problem = f'"{timed[0]}" requires a motion over time, but the file contains steady states'
         raise InputError(key="cut.by", problem=problem, mend="remove it")
@@ -61,35 +61,37 @@ def at_rests_by_default(recording: Recording, settings: CutSettings) -> list[Pie
 
 def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
     cuts: list[Cut] = []
-    for way in settings.by or ():
-        if way == "rests":
+    for method in settings.by or ():
+        if method == "rests":
             cuts += cut_at_rests(recording, settings)
-        elif way == "load_step":
+        elif method == "load_step":
             cuts += cut_at_load_steps(recording)
-        elif way == "cycles":
+        elif method == "cycles":
             found_cycles = cut_at_cycles(recording, settings)
             if not found_cycles:
                 recording.notes.append("no cycle was found: the motion has no reversals")
             cuts += found_cycles
-        elif way == "parts":
+        elif method == "parts":
             cuts += cut_into_parts(recording, settings.parts)
-        elif way == "motion":
+        elif method == "motion":
             cuts += cut_at_motion_kinds(recording, settings)
         else:
-            found = recording.stream_of(CUT_COLUMN)
-            if found is None:
+            cut_stream = recording.stream_of(CUT_COLUMN)
+            if cut_stream is None:
                 mend = "name another column"
                 raise InputError(
                     file=recording.path, key="cut.column", problem="contains no value", mend=mend
                 )
-            cuts += cut_at_changes(found[0], CUT_COLUMN, way.replace("_", " "))
-    kept = recording.stream_of(KEPT_COLUMN)
-    if kept is not None:
-        cuts += cut_at_changes(kept[0], KEPT_COLUMN, "keep")
+            cuts += cut_at_changes(cut_stream[0], CUT_COLUMN, method.replace("_", " "))
+    keep_stream = recording.stream_of(KEPT_COLUMN)
+    if keep_stream is not None:
+        cuts += cut_at_changes(keep_stream[0], KEPT_COLUMN, "keep")
     pieces: list[Piece] = []
     for segment in range(recording.segments):
-        own = sorted((c for c in cuts if c.segment == segment), key=lambda c: (c.first_s, c.last_s))
-        pieces += _between(recording, segment, own)
+        segment_cuts = sorted(
+            (c for c in cuts if c.segment == segment), key=lambda c: (c.first_s, c.last_s)
+        )
+        pieces += _between(recording, segment, segment_cuts)
     return _named(recording, [_judged(recording, piece, settings) for piece in pieces])
 
 
@@ -103,21 +105,21 @@ def ends(recording: Recording, segment: int) -> tuple[float, float]:
 def _between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Piece]:
     """Return the pieces between cuts, and the spans that the cuts remove as omitted pieces."""
     first_s, last_s = ends(recording, segment)
-    found: list[Piece] = []
+    pieces: list[Piece] = []
     begin = first_s
     file = recording.path.name
     for c in cuts:
         if c.first_s <= begin and c.last_s <= begin and c.first_s != first_s:
             continue
         if c.last_s > begin:
-            found.append(Piece("", file, segment, begin, c.last_s))
+            pieces.append(Piece("", file, segment, begin, c.last_s))
         if c.first_s > max(c.last_s, begin) and _within(recording, segment, c):
             out = Piece("", file, segment, max(c.last_s, begin), c.first_s, False, c.why)
-            found.append(out)
+            pieces.append(out)
         begin = max(begin, c.first_s)
     if begin < last_s:
-        found.append(Piece("", file, segment, begin, last_s))
-    return found
+        pieces.append(Piece("", file, segment, begin, last_s))
+    return pieces
 
 
 def _within(recording: Recording, segment: int, c: Cut) -> bool:
@@ -134,15 +136,15 @@ def _judged(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
     if not piece.keep:
         return piece
     read = [k for k in FRICTION if any(k in s.columns for s in recording.streams)]
-    found = recording.stream_of(*(read or MOTION))
-    if found is None:
+    motion_stream = recording.stream_of(*(read or MOTION))
+    if motion_stream is None:
         raise InputError(
             file=recording.path,
             column=next(iter(read), "motion"),
             problem="contains no value",
             mend="name another column in the map",
         )
-    first, end = found[0].rows_between(piece.segment, piece.from_s, piece.to_s)
+    first, end = motion_stream[0].rows_between(piece.segment, piece.from_s, piece.to_s)
     why = ""
     if settings.keep is not None and not _kept(recording, piece):
         why = f"not {settings.keep.text}"
@@ -158,19 +160,19 @@ def _kept(recording: Recording, piece: Piece) -> bool:
 
     A single value suffices because the recording is cut where the condition changes.
     """
-    found = recording.stream_of(KEPT_COLUMN)
-    if found is None:
+    keep_stream = recording.stream_of(KEPT_COLUMN)
+    if keep_stream is None:
         return False
-    stream, key = found
+    stream, key = keep_stream
     first, end = stream.rows_between(piece.segment, piece.from_s, piece.to_s)
     at = stream.columns.index(key)
     for block in stream.blocks(first, end):
-        known = block[np.isfinite(block[:, at]), at]
-        if len(known):
-            return bool(known[0] == 1.0)
+        finite = block[np.isfinite(block[:, at]), at]
+        if len(finite):
+            return bool(finite[0] == 1.0)
     before = stream.read(max(first - BLOCK, 0), first)[:, at]
-    known = before[np.isfinite(before)]
-    return bool(len(known) and known[-1] == 1.0)
+    finite = before[np.isfinite(before)]
+    return bool(len(finite) and finite[-1] == 1.0)
 
 
 def _named(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:
@@ -178,11 +180,11 @@ def _named(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:
     runs = [piece for piece in pieces if piece.keep]
     digits = len(str(len(runs)))
     number = 0
-    found = []
+    named = []
     for p in pieces:
         name = ""
         if p.keep:
             number += 1
             name = recording.name if len(runs) == 1 else f"{recording.name}_{number:0{digits}d}"
-        found.append(Piece(name, p.file, p.segment, p.from_s, p.to_s, p.keep, p.why))
-    return found
+        named.append(Piece(name, p.file, p.segment, p.from_s, p.to_s, p.keep, p.why))
+    return named

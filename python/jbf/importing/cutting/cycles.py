@@ -18,31 +18,31 @@ def cut_at_cycles(recording: Recording, settings: CutSettings) -> list[Cut]:
     """Return a cut at the start of each cycle of a forward stroke and a return stroke."""
     motion = MotionSpeed(recording, WINDOW_S)
     share = STILL if settings.still is None else settings.still
-    least = max(share * motion.top(), NOISES * motion.noise())
-    stream, found = motion.stream, list[Cut]()
+    threshold = max(share * motion.top(), NOISES * motion.noise())
+    stream, cuts = motion.stream, list[Cut]()
     for segment, (first, _) in enumerate(stream.segments):
         last_back: int | None = None
         for begin, _, speed in motion.blocks(segment):
-            way = np.where(speed > least, 1, np.where(speed < -least, -1, 0))
-            for at in np.flatnonzero(way):
-                if way[at] < 0:
+            direction = np.where(speed > threshold, 1, np.where(speed < -threshold, -1, 0))
+            for at in np.flatnonzero(direction):
+                if direction[at] < 0:
                     last_back = begin + int(at)
                 elif last_back is not None:
                     row = (last_back + begin + int(at) + 1) // 2
                     if row > first:
-                        found.append(Cut(segment, stream.at(row - 1), stream.at(row), "a cycle"))
+                        cuts.append(Cut(segment, stream.at(row - 1), stream.at(row), "a cycle"))
                     last_back = None
-    return found
+    return cuts
 
 
 def cut_into_parts(recording: Recording, count: int) -> list[Cut]:
     """Return the cuts that divide each segment of increasing time into `count` equal durations."""
-    stream, found = recording.streams[0], list[Cut]()
+    stream, cuts = recording.streams[0], list[Cut]()
     for segment, (first, end) in enumerate(stream.segments):
         from_s, to_s = stream.at(first), stream.at(end - 1)
         for part in range(1, count):
             at_s = from_s + (to_s - from_s) * part / count
             row, _ = stream.rows_between(segment, at_s, to_s)
             if first < row < end:
-                found.append(Cut(segment, stream.at(row - 1), stream.at(row), f"part {part + 1}"))
-    return found
+                cuts.append(Cut(segment, stream.at(row - 1), stream.at(row), f"part {part + 1}"))
+    return cuts

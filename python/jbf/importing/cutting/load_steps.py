@@ -28,14 +28,14 @@ def cut_at_load_steps(recording: Recording) -> list[Cut]:
     InputError
         If none of these columns was recorded.
     """
-    found = recording.stream_of(*LOADS)
-    if found is None:
+    load_stream = recording.stream_of(*LOADS)
+    if load_stream is None:
         raise InputError(
             key="cut.by",
             problem="load_step requires load_n, load_n_m or pressure_pa",
             mend="name the column under [columns]",
         )
-    stream, key = found
+    stream, key = load_stream
     return [
         cut
         for segment in range(len(stream.segments))
@@ -55,19 +55,19 @@ def _steps(stream: Stream, segment: int, column: int) -> list[Cut]:
     if len(level) < 4:
         return []
     noise = float(np.median(np.abs(np.diff(level)))) / 0.6745
-    found: list[Cut] = []
+    cuts: list[Cut] = []
     since = 0
     for at in range(1, len(level) - 1):
         before = float(np.median(level[since:at]))
-        least = max(_STEP * max(abs(before), abs(float(level[at]))), _SIGMAS * noise)
+        threshold = max(_STEP * max(abs(before), abs(float(level[at]))), _SIGMAS * noise)
         # The new level must persist: the point at the step itself lies between the levels.
         after = level[at : at + 2]
-        if np.all(np.abs(after - before) > least) and abs(after[1] - after[0]) < least:
+        if np.all(np.abs(after - before) > threshold) and abs(after[1] - after[0]) < threshold:
             row = _edge(stream, first, end, at, column, before, float(after[1]))
             why = f"the load changes from {before:.4g} to {after[1]:.4g}"
-            found.append(Cut(segment, stream.at(row - 1), stream.at(row), why))
+            cuts.append(Cut(segment, stream.at(row - 1), stream.at(row), why))
             since = at
-    return found
+    return cuts
 
 
 def _edge(

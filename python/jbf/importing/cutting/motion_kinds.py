@@ -27,10 +27,10 @@ def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut
     """Return a cut at each lasting change of the kind of motion."""
     window_s = max(settings.rest_s, WINDOW_S)
     motion = MotionSpeed(recording, 0.1 * window_s)
-    least = (STILL if settings.still is None else settings.still) * motion.top()
+    threshold = (STILL if settings.still is None else settings.still) * motion.top()
     noise = motion.noise()
-    least = max(least, NOISES * noise)
-    found: list[Cut] = []
+    threshold = max(threshold, NOISES * noise)
+    cuts: list[Cut] = []
     for segment, (first, _) in enumerate(motion.stream.segments):
         kinds: list[str] = []
         begins: list[int] = []
@@ -39,21 +39,21 @@ def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut
             for at in range(0, len(speed), per):
                 part = speed[at : at + per]
                 if len(part) >= per // 2:
-                    kinds.append(_kind(part, least, noise))
+                    kinds.append(_kind(part, threshold, noise))
                     begins.append(begin + at)
         for at, kind in _held(_to_and_fro(kinds)):
             row = begins[at]
             if row > first:
                 stream = motion.stream
-                found.append(Cut(segment, stream.at(row - 1), stream.at(row), f"motion: {kind}"))
-    return found
+                cuts.append(Cut(segment, stream.at(row - 1), stream.at(row), f"motion: {kind}"))
+    return cuts
 
 
-def _kind(speed: np.ndarray, least: float, noise: float) -> str:
+def _kind(speed: np.ndarray, threshold: float, noise: float) -> str:
     size = float(np.median(np.abs(speed)))
-    if size <= least:
+    if size <= threshold:
         return "rest"
-    if (speed > least).any() and (speed < -least).any():
+    if (speed > threshold).any() and (speed < -threshold).any():
         return "to and fro"
     if float(np.ptp(speed)) <= max(STEADY * size, 6.0 * noise):
         return f"steady {'forward' if speed.mean() > 0.0 else 'back'}"
@@ -62,18 +62,18 @@ def _kind(speed: np.ndarray, least: float, noise: float) -> str:
 
 def _to_and_fro(kinds: list[str]) -> list[str]:
     """Classify windows in one direction between two reversals as motion to and fro."""
-    found = list(kinds)
+    classified = list(kinds)
     turns = [i for i, kind in enumerate(kinds) if kind == "to and fro"]
-    for one, other in pairwise(turns):
-        between = kinds[one + 1 : other]
+    for first_turn, second_turn in pairwise(turns):
+        between = kinds[first_turn + 1 : second_turn]
         if all(kind.startswith("changing") for kind in between):
-            found[one + 1 : other] = ["to and fro"] * len(between)
-    return found
+            classified[first_turn + 1 : second_turn] = ["to and fro"] * len(between)
+    return classified
 
 
 def _held(kinds: list[str]) -> list[tuple[int, str]]:
     """Return the start and name of each lasting kind that differs from the previous one."""
-    found: list[tuple[int, str]] = []
+    lasting: list[tuple[int, str]] = []
     last = None
     at = 0
     while at < len(kinds):
@@ -82,7 +82,7 @@ def _held(kinds: list[str]) -> list[tuple[int, str]]:
             end += 1
         if end - at >= HOLDS and kinds[at] != last:
             if last is not None:
-                found.append((at, kinds[at]))
+                lasting.append((at, kinds[at]))
             last = kinds[at]
         at = end
-    return found
+    return lasting

@@ -28,15 +28,15 @@ class MotionSpeed:
     """
 
     def __init__(self, recording: Recording, window_s: float) -> None:
-        found = recording.stream_of(*_SPEEDS) or recording.stream_of(*_PLACES)
-        if found is None:
+        motion_stream = recording.stream_of(*_SPEEDS) or recording.stream_of(*_PLACES)
+        if motion_stream is None:
             raise InputError(
                 file=recording.path,
                 problem="contains no position and no speed",
                 mend="name another column in the map",
             )
-        self.stream: Stream = found[0]
-        self.key = found[1]
+        self.stream: Stream = motion_stream[0]
+        self.key = motion_stream[1]
         self.recorded = self.key in _SPEEDS
         self._column = self.stream.columns.index(self.key)
         first, end = max(self.stream.segments, key=lambda s: s[1] - s[0])
@@ -97,11 +97,11 @@ def _filled(values: Array) -> Array:
     bad = np.isnan(values)
     if not bad.any():
         return values
-    good = np.flatnonzero(~bad)
-    if not good.size:
+    finite = np.flatnonzero(~bad)
+    if not finite.size:
         return np.zeros_like(values)
-    place = np.maximum(np.searchsorted(good, np.arange(len(values)), side="right") - 1, 0)
-    filled: Array = values[good[place]]
+    place = np.maximum(np.searchsorted(finite, np.arange(len(values)), side="right") - 1, 0)
+    filled: Array = values[finite[place]]
     return filled
 
 

@@ -24,12 +24,12 @@ def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
     motion = MotionSpeed(recording, WINDOW * settings.rest_s)
     top = motion.top()
     share = STILL if settings.still is None else settings.still
-    least = share * top
+    threshold = share * top
     if settings.still is None:
-        least = max(least, NOISES * motion.noise())
-    found = []
+        threshold = max(threshold, NOISES * motion.noise())
+    cuts = []
     for segment, (first, end) in enumerate(motion.stream.segments):
-        for begin, stop in _rests(motion, segment, least):
+        for begin, stop in _rests(motion, segment, threshold):
             from_s, to_s = motion.stream.at(begin), motion.stream.at(stop - 1)
             if to_s - from_s < settings.rest_s:
                 continue
@@ -41,18 +41,18 @@ def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
             after = end - 1 if stop == end else max(after, last + 1)
             why = f"a rest of {to_s - from_s:.3g} s"
             if last < min(after, end - 1) or begin == first or stop == end:
-                found.append(
+                cuts.append(
                     Cut(segment, motion.stream.at(last), motion.stream.at(min(after, end - 1)), why)
                 )
-    return found
+    return cuts
 
 
-def _rests(motion: MotionSpeed, segment: int, least: float) -> Iterator[tuple[int, int]]:
+def _rests(motion: MotionSpeed, segment: int, threshold: float) -> Iterator[tuple[int, int]]:
     """Yield the first row and the end of each rest."""
     began: int | None = None
     row = motion.stream.segments[segment][0]
     for first, _, speed in motion.smoothed(segment):
-        still = speed <= least
+        still = speed <= threshold
         edges = np.flatnonzero(np.diff(np.concatenate(([began is not None], still))))
         for edge in edges:
             row = first + int(edge)

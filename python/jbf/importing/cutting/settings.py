@@ -61,14 +61,14 @@ class Condition:
         if match is None:
             mend = 'write a comparison, such as "powered == 1" or "load > 5 [N]"'
             raise InputError(key="cut.keep", problem=f"{text!r} is not a condition", mend=mend)
-        left, relation, right = (part.strip() for part in match.groups())
-        difference = left if right == "0" else f"{left} - ({right})"
+        quantity, relation, limit = (part.strip() for part in match.groups())
+        difference = quantity if limit == "0" else f"{quantity} - ({limit})"
         return cls(difference, relation, str(text))
 
     def holds(self, values: Array) -> Array:
         """Return 1 where the condition holds, 0 where it does not, and NaN for a missing value."""
-        found = RELATIONS[self.relation](np.asarray(values, dtype=np.float64), 0.0)
-        return np.where(np.isfinite(values), found, np.nan)
+        satisfied = RELATIONS[self.relation](np.asarray(values, dtype=np.float64), 0.0)
+        return np.where(np.isfinite(values), satisfied, np.nan)
 
 
 @dataclass(frozen=True)
@@ -123,21 +123,21 @@ class CutSettings:
         by = given.pop("by", None)
         if by is None:
             # A setting for the duration or speed of rests implies cutting at rests.
-            ways = ("rests",) if {"rest_s", "keep_rest_s", "still"} & given.keys() else None
-            ways = ("parts",) if "parts" in given else ways
+            methods = ("rests",) if {"rest_s", "keep_rest_s", "still"} & given.keys() else None
+            methods = ("parts",) if "parts" in given else methods
         elif not isinstance(by, str | list | tuple):
             mend = 'write by = "rests", or a list of methods'
             raise InputError(key="cut.by", problem=f"{by!r} is not a cutting method", mend=mend)
         else:
-            ways = (by,) if isinstance(by, str) else tuple(by)
-        for way in ways or ():
-            if way not in WAYS:
+            methods = (by,) if isinstance(by, str) else tuple(by)
+        for method in methods or ():
+            if method not in WAYS:
                 raise InputError(
                     key="cut.by",
-                    problem=f"{quoted(way)} is not a cutting method",
-                    mend=did_you_mean(way, WAYS),
+                    problem=f"{quoted(method)} is not a cutting method",
+                    mend=did_you_mean(method, WAYS),
                 )
-        needs = [way for way in ways or () if way in ("set_point", "run")]
+        needs = [method for method in methods or () if method in ("set_point", "run")]
         if needs and not isinstance(given.get("column"), str):
             raise InputError(
                 key="cut.column",
@@ -150,7 +150,7 @@ class CutSettings:
                 if not 0.0 <= given[key] < math.inf:
                     problem = f"{given[key]} is negative or not finite"
                     raise InputError(key=f"cut.{key}", problem=problem, mend="correct it")
-        if "parts" in given and "parts" not in (ways or ()):
+        if "parts" in given and "parts" not in (methods or ()):
             mend = 'add "parts" to by, or remove it'
             raise InputError(key="cut.parts", problem='is used by by = "parts" only', mend=mend)
         parts = given.get("parts", 2)
@@ -164,4 +164,4 @@ class CutSettings:
                 mend = 'write file = "cut.toml"'
                 raise InputError(key="cut.file", problem="is not text", mend=mend)
             given["file"] = folder / given["file"]
-        return cls(**(given | {"by": ways}))
+        return cls(**(given | {"by": methods}))

@@ -80,18 +80,18 @@ def _piece(row: object, at: int, recordings: Sequence[Recording]) -> Piece:
     for needed in ("name", "file", "from_s", "to_s"):
         if needed not in content:
             raise InputError(key=f"{key}, {needed}", problem="is missing", mend="add it")
-    found = [r for r in recordings if r.path.name == content["file"]]
-    if not found:
+    matching = [r for r in recordings if r.path.name == content["file"]]
+    if not matching:
         names = ", ".join(r.path.name for r in recordings)
         problem = f'"{content["file"]}" is not imported'
         raise InputError(key=f"{key}, file", problem=problem, mend=f"known: {names}")
     segment = int(number(content.get("stretch", 1), f"{key}, stretch")) - 1
-    if not 0 <= segment < found[0].segments:
+    if not 0 <= segment < matching[0].segments:
         problem = f"there is no stretch {segment + 1}"
-        mend = f"time restarts {found[0].segments - 1} times in {found[0].path.name}"
+        mend = f"time restarts {matching[0].segments - 1} times in {matching[0].path.name}"
         raise InputError(key=f"{key}, stretch", problem=problem, mend=mend)
     from_s, to_s = (number(content[k], f"{key}, {k}") for k in ("from_s", "to_s"))
-    first_s, last_s = ends(found[0], segment)
+    first_s, last_s = ends(matching[0], segment)
     if not from_s < to_s or to_s < first_s or from_s > last_s:
         raise InputError(
             key=f"{key}, from_s",
@@ -108,4 +108,6 @@ def _piece(row: object, at: int, recordings: Sequence[Recording]) -> Piece:
         raise InputError(
             key=f"{key}, name", problem="is not a valid file name", mend="use letters and digits"
         )
-    return Piece(name, found[0].path.name, segment, from_s, to_s, keep, str(content.get("why", "")))
+    return Piece(
+        name, matching[0].path.name, segment, from_s, to_s, keep, str(content.get("why", ""))
+    )

@@ -76,17 +76,17 @@ class ArraySource(Source):
         """Add a table from a mapping of column names to slices and units."""
         if rows == 0 or not columns:
             return
-        kept = []
+        kept_columns = []
         for column, (read, unit) in columns.items():
             kind = np.asarray(read(0, min(rows, 2))).dtype.kind
             if kind in "biuf":
-                kept.append(Column(column, unit))
+                kept_columns.append(Column(column, unit))
             elif kind == "M":
-                kept.append(Column(column, "", "instant"))
+                kept_columns.append(Column(column, "", "instant"))
             elif kind in "OSU":
-                kept.append(Column(column, "", "word"))
-        self._columns[name] = {c.name: columns[c.name][0] for c in kept}
-        self.tables = (*self.tables, Table(name, tuple(kept), clock, rows, rate_hz, start))
+                kept_columns.append(Column(column, "", "word"))
+        self._columns[name] = {c.name: columns[c.name][0] for c in kept_columns}
+        self.tables = (*self.tables, Table(name, tuple(kept_columns), clock, rows, rate_hz, start))
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Yield the columns in slices."""
@@ -94,16 +94,16 @@ class ArraySource(Source):
         kinds = {name: table.column(name).kind for name in names}
         assert table.rows is not None
         for first in range(0, table.rows, BLOCK):
-            found = {}
+            block = {}
             for name, read in readers.items():
                 values = np.asarray(read(first, min(first + BLOCK, table.rows)))
                 if kinds[name] == "instant":
                     # All columns of dates share one origin, so that their clocks can be compared.
                     self._origin = self._origin or first_instant(values)
-                    found[name] = seconds(values, self._origin)
+                    block[name] = seconds(values, self._origin)
                 else:
-                    found[name] = as_numbers(values)
-            yield found
+                    block[name] = as_numbers(values)
+            yield block
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
         """Return the rows or records that the format skipped."""
@@ -118,8 +118,8 @@ class ArraySource(Source):
 def first_instant(instants: Any) -> np.datetime64 | None:
     """Return the first valid date, or None."""
     fine = np.asarray(instants).astype("datetime64[ns]")
-    known = fine[~np.isnat(fine)]
-    return known[0] if known.size else None
+    valid = fine[~np.isnat(fine)]
+    return valid[0] if valid.size else None
 
 
 def seconds(instants: Any, origin: np.datetime64 | None) -> Values:
@@ -127,9 +127,9 @@ def seconds(instants: Any, origin: np.datetime64 | None) -> Values:
     fine = np.asarray(instants).astype("datetime64[ns]")
     if origin is None:
         return np.full(len(fine), np.nan)
-    found: Values = (fine - origin).astype(np.int64) / 1e9
-    found[np.isnat(fine)] = np.nan
-    return found
+    elapsed_s: Values = (fine - origin).astype(np.int64) / 1e9
+    elapsed_s[np.isnat(fine)] = np.nan
+    return elapsed_s
 
 
 def slices(values: Any) -> Slice:
@@ -145,15 +145,15 @@ def add_by_length(
     for length in lengths:
         if length < 2:
             continue
-        own = {n: (slices(v), unit) for n, (v, unit) in vectors.items() if len(v) == length}
-        source.add(f"{length} samples" if _several(lengths) else "", own, length)
+        group = {n: (slices(v), unit) for n, (v, unit) in vectors.items() if len(v) == length}
+        source.add(f"{length} samples" if _several(lengths) else "", group, length)
     if not source.tables:
         raise InputError(
             file=source.path, problem="contains no numeric columns", mend="name another file"
         )
 
 
-def add_by_clock(source: ArraySource, signals: Iterable[Signal], alone: bool = True) -> None:
+def add_by_clock(source: ArraySource, signals: Iterable[Signal], only_table: bool = True) -> None:
     """Add signals by their times: signals with equal times share a table.
 
     Times in seconds become the clock of the table.
@@ -172,7 +172,7 @@ def add_by_clock(source: ArraySource, signals: Iterable[Signal], alone: bool = T
         times = next(iter(group.values())).times
         columns = {name: (signal.read, signal.unit) for name, signal in group.items()}
         source.add(
-            "" if alone and len(groups) == 1 else table_name(list(group)),
+            "" if only_table and len(groups) == 1 else table_name(list(group)),
             {CLOCK: (slices(times), unit), **columns},
             len(times),
             CLOCK if unit == "s" else None,

@@ -78,8 +78,8 @@ def _layout(
             names, units, periods = ([r[at] for at in channels] for r in (names, units, periods))
             channels = list(range(len(channels)))
         for period in dict.fromkeys(periods[at] for at in channels):
-            own = tuple(at for at in channels if periods[at] == period)
-            parts.append(Part(own, None, _rate(period)))
+            members = tuple(at for at in channels if periods[at] == period)
+            parts.append(Part(members, None, _rate(period)))
     else:
         for clock, end in zip(clocks, [*clocks[1:], len(named)], strict=True):
             parts.append(Part((clock, *(at for at in channels if clock < at < end)), clock))

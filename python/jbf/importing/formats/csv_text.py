@@ -113,12 +113,12 @@ class TextSource(Source):
             raise error.within(file=self.path) from None
         if layout.headless and options.header is None:
             # The names may be in a comment, as numpy.savetxt writes them.
-            told = [
+            comment_rows = [
                 (n, self.dialect.cells(line.strip().lstrip("#%/ ")))
                 for n, line in enumerate(lines[: layout.first - 1], 1)
                 if line.lstrip().startswith(_COMMENTS)
             ]
-            fitting = [row for row in told if len(row[1]) == len(layout.names)]
+            fitting = [row for row in comment_rows if len(row[1]) == len(layout.names)]
             if fitting:
                 samples = [row for row in rows if row[0] >= layout.first]
                 layout = lay_out([*fitting, *samples], self.dialect.is_number)
@@ -160,16 +160,16 @@ class TextSource(Source):
                 self._firsts.setdefault(dated, instant)
                 self._origins[name] = (self._firsts[dated], order)
             columns.append(column)
-        held = [c for c in columns if self._is_kept(c, first)]
+        kept = [c for c in columns if self._is_kept(c, first)]
         parts = merged(self.layout.parts, (cells for _, cells in self._rows(self._samples()))) or (
             Part(tuple(range(len(columns))), None, self.layout.rate_hz),
         )
         for part in parts:
-            own = [columns[at] for at in part.columns if columns[at] in held]
-            channels = [c.name for c in own if columns.index(c) != part.clock]
+            table_columns = [columns[at] for at in part.columns if columns[at] in kept]
+            channels = [c.name for c in table_columns if columns.index(c) != part.clock]
             yield Table(
                 table_name(channels) if len(parts) > 1 else "",
-                tuple(own),
+                tuple(table_columns),
                 rate_hz=self.options.rate_hz or part.rate_hz,
                 start=start,
                 questions=tuple(questions),
@@ -266,16 +266,16 @@ class TextSource(Source):
         text = [at for at in places if at not in numeric]
         lines = self._samples()
         while block := list(islice(lines, BLOCK)):
-            plain = None
+            parsed = None
             if clock is None:
-                plain = plain_columns(
+                parsed = plain_columns(
                     [line for _, line in block], self.dialect, len(self.layout.names), numeric, text
                 )
             wrong: dict[int, InputError] = {}
-            if plain is not None:
+            if parsed is not None:
                 self._damage.rows += len(block)
                 numbers = [number for number, _ in block]
-                turned = dict(zip([*numeric, *text], [*plain[0], *plain[1]], strict=True))
+                turned = dict(zip([*numeric, *text], [*parsed[0], *parsed[1]], strict=True))
             else:
                 rows = [
                     (number, cells)
@@ -286,26 +286,26 @@ class TextSource(Source):
                     continue
                 numbers = [number for number, _ in rows]
                 turned = dict(enumerate(zip(*[cells for _, cells in rows], strict=True)))
-            found: dict[str, Values] = {}
+            block_columns: dict[str, Values] = {}
             for at, name, kind in columns:
                 cells = turned[at]
                 if kind == "word":
-                    found[name] = np.array([cell.strip() for cell in cells], dtype=object)
+                    block_columns[name] = np.array([cell.strip() for cell in cells], dtype=object)
                 elif kind == "instant":
-                    found[name] = self._instants(name, cells, numbers, readers[name])
+                    block_columns[name] = self._instants(name, cells, numbers, readers[name])
                 elif name in self._exact and (whole := exact_integers(cells)) is not None:
-                    found[name] = whole
-                elif plain is not None and name not in self._exact:
-                    found[name] = cells
+                    block_columns[name] = whole
+                elif parsed is not None and name not in self._exact:
+                    block_columns[name] = cells
                 else:
-                    found[name] = self._numbers(name, cells, numbers, wrong)
+                    block_columns[name] = self._numbers(name, cells, numbers, wrong)
             if wrong:
                 for at in sorted(wrong):
                     self._damage.add(wrong[at])
-                good = np.ones(len(numbers), dtype=bool)
-                good[list(wrong)] = False
-                found = {name: values[good] for name, values in found.items()}
-            yield found
+                valid = np.ones(len(numbers), dtype=bool)
+                valid[list(wrong)] = False
+                block_columns = {name: values[valid] for name, values in block_columns.items()}
+            yield block_columns
         self._damage.check()
 
     def _numbers(
@@ -317,30 +317,30 @@ class TextSource(Source):
     ) -> Values:
         """Convert cells to numbers; errors are added to `wrong` by their index in the block."""
         dialect = self.dialect
-        plain = dialect.decimal == "." and not dialect.thousands
+        is_plain = dialect.decimal == "." and not dialect.thousands
         try:
-            values = map(float, cells if plain else map(dialect.plain, cells))
-            found = np.fromiter(values, np.float64, len(cells))
-            if np.isfinite(found).all():
-                return found
+            values = map(float, cells if is_plain else map(dialect.plain, cells))
+            numbers = np.fromiter(values, np.float64, len(cells))
+            if np.isfinite(numbers).all():
+                return numbers
         except ValueError:
             pass
-        found = np.full(len(cells), np.nan)
+        numbers = np.full(len(cells), np.nan)
         for at, cell in enumerate(map(str.strip, cells)):
             if is_empty(cell, self.empty):
                 continue
             if not dialect.is_number(cell):
-                other = "," if dialect.decimal == "." else "."
+                other_decimal = "," if dialect.decimal == "." else "."
                 mend = f'correct the cell; a missing value needs empty = ["{cell}"] under [file]'
-                if Dialect(dialect.delimiter, other).is_number(cell):
+                if Dialect(dialect.delimiter, other_decimal).is_number(cell):
                     mend = "use one decimal mark in all cells"
                 problem = f"{quoted(cell)} is not a number"
                 error = InputError(row=rows[at], column=name, problem=problem, mend=mend)
                 wrong.setdefault(at, error)
                 continue
-            found[at] = float(dialect.plain(cell))
-        found[~np.isfinite(found)] = np.nan
-        return found
+            numbers[at] = float(dialect.plain(cell))
+        numbers[~np.isfinite(numbers)] = np.nan
+        return numbers
 
     def _instants(
         self, name: str, cells: Sequence[str], rows: Sequence[int], reader: Instants
@@ -361,12 +361,12 @@ class TextSource(Source):
     def row_of(self, table: Table, sample: int) -> int | None:
         """Return the line number of a sample."""
         bad, clock = self._damage.lines, self._clock_of(table)
-        good = (
+        valid_rows = (
             number
             for number, cells in self._rows(self._samples())
             if number not in bad and (clock is None or cells[clock].strip())
         )
-        return next(islice(good, sample, None), None)
+        return next(islice(valid_rows, sample, None), None)
 
     def read_bytes(self) -> tuple[int, int]:
         """Return the number of bytes read, and the size of the file."""

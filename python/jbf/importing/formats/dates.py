@@ -188,9 +188,9 @@ class Instants:
 
 def seconds_since(instants: Nanoseconds, origin: int) -> npt.NDArray[np.float64]:
     """Convert instants to seconds since an origin; NaN for a missing instant."""
-    found = (instants - origin) / 1e9
-    found[instants == NO_INSTANT] = np.nan
-    return found
+    elapsed_s = (instants - origin) / 1e9
+    elapsed_s[instants == NO_INSTANT] = np.nan
+    return elapsed_s
 
 
 def as_date(instant: int) -> str | None:

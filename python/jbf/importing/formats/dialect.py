@@ -138,14 +138,16 @@ def sniff(
             if best is None or score > best[0]:
                 best = (score, dialect)
     assert best is not None
-    found = best[1]
-    cells = [cell for line in sample for cell in found.cells(line)]
+    likeliest = best[1]
+    cells = [cell for line in sample for cell in likeliest.cells(line)]
     if thousands is None:
-        found = Dialect(found.delimiter, found.decimal, _thousands(cells, found.decimal))
-    if decimal is None and found.delimiter != ",":
+        likeliest = Dialect(
+            likeliest.delimiter, likeliest.decimal, _thousands(cells, likeliest.decimal)
+        )
+    if decimal is None and likeliest.delimiter != ",":
         question = _doubt(cells)
-        found = Dialect(found.delimiter, found.decimal, found.thousands, question)
-    return found
+        likeliest = Dialect(likeliest.delimiter, likeliest.decimal, likeliest.thousands, question)
+    return likeliest
 
 
 def _score(dialect: Dialect, lines: list[str]) -> tuple[float, float]:
@@ -159,10 +161,12 @@ def _score(dialect: Dialect, lines: list[str]) -> tuple[float, float]:
         return 0.0, 0.0
     width, count = Counter(map(len, rows)).most_common(1)[0]
     cells = [cell for row in rows if len(row) == width for cell in row]
-    good = sum(dialect.is_number(cell) or is_instant(cell) for cell in cells if not is_empty(cell))
+    regular = sum(
+        dialect.is_number(cell) or is_instant(cell) for cell in cells if not is_empty(cell)
+    )
     # Empty cells are neutral; a text has one column only if no delimiter divides it.
     full = sum(not is_empty(cell) for cell in cells)
-    share = (count / len(rows)) * (good / full if full else 0.0)
+    share = (count / len(rows)) * (regular / full if full else 0.0)
     return round(share, 2), float(min(width, 2))
 
 
@@ -180,9 +184,9 @@ def _thousands(cells: list[str], decimal: str) -> str:
 
 def _doubt(cells: list[str]) -> str | None:
     """Return a question if each single comma precedes three digits: thousands or decimals."""
-    seen = [m for cell in cells if (m := _PARTS.fullmatch(cell)) is not None]
-    commas = [m for m in seen if m[2] == ","]
-    if not commas or any(m[2] == "." for m in seen) or len(commas) < len(seen):
+    matches = [m for cell in cells if (m := _PARTS.fullmatch(cell)) is not None]
+    commas = [m for m in matches if m[2] == ","]
+    if not commas or any(m[2] == "." for m in matches) or len(commas) < len(matches):
         return None
     if all(len(m[3]) == 3 and 1 <= len(m[1]) <= 3 and m[1][0] != "0" for m in commas):
         return (

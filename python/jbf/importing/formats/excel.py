@@ -57,14 +57,14 @@ class ExcelSource(Source):
             cells = [row[at] for row in first if at < len(row) and row[at] is not None]
             if not cells:
                 continue
-            found = Column(column, unit)
+            entry = Column(column, unit)
             if isinstance(cells[0], datetime | date | time | timedelta):
-                found = Column(column, "", "instant")
+                entry = Column(column, "", "instant")
                 self._origins.setdefault(_is_dated(cells[0]), _seconds(cells[0]))
                 start = cells[0].isoformat() if isinstance(cells[0], datetime) else start
             elif isinstance(cells[0], str) and not dialect.is_number(cells[0].strip()):
-                found = Column(column, "", "word")
-            columns.append(found)
+                entry = Column(column, "", "word")
+            columns.append(entry)
         return Table(name, tuple(columns), rate_hz=layout.rate_hz, start=start)
 
     def _cells(self, name: str) -> Iterator[tuple[int, Sequence[Any]]]:
@@ -80,17 +80,17 @@ class ExcelSource(Source):
             if number >= layout.first and any(cell is not None for cell in cells)
         )
         while block := list(islice(rows, BLOCK)):
-            found: dict[str, Values] = {}
+            columns: dict[str, Values] = {}
             for name, at in places.items():
                 kind = table.column(name).kind
                 cells = [(n, row[at] if at < len(row) else None) for n, row in block]
                 if kind == "word":
-                    found[name] = np.array([_shown(cell) for _, cell in cells], dtype=object)
+                    columns[name] = np.array([_shown(cell) for _, cell in cells], dtype=object)
                 elif kind == "instant":
-                    found[name] = np.array([self._instant(name, *cell) for cell in cells])
+                    columns[name] = np.array([self._instant(name, *cell) for cell in cells])
                 else:
-                    found[name] = np.array([self._number(name, n, c, dialect) for n, c in cells])
-            yield found
+                    columns[name] = np.array([self._number(name, n, c, dialect) for n, c in cells])
+            yield columns
 
     def _number(self, name: str, row: int, cell: Any, dialect: Dialect) -> float:
         if isinstance(cell, int | float):
@@ -111,8 +111,8 @@ class ExcelSource(Source):
             return round(_seconds(cell) - self._origins.get(_is_dated(cell), 0.0), 6)
         raise self._wrong(name, row, cell, "a date")
 
-    def _wrong(self, name: str, row: int, cell: Any, wanted: str) -> InputError:
-        problem = f"{quoted(cell)} is not {wanted}"
+    def _wrong(self, name: str, row: int, cell: Any, expected: str) -> InputError:
+        problem = f"{quoted(cell)} is not {expected}"
         return InputError(
             file=self.path, row=row, column=name, problem=problem, mend="correct the cell"
         )

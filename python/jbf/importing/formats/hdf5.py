@@ -21,19 +21,19 @@ def open_hdf5(path: Path, options: Options) -> Source:
     """Open an HDF5 file."""
     file = h5py.File(path, "r")
     source = ArraySource(path, file.close)
-    found: dict[tuple[str, int], dict[str, tuple[Slice, str]]] = {}
+    groups: dict[tuple[str, int], dict[str, tuple[Slice, str]]] = {}
 
     def visit(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and item.ndim in (1, 2) and item.shape[0] > 1:
-            parent, _, own = name.rpartition("/")
-            for column, entry in _columns(own, item).items():
-                found.setdefault((parent, item.shape[0]), {})[column] = entry
+            parent, _, item_name = name.rpartition("/")
+            for column, entry in _columns(item_name, item).items():
+                groups.setdefault((parent, item.shape[0]), {})[column] = entry
 
     file.visititems(visit)
-    parents = [parent for parent, _ in found]
-    for (parent, length), columns in found.items():
+    parents = [parent for parent, _ in groups]
+    for (parent, length), columns in groups.items():
         name = parent if parents.count(parent) == 1 else f"{parent} {length} samples".strip()
-        source.add(name if len(found) > 1 else "", columns, length)
+        source.add(name if len(groups) > 1 else "", columns, length)
     if not source.tables:
         raise InputError(file=path, problem="contains no numeric columns", mend="name another file")
     return source
@@ -53,8 +53,8 @@ def _columns(name: str, item: Any) -> dict[str, tuple[Slice, str]]:
         return {name: (lambda first, end: item[first:end], unit)}
     if item.shape[1] > _WIDEST:
         return {}
-    told = next((item.attrs[key] for key in _NAMES if key in item.attrs), ())
-    names = [_text(word) for word in np.ravel(told)]
+    attribute = next((item.attrs[key] for key in _NAMES if key in item.attrs), ())
+    names = [_text(word) for word in np.ravel(attribute)]
     if len(names) != item.shape[1]:
         names = [f"{name} column {i + 1}" for i in range(item.shape[1])]
     return {called: (_at(item, i), "") for i, called in enumerate(names)}

@@ -34,13 +34,13 @@ def open_json(path: Path, options: Options) -> Source:
     """Open a file of JSON or of JSON lines."""
     content, torn = _content(path)
     source = ArraySource(path)
-    found = list(_tables(content, "", options.rate_hz))
+    entries = list(_tables(content, "", options.rate_hz))
     source.passed_over = torn
-    names = unique([name for name, _, _ in found])
-    for called, (_, columns, rate_hz) in zip(names, found, strict=True):
+    names = unique([name for name, _, _ in entries])
+    for called, (_, columns, rate_hz) in zip(names, entries, strict=True):
         rows = max(map(len, columns.values()))
-        own = {key: (slices(values), "") for key, values in columns.items()}
-        source.add(called if len(found) > 1 else "", own, rows, rate_hz=rate_hz)
+        table_columns = {key: (slices(values), "") for key, values in columns.items()}
+        source.add(called if len(entries) > 1 else "", table_columns, rows, rate_hz=rate_hz)
     if not source.tables:
         raise InputError(
             file=path, problem="contains no records and no numeric arrays", mend="write CSV"
@@ -113,15 +113,15 @@ def _columns(content: Mapping[str, Any]) -> Columns:
             width = min(map(len, value))
             arrays |= {f"{key}[{k}]": _numbers([row[k] for row in value]) for k in range(width)}
     lengths = [len(values) for values in arrays.values()]
-    usual = max(lengths, key=lengths.count, default=0)
-    return {key: values for key, values in arrays.items() if len(values) == usual}
+    common_length = max(lengths, key=lengths.count, default=0)
+    return {key: values for key, values in arrays.items() if len(values) == common_length}
 
 
 def _is_row(record: Mapping[str, Any]) -> bool:
     """Return whether a record is one sample: it has scalar numbers, and any arrays are short."""
     arrays = [value for value in record.values() if isinstance(value, list)]
-    alone = {k: v for k, v in record.items() if not isinstance(v, list) and k not in RATES}
-    return max(map(len, arrays), default=0) <= LONGEST and any(True for _ in leaves_of(alone))
+    scalars = {k: v for k, v in record.items() if not isinstance(v, list) and k not in RATES}
+    return max(map(len, arrays), default=0) <= LONGEST and any(True for _ in leaves_of(scalars))
 
 
 def _one_after_the_other(recordings: Sequence[Columns]) -> Columns:
@@ -148,7 +148,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _numbers(values: Sequence[Any]) -> npt.NDArray[Any]:
-    known = [
+    numbers = [
         nanoseconds(value) / 1e9
         if isinstance(value, Mapping)
         else np.nan
@@ -156,5 +156,5 @@ def _numbers(values: Sequence[Any]) -> npt.NDArray[Any]:
         else value
         for value in values
     ]
-    array = np.array(known)
-    return array if array.dtype.kind == "i" else np.array(known, dtype=np.float64)
+    array = np.array(numbers)
+    return array if array.dtype.kind == "i" else np.array(numbers, dtype=np.float64)

@@ -114,8 +114,8 @@ def lay_out(
         first = max(first, next((i for i, (n, _) in enumerate(rows) if n > (units or 0)), first))
     above = list(rows[:first])
     # If the last columns begin with empty cells, only the row of names shows them.
-    told = [len(_trimmed(cells)) for _, cells in above[-3:] if len(_trimmed(cells)) > 1]
-    width = max([width, *told])
+    header_widths = [len(_trimmed(cells)) for _, cells in above[-3:] if len(_trimmed(cells)) > 1]
+    width = max([width, *header_widths])
     rate = _rate(above)
     heads = [row for row in above if _may_be_head(row[1], width)]
     unit_cells = [""] * width
@@ -123,9 +123,9 @@ def lay_out(
         unit_cells = _row(above, units)
         heads = [row for row in heads if row[0] != units]
     elif units is None:
-        found = next((row for row in reversed(heads) if _is_units(row[1])), None)
-        if found is not None:
-            unit_cells, heads = found[1], [row for row in heads if row is not found]
+        unit_row = next((row for row in reversed(heads) if _is_units(row[1])), None)
+        if unit_row is not None:
+            unit_cells, heads = unit_row[1], [row for row in heads if row is not unit_row]
     number = rows[first][0]
     labels = _labels([cells for _, cells in rows[first : first + 3]])
     if header is None and labels is not None:
@@ -150,8 +150,8 @@ def _side_by_side(names: Sequence[str]) -> tuple[Part, ...]:
     """Return tables next to each other, each with a first column named as the first one."""
     clocks = [at for at, name in enumerate(names) if name == names[0]]
     ends = [*clocks[1:], len(names)]
-    apart = all(end - at > 1 for at, end in zip(clocks, ends, strict=True))
-    if len(clocks) < 2 or not apart or understood(names[0]).kind != "time":
+    separated = all(end - at > 1 for at, end in zip(clocks, ends, strict=True))
+    if len(clocks) < 2 or not separated or understood(names[0]).kind != "time":
         return ()
     return tuple(Part(tuple(range(at, end)), at) for at, end in zip(clocks, ends, strict=True))
 
@@ -171,18 +171,18 @@ def merged(parts: tuple[Part, ...], rows: Iterable[Sequence[str]]) -> tuple[Part
     for cells in rows:
         if all(cells[clocks[i]] == cells[clocks[group[0]]] for group in groups for i in group):
             continue
-        apart = list[list[int]]()
+        split = list[list[int]]()
         for group in groups:
             by_time: dict[float | str, list[int]] = {}
             for i in group:
                 by_time.setdefault(_instant(cells[clocks[i]]), []).append(i)
-            apart += by_time.values()
-        groups = apart
-    found = []
+            split += by_time.values()
+        groups = split
+    merged_parts = []
     for group in groups:
-        own = [at for i in group for at in parts[i].columns if at != clocks[i]]
-        found.append(replace(parts[group[0]], columns=(clocks[group[0]], *own)))
-    return tuple(found)
+        columns = [at for i in group for at in parts[i].columns if at != clocks[i]]
+        merged_parts.append(replace(parts[group[0]], columns=(clocks[group[0]], *columns)))
+    return tuple(merged_parts)
 
 
 def _instant(cell: str) -> float | str:
@@ -218,16 +218,18 @@ def _first_sample(
 
     def sample(cells: list[str]) -> bool:
         cells = _trimmed(cells)
-        usual = sum(map(counts, cells)) >= max(1, (len(cells) + 1) // 2)
-        return numeric(cells) > 0 and usual and abs(len(cells) - width) <= max(1, width // 2)
+        mostly_numeric = sum(map(counts, cells)) >= max(1, (len(cells) + 1) // 2)
+        return (
+            numeric(cells) > 0 and mostly_numeric and abs(len(cells) - width) <= max(1, width // 2)
+        )
 
     for at in range(len(rows)):
         following = rows[at : at + 3]
         if all(sample(cells) for _, cells in following):
             # A row of names may hold numbers (years, channels); a row of samples holds no names.
-            here = _trimmed(rows[at][1])
-            after = _trimmed(rows[at + 1][1]) if at + 1 < len(rows) else here
-            if sum(map(counts, here)) >= sum(map(counts, after)):
+            current = _trimmed(rows[at][1])
+            after = _trimmed(rows[at + 1][1]) if at + 1 < len(rows) else current
+            if sum(map(counts, current)) >= sum(map(counts, after)):
                 return at
     return None
 
@@ -239,10 +241,10 @@ def _may_be_head(cells: list[str], width: int) -> bool:
 
 def _is_units(cells: list[str]) -> bool:
     full = [_bare_unit(cell) for cell in cells if cell]
-    known = sum(parse_unit(cell) is not None for cell in full)
+    unit_count = sum(parse_unit(cell) is not None for cell in full)
     # `s` is a unit and a name; whole words that name a quantity do not occur in a row of units.
     named = sum(understood(cell).kind is not None and len(cell) > 2 for cell in full)
-    return bool(full) and known > 0.5 * len(full) and named < known
+    return bool(full) and unit_count > 0.5 * len(full) and named < unit_count
 
 
 def _bare_unit(cell: str) -> str:
@@ -275,10 +277,10 @@ def _padded(cells: Sequence[str], width: int) -> tuple[str, ...]:
 
 def _carried(cells: Sequence[str], width: int) -> list[str]:
     """Repeat the name of a group, which is written only above its first column."""
-    found: list[str] = []
+    repeated: list[str] = []
     for cell in _padded(cells, width):
-        found.append(cell or (found[-1] if found else ""))
-    return found
+        repeated.append(cell or (repeated[-1] if repeated else ""))
+    return repeated
 
 
 def _rate(rows: Sequence[Row]) -> float | None:
@@ -295,7 +297,9 @@ def _rate(rows: Sequence[Row]) -> float | None:
             continue
         if unit.lower() in _HZ:
             return value * _HZ[unit.lower()]
-        known = parse_unit(unit) if unit in ("s", "ms", "us", "µs", "ns", "sec", "min") else None
-        if known is not None:
-            return 1.0 / (value * known.in_si)
+        time_unit = (
+            parse_unit(unit) if unit in ("s", "ms", "us", "µs", "ns", "sec", "min") else None
+        )
+        if time_unit is not None:
+            return 1.0 / (value * time_unit.in_si)
     return None

@@ -58,10 +58,10 @@ class _Variable:
 
 def add_structures(source: ArraySource, content: Mapping[str, Tree]) -> None:
     """Add the variables of a file: signals by their clocks, all other vectors by their length."""
-    found = [entry for name, node in content.items() for entry in _walk(node, name, None)]
+    variables = [entry for name, node in content.items() for entry in _walk(node, name, None)]
     by_length: dict[int, dict[str, tuple[Slice, str]]] = {}
     signals = []
-    for entry in found:
+    for entry in variables:
         for name, column in entry.columns():
             if entry.clock is None:
                 by_length.setdefault(entry.samples.rows, {})[name] = (column, entry.unit)
@@ -69,11 +69,11 @@ def add_structures(source: ArraySource, content: Mapping[str, Tree]) -> None:
             times = entry.clock.samples
             instants = times.columns[0](0, times.rows)
             signals.append(Signal(name, instants, column, entry.unit, entry.clock.unit))
-    alone = not source.tables
-    add_by_clock(source, signals, alone and not by_length)
+    first_table = not source.tables
+    add_by_clock(source, signals, first_table and not by_length)
     for length, columns in by_length.items():
-        one = alone and not signals and len(by_length) == 1
-        source.add("" if one else f"{length} samples", columns, length)
+        single = first_table and not signals and len(by_length) == 1
+        source.add("" if single else f"{length} samples", columns, length)
 
 
 def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Variable]:
@@ -96,10 +96,10 @@ def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Variable]:
 
 def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> Iterator[_Variable]:
     fields = {key.lower(): key for key in node}
-    own = _clock(node, fields)
-    time = own or clock
+    own_clock = _clock(node, fields)
+    time = own_clock or clock
     signal = _signal(node, fields, name, time)
-    used = {fields["time"]} if own is not None else set[str]()
+    used = {fields["time"]} if own_clock is not None else set[str]()
     if signal is not None:
         used |= {fields[key] for key in SAMPLES if key in fields}
     below = [
@@ -109,17 +109,17 @@ def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> 
         for entry in _walk(item, f"{name}.{key}", time)
     ]
     entries = below if signal is None else [signal, *below]
-    if own is not None:
-        if any(entry.clock is own for entry in entries):
+    if own_clock is not None:
+        if any(entry.clock is own_clock for entry in entries):
             # Vectors in a structure with a clock, and of its length, are sampled by this clock.
             entries = [
-                replace(entry, clock=own)
-                if entry.clock is None and entry.samples.rows == own.samples.rows
+                replace(entry, clock=own_clock)
+                if entry.clock is None and entry.samples.rows == own_clock.samples.rows
                 else entry
                 for entry in entries
             ]
         else:
-            yield _Variable(f"{name}.{fields['time']}", own.samples)
+            yield _Variable(f"{name}.{fields['time']}", own_clock.samples)
     yield from entries
 
 
@@ -139,8 +139,10 @@ def _signal(
     node: Mapping[str, Tree], fields: Mapping[str, str], name: str, clock: _Clock | None
 ) -> _Variable | None:
     """Return the signal of a structure; None without samples, or without both label and clock."""
-    held = [node[fields[key]] for key in SAMPLES if key in fields]
-    samples = next((item for item in held if isinstance(item, Samples) and item.rows > 1), None)
+    candidates = [node[fields[key]] for key in SAMPLES if key in fields]
+    samples = next(
+        (item for item in candidates if isinstance(item, Samples) and item.rows > 1), None
+    )
     if samples is None:
         return None
     fitting = clock if clock is not None and clock.samples.rows == samples.rows else None

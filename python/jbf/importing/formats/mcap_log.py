@@ -34,13 +34,13 @@ class McapSource(MessageSource):
             raise InputError(file=path, problem="has no summary", mend="mcap recover FILE")
         self.origin_ns = summary.statistics.message_start_time if summary.statistics else 0
         counts = summary.statistics.channel_message_counts if summary.statistics else {}
-        others = {c.message_encoding for c in summary.channels.values()} - {"cdr", "json"}
+        encodings = {c.message_encoding for c in summary.channels.values()} - {"cdr", "json"}
         for number, channel in summary.channels.items():
             if channel.message_encoding in ("cdr", "json"):
                 self.add_topic(channel.topic, counts.get(number))
         if not self.tables:
-            held = f" (it contains {', '.join(sorted(others))})" if others else ""
-            problem = f"contains no numeric messages of ROS 2 or JSON{held}"
+            contents = f" (it contains {', '.join(sorted(encodings))})" if encodings else ""
+            problem = f"contains no numeric messages of ROS 2 or JSON{contents}"
             raise InputError(file=path, problem=problem, mend="write its messages as JSON or CSV")
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:

@@ -35,8 +35,8 @@ class MdfSource(Source):
         groups = list(enumerate(self._file.groups))
         names = [_name(at, group) for at, group in groups]
         for (at, group), name in zip(groups, names, strict=True):
-            own = name if names.count(name) == 1 else f"{name} {at}"
-            table = self._table(at, group, "" if len(groups) == 1 else own)
+            unique_name = name if names.count(name) == 1 else f"{name} {at}"
+            table = self._table(at, group, "" if len(groups) == 1 else unique_name)
             if table is not None:
                 tables.append(table)
         if not tables:
@@ -79,14 +79,14 @@ class MdfSource(Source):
         assert table.rows is not None
         for first in range(0, table.rows, BLOCK):
             count = min(BLOCK, table.rows - first)
-            found: dict[str, Values] = {}
+            block: dict[str, Values] = {}
             for name in names:
                 if name == CLOCK and name not in places:
                     values = self._file.get_master(group, record_offset=first, record_count=count)
                 else:
                     values = self._values(group, places[name], first, count)
-                found[name] = as_numbers(values)
-            yield found
+                block[name] = as_numbers(values)
+            yield block
 
     def close(self) -> None:
         """Close the file."""
@@ -95,8 +95,8 @@ class MdfSource(Source):
 
 
 def _name(at: int, group: Any) -> str:
-    told = getattr(group.channel_group, "acq_name", "") or ""
-    return told or f"group {at}"
+    stated = getattr(group.channel_group, "acq_name", "") or ""
+    return stated or f"group {at}"
 
 
 def open_mdf(path: Path, options: Options) -> Source:

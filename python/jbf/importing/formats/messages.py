@@ -121,8 +121,8 @@ def _is_stamp(value: Any) -> bool:
 def nanoseconds(stamp: Any) -> int:
     """Convert a stamp of seconds and nanoseconds to nanoseconds."""
     parts = dict(_parts(stamp))
-    whole = next(int(parts[n]) for n in SECONDS if n in parts)
-    return whole * 10**9 + next(int(parts[n]) for n in NANOSECONDS if n in parts)
+    seconds = next(int(parts[n]) for n in SECONDS if n in parts)
+    return seconds * 10**9 + next(int(parts[n]) for n in NANOSECONDS if n in parts)
 
 
 def path_of(name: str) -> list[str | int]:

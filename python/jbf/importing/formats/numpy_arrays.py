@@ -14,10 +14,10 @@ from jbf.importing.formats.table import Options, Source
 def open_arrays(path: Path, options: Options) -> Source:
     """Open a file of arrays; pickles are not loaded, so that no code is run."""
     with path.open("rb") as file:
-        alone = file.read(6) == b"\x93NUMPY"
+        single_array = file.read(6) == b"\x93NUMPY"
     # A single array remains on the disk until it is read.
-    content: Any = np.load(path, mmap_mode="r" if alone else None, allow_pickle=False)
-    arrays = {"": content} if alone else dict(content)
+    content: Any = np.load(path, mmap_mode="r" if single_array else None, allow_pickle=False)
+    arrays = {"": content} if single_array else dict(content)
     source = ArraySource(path)
     vectors: dict[str, tuple[Any, str]] = {}
     for name, values in arrays.items():

@@ -30,21 +30,21 @@ class ParquetSource(Source):
         """Yield the columns in batches."""
         kinds = {name: table.column(name).kind for name in names}
         for batch in self._file.iter_batches(BLOCK, columns=list(dict.fromkeys(names))):
-            found: dict[str, Values] = {}
+            block: dict[str, Values] = {}
             for name in names:
                 column = batch.column(name)
                 if kinds[name] == "instant":
                     values = column.cast(pa.timestamp("ns")).to_numpy(zero_copy_only=False)
                     # All columns of dates share one origin, so that their clocks can be compared.
                     self._origin = self._origin or first_instant(values)
-                    found[name] = seconds(values, self._origin)
+                    block[name] = seconds(values, self._origin)
                 elif kinds[name] == "word":
-                    found[name] = np.array(column.to_pylist(), dtype=object)
+                    block[name] = np.array(column.to_pylist(), dtype=object)
                 else:
-                    whole = pa.types.is_integer(column.type) and column.null_count == 0
-                    numbers = column if whole else column.cast(pa.float64(), safe=False)
-                    found[name] = as_numbers(numbers.to_numpy(zero_copy_only=False))
-            yield found
+                    is_integer = pa.types.is_integer(column.type) and column.null_count == 0
+                    numbers = column if is_integer else column.cast(pa.float64(), safe=False)
+                    block[name] = as_numbers(numbers.to_numpy(zero_copy_only=False))
+            yield block
 
     def close(self) -> None:
         """Close the file."""

@@ -155,9 +155,9 @@ def format_of(path: Path) -> Format:
     check_readable(path, pipes=False)
     with path.open("rb") as file:
         begin = file.read(520)
-    for known in FORMATS:
-        if any(begin.startswith(magic, known.magic_at) for magic in known.magic):
-            return known
+    for candidate in FORMATS:
+        if any(begin.startswith(magic, candidate.magic_at) for magic in candidate.magic):
+            return candidate
     suffix = path.suffix.lower()
     for unread in UNREAD:
         by_suffix = suffix in unread.suffixes and not _is_text(begin)

@@ -35,8 +35,8 @@ class BagSource(MessageSource):
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
         """Yield the messages of a topic."""
-        own = [c for c in self._reader.connections if c.topic == topic]
-        for connection, stamp, raw in self._reader.messages(connections=own):
+        connections = [c for c in self._reader.connections if c.topic == topic]
+        for connection, stamp, raw in self._reader.messages(connections=connections):
             yield stamp, self._reader.deserialize(raw, connection.msgtype)
 
     def close(self) -> None:

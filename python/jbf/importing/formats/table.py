@@ -151,11 +151,11 @@ class Source(ABC):
         """Return the first rows of every column."""
         names = [column.name for column in table.columns]
         parts: list[Mapping[str, Values]] = []
-        there = 0
+        row_count = 0
         for block in self.blocks(table, names):
             parts.append(block)
-            there += len(next(iter(block.values()), ()))
-            if there >= rows:
+            row_count += len(next(iter(block.values()), ()))
+            if row_count >= rows:
                 break
         if not parts:
             return {name: np.empty(0) for name in names}
@@ -194,19 +194,19 @@ def library_errors(path: Path, problem: str) -> Iterator[None]:
     except (InputError, ModuleNotFoundError, MemoryError):
         raise
     except Exception as error:
-        said = str(error).splitlines()[0].strip() if str(error).strip() else type(error).__name__
+        reason = str(error).splitlines()[0].strip() if str(error).strip() else type(error).__name__
         mend = "save it again, or name another file"
-        raise InputError(file=path, problem=f"{problem} ({said})", mend=mend) from error
+        raise InputError(file=path, problem=f"{problem} ({reason})", mend=mend) from error
 
 
 def unique(names: Sequence[str]) -> list[str]:
     """Make names unique: repeated names are numbered, and empty names become `column N`."""
-    found: list[str] = []
+    unique_names: list[str] = []
     for at, name in enumerate(names, 1):
         if names.count(name) > 1 and name:
             name = f"{name} #{names[:at].count(name)}"
-        found.append(name or f"column {at}")
-    return found
+        unique_names.append(name or f"column {at}")
+    return unique_names
 
 
 def in_blocks(columns: Mapping[str, Values], size: int = BLOCK) -> Iterator[dict[str, Values]]:

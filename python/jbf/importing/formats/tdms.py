@@ -21,28 +21,30 @@ def open_tdms(path: Path, options: Options) -> Source:
     """Open a TDMS file."""
     file = TdmsFile.open(path)
     source = ArraySource(path, file.close)
-    found: dict[Group, dict[str, tuple[Slice, str]]] = {}
+    groups: dict[Group, dict[str, tuple[Slice, str]]] = {}
     starts: dict[Group, np.datetime64] = {}
     for group in file.groups():
         for channel in group.channels():
             if len(channel) < 2 or channel.data_type is None:
                 continue
-            told = channel.properties
-            step = told.get("wf_increment")
+            properties = channel.properties
+            step = properties.get("wf_increment")
             key: Group = (
                 group.name,
                 len(channel),
                 float(step) if step else None,
-                float(told.get("wf_start_offset", 0.0)),
-                str(told.get("wf_start_time", "") if step else ""),
+                float(properties.get("wf_start_offset", 0.0)),
+                str(properties.get("wf_start_time", "") if step else ""),
             )
-            unit = str(told.get("unit_string", "") or told.get("NI_UnitDescription", ""))
-            found.setdefault(key, {})[channel.name] = (_read(channel), unit)
+            unit = str(
+                properties.get("unit_string", "") or properties.get("NI_UnitDescription", "")
+            )
+            groups.setdefault(key, {})[channel.name] = (_read(channel), unit)
             if key[4]:
-                starts[key] = np.datetime64(told["wf_start_time"])
-    names = [key[0] for key in found]
+                starts[key] = np.datetime64(properties["wf_start_time"])
+    names = [key[0] for key in groups]
     first = min(starts.values(), default=None)
-    for key, columns in found.items():
+    for key, columns in groups.items():
         name, length, step_s, first_s, _ = key
         clock = None
         if key in starts and first is not None:
@@ -55,7 +57,7 @@ def open_tdms(path: Path, options: Options) -> Source:
             # Add the channels to the name, since they are unique in a group.
             name = f"{name}: {', '.join(c for c in columns if c != CLOCK)}"
         date = None if key not in starts else str(first)
-        source.add(name if len(found) > 1 else "", columns, length, clock, date)
+        source.add(name if len(groups) > 1 else "", columns, length, clock, date)
     if not source.tables:
         raise InputError(
             file=path, problem="contains no numeric channels", mend="name another file"
@@ -70,9 +72,9 @@ def _read(channel: Any) -> Slice:
 def _even(step_s: float, first_s: float) -> Slice:
     # Divide by a whole rate: 50 Hz is exact in floating point, 1/50 s is not.
     rate = round(1.0 / step_s)
-    whole = rate > 0 and 1.0 / rate == step_s
+    integer_rate = rate > 0 and 1.0 / rate == step_s
     return lambda first, end: (
         first_s + np.arange(first, end) / rate
-        if whole
+        if integer_rate
         else first_s + np.arange(first, end) * step_s
     )

@@ -87,7 +87,7 @@ def _entries(data: bytes) -> tuple[list[_Entry], int | None]:
 
     Entries of equal name and type, as after a restart, are merged.
     """
-    found: dict[tuple[str, str], _Entry] = {}
+    entries: dict[tuple[str, str], _Entry] = {}
     by_number: dict[int, _Entry] = {}
     at = _HEADER + int.from_bytes(data[8:_HEADER], "little")
     while at < len(data):
@@ -98,22 +98,22 @@ def _entries(data: bytes) -> tuple[list[_Entry], int | None]:
         number = int.from_bytes(data[at + 1 : number_end], "little")
         size = int.from_bytes(data[number_end:size_end], "little")
         if begin + size > len(data):
-            return list(found.values()), at
+            return list(entries.values()), at
         if number == 0:
             try:
-                _control(data[begin : begin + size], found, by_number)
+                _control(data[begin : begin + size], entries, by_number)
             except _TornError:
-                return list(found.values()), at
+                return list(entries.values()), at
         elif (entry := by_number.get(number)) is not None:
             entry.stamps_us.append(int.from_bytes(data[size_end:begin], "little") & _LARGEST)
             entry.begins.append(begin)
             entry.sizes.append(size)
         at = begin + size
-    return list(found.values()), None
+    return list(entries.values()), None
 
 
 def _control(
-    content: bytes, found: dict[tuple[str, str], _Entry], by_number: dict[int, _Entry]
+    content: bytes, entries: dict[tuple[str, str], _Entry], by_number: dict[int, _Entry]
 ) -> None:
     """Start or finish an entry, or change its metadata."""
     if len(content) < 5:
@@ -126,7 +126,7 @@ def _control(
         by_number.pop(number, None)
         if kind.removesuffix("[]") in _TYPES:
             entry = _Entry(name, kind, _unit(metadata))
-            by_number[number] = found.setdefault((name, kind), entry)
+            by_number[number] = entries.setdefault((name, kind), entry)
     elif content[0] == _FINISH:
         by_number.pop(number, None)
     elif content[0] == _METADATA and number in by_number:

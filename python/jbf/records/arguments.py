@@ -67,8 +67,8 @@ def check_run(run: Run) -> None:
     Such a run comes from the constructor, which does not check its arguments, or from a selection.
     """
     for column, values in ({"velocity_m_s": run.velocity} | run.columns()).items():
-        good = isinstance(values, np.ndarray) and values.dtype == np.float64 and values.ndim == 1
-        if not good or np.ma.is_masked(values):
+        valid = isinstance(values, np.ndarray) and values.dtype == np.float64 and values.ndim == 1
+        if not valid or np.ma.is_masked(values):
             raise InputError(
                 file=run.name,
                 column=column,
@@ -123,20 +123,22 @@ def names(value: object, what: str) -> tuple[str, ...]:
         raise InputError(
             problem=f"{what} is {described(value)}", mend=f"write a list of names: {what}=[]"
         )
-    found = tuple(value)
-    for name in found:
+    entries = tuple(value)
+    for name in entries:
         if not isinstance(name, str):
             raise InputError(
                 problem=f"{what} holds {described(name)}", mend="write names as strings"
             )
-    return found
+    return entries
 
 
-def checked_integer(value: object, what: str, least: int = 0) -> int:
-    """Return the value as an integer that is at least `least`; raise an InputError otherwise."""
-    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+def checked_integer(value: object, what: str, minimum: int = 0) -> int:
+    """Return the value as an integer that is at least `minimum`; raise an InputError otherwise."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < minimum:
         shown = str(value) if isinstance(value, Real) else described(value)
-        raise InputError(problem=f"{what} is {shown}", mend=f"give an integer of at least {least}")
+        raise InputError(
+            problem=f"{what} is {shown}", mend=f"give an integer of at least {minimum}"
+        )
     return int(value)
 
 
@@ -146,9 +148,9 @@ def check_callable(value: object, what: str) -> None:
         raise InputError(problem=f"{what} is {described(value)}", mend="give a function, or None")
 
 
-def one_of(value: object, known: Iterable[Word], what: str) -> Word:
+def one_of(value: object, choices: Iterable[Word], what: str) -> Word:
     """Return the value if it is a known word; otherwise raise an InputError with a suggestion."""
-    words = list(known)
+    words = list(choices)
     for word in words:
         if isinstance(value, str) and value == word:
             return word

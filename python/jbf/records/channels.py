@@ -66,9 +66,9 @@ def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[
     columns, read = {"time_s": frozen(instants)}, {}
     for column, clock in clocks.items():
         columns[column] = frozen(np.interp(instants, clock, values[column]))
-        there = np.isin(instants, clock)
-        if not there.all():
-            read[column] = there
+        sampled = np.isin(instants, clock)
+        if not sampled.all():
+            read[column] = sampled
     return columns, read
 
 
@@ -77,15 +77,15 @@ def recorded_samples(time_s: Array, values: Array) -> tuple[Array, Array]:
 
     A small number of missing values is kept, so that the later checks reject them.
     """
-    there = np.isfinite(values)
-    if there.all() or np.count_nonzero(~there) < max(MIN_SAMPLES, OWN_CLOCK * len(values)):
+    finite = np.isfinite(values)
+    if finite.all() or np.count_nonzero(~finite) < max(MIN_SAMPLES, OWN_CLOCK * len(values)):
         return time_s, values
-    return time_s[there], values[there]
+    return time_s[finite], values[finite]
 
 
-def filled(time_s: Array, values: Array, there: Mask) -> Array:
-    """Return a column with linear interpolation at the samples where `there` is False."""
-    return frozen(np.interp(time_s, time_s[there], values[there]))
+def filled(time_s: Array, values: Array, valid: Mask) -> Array:
+    """Return a column with linear interpolation at the samples where `valid` is False."""
+    return frozen(np.interp(time_s, time_s[valid], values[valid]))
 
 
 def of_motion(read: Mapping[str, Mask]) -> Mask | None:

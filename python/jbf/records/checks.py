@@ -86,8 +86,8 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
             file=name, column=column, problem=problem, mend="give one number per sample, shape (N,)"
         )
 
-    listed = values if isinstance(values, list | tuple) else ()
-    if np.ma.is_masked(values) or any(x is np.ma.masked for x in listed):
+    items = values if isinstance(values, list | tuple) else ()
+    if np.ma.is_masked(values) or any(x is np.ma.masked for x in items):
         raise InputError(
             file=name,
             column=column,
@@ -118,7 +118,7 @@ def check_columns(
     columns: Mapping[str, Array],
     path: Path | None,
     rows: Sequence[int] | None,
-    known: Collection[str] = COLUMNS,
+    standard: Collection[str] = COLUMNS,
 ) -> None:
     """Raise an InputError if a column does not hold valid values for its name.
 
@@ -130,7 +130,7 @@ def check_columns(
         Column name to values.
     path, rows
         The file that the columns were read from, and the line of each sample in it.
-    known
+    standard
         Columns with a defined meaning, whose values must be plausible for a machine.
     """
     file = path if rows is not None and path is not None else name
@@ -168,7 +168,7 @@ def check_columns(
                 f"{values[bad[0]]} is not a finite number",
                 "correct the cell or remove the row",
             )
-        bad = np.flatnonzero(np.abs(values) > LARGEST) if column in known else bad
+        bad = np.flatnonzero(np.abs(values) > LARGEST) if column in standard else bad
         if bad.size:
             raise wrong(
                 column,
@@ -205,7 +205,7 @@ def check_columns(
             )
 
 
-def selection(which: slice | npt.ArrayLike, count: int, name: str) -> Any:
+def selection(selector: slice | npt.ArrayLike, count: int, name: str) -> Any:
     """Return a slice or a boolean mask of shape (count,) that selects samples.
 
     Raises
@@ -213,16 +213,16 @@ def selection(which: slice | npt.ArrayLike, count: int, name: str) -> Any:
     InputError
         The mask is not boolean or not of shape (count,), or the slice runs backwards.
     """
-    if isinstance(which, slice):
-        if which.step is not None and which.step < 1:
+    if isinstance(selector, slice):
+        if selector.step is not None and selector.step < 1:
             raise InputError(
                 file=name,
                 problem="a selection cannot be reversed",
                 mend="use a step > 0",
             )
-        return which
-    index = np.asarray(which)
-    if np.ma.is_masked(which) or index.dtype != np.bool_ or index.shape != (count,):
+        return selector
+    index = np.asarray(selector)
+    if np.ma.is_masked(selector) or index.dtype != np.bool_ or index.shape != (count,):
         raise InputError(
             file=name,
             problem=f"a mask of {index.dtype} and shape {index.shape} cannot select",

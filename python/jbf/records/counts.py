@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 
-def count_of(count: int, one: str, many: str = "") -> str:
+def count_of(count: int, singular: str, plural: str = "") -> str:
     """Return a count with its noun in the singular or the plural.
 
     Parameters
     ----------
-    one, many
+    singular, plural
         Singular and plural of the noun; the default plural is the singular with an s.
     """
-    return f"{count} {one if count == 1 else many or one + 's'}"
+    return f"{count} {singular if count == 1 else plural or singular + 's'}"

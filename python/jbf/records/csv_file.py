@@ -97,7 +97,7 @@ def _checked_header(
     required: Sequence[str],
     of_drive: DriveColumns | None,
 ) -> None:
-    known = COLUMNS if of_drive is None else of_drive.known
+    known_columns = COLUMNS if of_drive is None else of_drive.known
 
     def wrong(column: str | None, problem: str, mend: str) -> InputError:
         return InputError(file=path, row=row, column=column, problem=problem, mend=mend)
@@ -119,7 +119,7 @@ def _checked_header(
     misses = {
         miss: name
         for name in header
-        if name not in known and (miss := _near_miss(name, absent, aliases)) is not None
+        if name not in known_columns and (miss := _near_miss(name, absent, aliases)) is not None
     }
     for name in required:
         if name in absent:
@@ -127,13 +127,13 @@ def _checked_header(
                 mend = f"did you mean {quoted(misses[name])}? rename it to {name}"
             else:
                 mend = f"add it; the header has {listed(header)}"
-                told = [other for other in OF_DRIVES if other in header]
-                if of_drive is None and told:
-                    mend += f"; a rig with [drive] defines {told[0]}"
+                of_drives = [heading for heading in OF_DRIVES if heading in header]
+                if of_drive is None and of_drives:
+                    mend += f"; a rig with [drive] defines {of_drives[0]}"
             raise wrong(name, "is missing", mend)
-    for name, found in misses.items():
+    for name, near_miss in misses.items():
         raise wrong(
-            found,
+            near_miss,
             "is not a known column",
             f"did you mean {quoted(name)}? rename it (mind the unit) or give it another name",
         )
@@ -247,7 +247,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         required = of_drive.required(header, need_friction)
     else:
         required = _required(header, need_friction)
-    known = COLUMNS if of_drive is None else of_drive.known
+    known_columns = COLUMNS if of_drive is None else of_drive.known
     steady = POINT in header and "time_s" not in header
     if steady:
         required = [POINT if name == "time_s" else name for name in required]
@@ -273,29 +273,29 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         try:
             values = frozen(list(map(float, cells)))
         except ValueError:
-            own = None if name == "time_s" else _separately_clocked(cells, turned)
-            if own is not None and name:
-                columns[name], gaps[name] = own
-            elif name in known:
+            channel = None if name == "time_s" else _separately_clocked(cells, turned)
+            if channel is not None and name:
+                columns[name], gaps[name] = channel
+            elif name in known_columns:
                 at = next(i for i, cell in enumerate(cells) if not _is_number(cell))
                 raise _bad_cell(path, numbers[at], name, cells[at]) from None
             continue
-        if name in known or (name and np.isfinite(values).all()):
+        if name in known_columns or (name and np.isfinite(values).all()):
             columns[name] = values
     if steady and POINT in columns:
         speeds = ("velocity_m_s",) if of_drive is None else tuple(of_drive.speed)
         columns = _by_speed(columns, next((s for s in speeds if s in columns), POINT))
-    check_columns(name_of_run, columns, path, numbers, known)
-    for name, there in gaps.items():
-        columns[name] = filled(columns["time_s"], columns[name], there)
+    check_columns(name_of_run, columns, path, numbers, known_columns)
+    for name, sampled in gaps.items():
+        columns[name] = filled(columns["time_s"], columns[name], sampled)
     if of_drive is None:
         return replace(Run.of_columns(name_of_run, columns, path), read=gaps)
     called = of_drive.called(columns)
     columns, findings = of_drive.converted(name_of_run, columns)
     run = Run.of_columns(name_of_run, columns, path)
     findings = (*findings, *run.reading)
-    read = {called.get(name, name): there for name, there in gaps.items()}
-    read = {name: there for name, there in read.items() if name in columns}
+    read = {called.get(name, name): sampled for name, sampled in gaps.items()}
+    read = {name: sampled for name, sampled in read.items() if name in columns}
     return replace(run, quantities=of_drive.drive.quantities, reading=findings, read=read)
 
 
@@ -306,12 +306,12 @@ def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:
     the states were measured.
     """
     order = np.argsort(columns[speed], kind="stable")
-    found = {name: frozen(values[order]) for name, values in columns.items()}
-    return found | {"time_s": frozen(POINT_S * np.arange(len(order)))}
+    ordered = {name: frozen(values[order]) for name, values in columns.items()}
+    return ordered | {"time_s": frozen(POINT_S * np.arange(len(order)))}
 
 
 def _separately_clocked(
-    cells: Sequence[str], others: Sequence[Sequence[str]]
+    cells: Sequence[str], other_columns: Sequence[Sequence[str]]
 ) -> tuple[Array, Mask] | None:
     """Return the readings of a channel with a separate clock, and the mask of its non-empty cells.
 
@@ -319,28 +319,28 @@ def _separately_clocked(
     channel may have a smaller share; every row without a value of it must then have a value of a
     slower channel.
     """
-    there = _filled_cells(cells)
-    if not there.any():
+    sampled = _filled_cells(cells)
+    if not sampled.any():
         return None
-    if not _is_a_clock(there):
-        slow = [mask for mask in map(_filled_cells, others) if _is_a_clock(mask)]
-        if not slow or not np.logical_or.reduce(slow)[~there].all():
+    if not _is_a_clock(sampled):
+        slow = [mask for mask in map(_filled_cells, other_columns) if _is_a_clock(mask)]
+        if not slow or not np.logical_or.reduce(slow)[~sampled].all():
             return None
     try:
         read = [float(cell) for cell in cells if cell.strip()]
     except ValueError:
         return None
     values = np.zeros(len(cells))
-    values[there] = read
-    return frozen(values), there
+    values[sampled] = read
+    return frozen(values), sampled
 
 
 def _filled_cells(cells: Sequence[str]) -> Mask:
     return np.array([bool(cell.strip()) for cell in cells])
 
 
-def _is_a_clock(there: Mask) -> bool:
-    return int(np.count_nonzero(~there)) >= max(MIN_SAMPLES, OWN_CLOCK * len(there))
+def _is_a_clock(sampled: Mask) -> bool:
+    return int(np.count_nonzero(~sampled)) >= max(MIN_SAMPLES, OWN_CLOCK * len(sampled))
 
 
 def _required(header: Sequence[str], need_friction: bool) -> list[str]:

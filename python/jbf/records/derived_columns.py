@@ -16,14 +16,14 @@ Array = npt.NDArray[np.float64]
 
 def fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
     """Interpolate the gaps of a temperature, C, linearly, and report them as a finding."""
-    known = np.isfinite(celsius)
-    if known.all():
+    finite = np.isfinite(celsius)
+    if finite.all():
         return celsius, ()
-    ends = np.concatenate((time_s[:1], time_s[known], time_s[-1:]))
+    ends = np.concatenate((time_s[:1], time_s[finite], time_s[-1:]))
     longest_s = float(np.max(np.diff(ends)))
-    words = f"the temperature has readings at {known.sum()} of {len(celsius)} samples"
+    words = f"the temperature has readings at {finite.sum()} of {len(celsius)} samples"
     finding = Finding("gaps", SLOW, name, longest_s, "s", "interpolated linearly", words)
-    return filled(time_s, celsius, known), (finding,)
+    return filled(time_s, celsius, finite), (finding,)
 
 
 def derived_speed_column(columns: Mapping[str, Array]) -> Array:

@@ -100,8 +100,8 @@ class Drive:
                 continue
             object.__setattr__(self, name, positive(value, name))
         self._check_constants()
-        other = "mass_kg" if self.motion == "rotary" else "inertia_kg_m2"
-        strangers = (other, "pitch_m") if self.motion == "rotary" else (other,)
+        misplaced = "mass_kg" if self.motion == "rotary" else "inertia_kg_m2"
+        strangers = (misplaced, "pitch_m") if self.motion == "rotary" else (misplaced,)
         for name in strangers:
             if getattr(self, name) is not None:
                 raise _wrong(name, f"does not apply to a {self.motion} drive", "remove it")
@@ -121,16 +121,16 @@ class Drive:
                 raise _wrong("pitch_m", problem, mend)
 
     def _check_constants(self) -> None:
-        wanted = _CONSTANTS[self.motion, self.friction]
+        required = _CONSTANTS[self.motion, self.friction]
         given = [name for name in _ALL_CONSTANTS if getattr(self, name) is not None]
         for name in given:
-            if name not in wanted:
+            if name not in required:
                 problem = f'is not used for a {self.motion} drive with friction = "{self.friction}"'
                 raise _wrong(name, problem, "remove it, or correct friction")
-        if wanted and len(given) != 1:
+        if required and len(given) != 1:
             problem = "are both given" if given else "is missing"
             mend = "keep one of them" if given else f'friction = "{self.friction}" needs it'
-            raise _wrong(" or ".join(wanted), problem, mend)
+            raise _wrong(" or ".join(required), problem, mend)
 
     @property
     def moved(self) -> float | None:
@@ -172,9 +172,9 @@ class Drive:
     @classmethod
     def from_mapping(cls, content: object, prefix: str) -> Drive:
         """Build a drive from its TOML section; errors name the key, preceded by `prefix`."""
-        known = [f.name for f in fields(cls)]
+        keys = [f.name for f in fields(cls)]
         section: Mapping[str, Any] = table(content, prefix)
-        refuse_unknown(section, known, f"{prefix}.")
+        refuse_unknown(section, keys, f"{prefix}.")
         for key in ("motion", "friction"):
             if key not in section:
                 raise _wrong(f"{prefix}.{key}", "is missing", f"add it to [{prefix}]")
@@ -184,10 +184,10 @@ class Drive:
             raise error.within(key_prefix=f"{prefix}.") from None
 
 
-def _check_word(key: str, word: object, words: Sequence[str], of: str = "") -> None:
+def _check_word(key: str, word: object, words: Sequence[str], context: str = "") -> None:
     if word not in words:
         shown = quoted(word) if isinstance(word, str) else f"a {type(word).__name__}"
-        raise _wrong(key, f"{shown} is not a valid {key}{of}", did_you_mean(word, words))
+        raise _wrong(key, f"{shown} is not a valid {key}{context}", did_you_mean(word, words))
 
 
 def _wrong(key: str, problem: str, mend: str) -> InputError:

@@ -99,11 +99,11 @@ class DriveColumns:
         For each quantity this is the column in the header, or else the first one possible.
         """
 
-        def one(names: Sequence[str]) -> str:
+        def sole(names: Sequence[str]) -> str:
             return next((name for name in names if name in header), names[0])
 
-        found = ["time_s", one([*self.speed, *self.place])]
-        return found + ([one([*self.friction])] if need_friction and self.friction else [])
+        columns = ["time_s", sole([*self.speed, *self.place])]
+        return columns + ([sole([*self.friction])] if need_friction and self.friction else [])
 
     def refuse_foreign_columns(self, path: Path, row: int, header: Sequence[str]) -> None:
         """Raise an InputError if the file has a column of another kind of machine."""
@@ -119,22 +119,22 @@ class DriveColumns:
         self, name: str, columns: Mapping[str, Array]
     ) -> tuple[dict[str, Array], tuple[Finding, ...]]:
         """Return the columns under the names used in a run, and the conversions as findings."""
-        kept = dict(columns)
-        found: list[Finding] = []
+        renamed = dict(columns)
+        findings: list[Finding] = []
         for target, sizes, si in self._targets():
-            there = [column for column in sizes if column in columns]
-            if not there:
+            recorded = [column for column in sizes if column in columns]
+            if not recorded:
                 continue
-            column, *others = there
+            column, *unread = recorded
             size = sizes[column]
-            values = kept.pop(column)
+            values = renamed.pop(column)
             if column in _TURNED and size != 1.0:
                 values = _unwrapped(values)
-            kept[target] = values if size == 1.0 else frozen(values * size)
+            renamed[target] = values if size == 1.0 else frozen(values * size)
             if size != 1.0:
-                found.append(_conversion(name, target, column, size, si))
-            found += [_not_read(name, target, other, column) for other in others]
-        return kept, tuple(found)
+                findings.append(_conversion(name, target, column, size, si))
+            findings += [_not_read(name, target, unread_column, column) for unread_column in unread]
+        return renamed, tuple(findings)
 
     def called(self, columns: Mapping[str, Array]) -> dict[str, str]:
         """Return the mapping from each file column that is read to its name in a run."""
@@ -173,25 +173,27 @@ def _friction(drive: Drive) -> dict[str, float]:
 def _foreign_columns(columns: DriveColumns) -> dict[str, str]:
     """Columns that this drive cannot have, each with a remedy."""
     first = next(iter(columns.friction), None)
-    found = {}
+    remedies = {}
     if first not in ("friction_n", None):
-        found["friction_n"] = f"keep {first} and remove it, or correct [drive]"
+        remedies["friction_n"] = f"keep {first} and remove it, or correct [drive]"
     if columns.drive.motion == "rotary":
-        for name, own in (("velocity_m_s", "velocity_rad_s"), ("position_m", "angle_rad")):
-            found[name] = f"give {own}, or correct [drive]"
-        return found
-    found["weight_angle_rad"] = "remove it: on a slide the weight is constant (sensor_offset)"
-    found["angle_rad"] = (
+        for name, replacement in (("velocity_m_s", "velocity_rad_s"), ("position_m", "angle_rad")):
+            remedies[name] = f"give {replacement}, or correct [drive]"
+        return remedies
+    remedies["weight_angle_rad"] = "remove it: on a slide the weight is constant (sensor_offset)"
+    remedies["angle_rad"] = (
         'an angle needs motion = "rotary"; rename the motor\'s angle to motor_angle_rad'
     )
     for name in ("velocity_rad_s", "speed_rpm"):
-        found[name] = f'it needs motion = "rotary"; rename the motor\'s speed to motor_{name}'
+        remedies[name] = f'it needs motion = "rotary"; rename the motor\'s speed to motor_{name}'
     if columns.drive.pitch_m is None:
         for name in ("motor_angle_rad", "motor_velocity_rad_s", "motor_speed_rpm"):
-            found[name] = "give [drive] its pitch_m (travel per revolution), or rename the column"
+            remedies[name] = (
+                "give [drive] its pitch_m (travel per revolution), or rename the column"
+            )
     if columns.drive.friction == "torque":
-        found["torque_n_m"] = "rename it to motor_torque_n_m if it is the motor's"
-    return found
+        remedies["torque_n_m"] = "rename it to motor_torque_n_m if it is the motor's"
+    return remedies
 
 
 def _unwrapped(angle: Array) -> Array:
@@ -201,11 +203,11 @@ def _unwrapped(angle: Array) -> Array:
 
 
 def _conversion(name: str, target: str, column: str, size: float, si: str) -> Finding:
-    one = next(unit for end, unit in _ENDS.items() if column.endswith(end))
-    words = f"{column} was converted: {one} = {size:.5g} {si}"
+    source_unit = next(unit for end, unit in _ENDS.items() if column.endswith(end))
+    words = f"{column} was converted: {source_unit} = {size:.5g} {si}"
     return Finding("converted", target, name, size, si, "converted on reading", words)
 
 
-def _not_read(name: str, target: str, other: str, column: str) -> Finding:
-    words = f"{other} is also recorded; {column} is used"
+def _not_read(name: str, target: str, unread: str, column: str) -> Finding:
+    words = f"{unread} is also recorded; {column} is used"
     return Finding("second_column", target, name, 0.0, "1", "kept, not used", words)

@@ -41,15 +41,15 @@ def campaigns_in(folder: PathLike) -> dict[str, Path]:
         No subfolder holds a rig or a run.
     """
     folder = path_of(folder)
-    found = {
+    campaigns = {
         path.name: path
         for path in sorted(folder.iterdir() if os.path.isdir(folder) else ())
         if path.is_dir() and ((path / "rig.toml").is_file() or any(path.glob("*.csv")))
     }
-    if not found:
+    if not campaigns:
         raise InputError(
             file=folder,
             problem="contains no campaign",
             mend="give each campaign a subfolder with rig.toml and the runs as CSV",
         )
-    return found
+    return campaigns

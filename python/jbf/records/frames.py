@@ -37,12 +37,12 @@ def columns_of(frame: object, name: str) -> dict[str, Array]:
             problem=f"{type(frame).__name__} has no named columns",
             mend="give a pandas or polars frame, an Arrow table or a dict of arrays",
         )
-    there: Any = frame
-    found = {column: _numbers(there[column]) for column in names}
+    table: Any = frame
+    columns = {column: _numbers(table[column]) for column in names}
     index = getattr(frame, "index", None)
-    if "time_s" not in found and getattr(index, "name", None) == "time_s":
-        found = {"time_s": _numbers(index)} | found
-    return {column: values for column, values in found.items() if values is not None}
+    if "time_s" not in columns and getattr(index, "name", None) == "time_s":
+        columns = {"time_s": _numbers(index)} | columns
+    return {column: values for column, values in columns.items() if values is not None}
 
 
 def dataset_of_columns(columns: Mapping[str, Array], units: Mapping[str, str], name: str) -> Any:
@@ -117,5 +117,5 @@ def _numbers(column: Any) -> Array | None:
             return None
     if values.dtype.kind not in "biuf":
         return None
-    found: Array = values.astype(np.float64)
-    return found
+    numbers: Array = values.astype(np.float64)
+    return numbers

@@ -65,8 +65,8 @@ class Quantities:
 
     def unit(self, si: str) -> str:
         """Convert a unit of the catalogue (newtons and metres) to the unit of this rig."""
-        known = {"bearing": {}, "linear": _LINEAR, "rotary": _ROTARY}[self.motion]
-        unit = known.get(si, si)
+        conversions = {"bearing": {}, "linear": _LINEAR, "rotary": _ROTARY}[self.motion]
+        unit = conversions.get(si, si)
         if self.force in ("N", "N m"):
             return unit
         if unit in ("kg", "kg m^2"):

@@ -28,8 +28,8 @@ def recorded_load(rig: Rig, run: Run) -> Array | None:
     if run.load_n is not None:
         return run.load_n
     if rig.bearing is None and PRESSURE in run.extra:
-        found: Array = run.extra[PRESSURE] / BAR_PA
-        return found
+        load: Array = run.extra[PRESSURE] / BAR_PA
+        return load
     if rig.quantities.motion == "rotary" and LOAD_TORQUE in run.extra:
         return np.maximum(np.abs(run.extra[LOAD_TORQUE]), LEAST_LOAD)
     return None

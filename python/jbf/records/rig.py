@@ -148,8 +148,8 @@ def _section(
     if name not in mapping:
         return None
     content = table(mapping[name], prefix + name)
-    known = [f.name for f in fields(kind)]
-    refuse_unknown(content, known, f"{prefix}{name}.")
+    keys = [f.name for f in fields(kind)]
+    refuse_unknown(content, keys, f"{prefix}{name}.")
     content = quantities(content, f"{prefix}{name}.")
     needed = [f.name for f in fields(kind) if f.default is MISSING]
     for key in needed:

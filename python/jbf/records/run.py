@@ -104,8 +104,8 @@ class Run(Shown):
     read: dict[str, Mask] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        there = ", ".join(self._called())
-        return f"Run({self.name!r}, {len(self)} samples, {self.duration_s:g} s: {there})"
+        column_names = ", ".join(self._called())
+        return f"Run({self.name!r}, {len(self)} samples, {self.duration_s:g} s: {column_names})"
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -122,10 +122,10 @@ class Run(Shown):
 
     def columns(self) -> dict[str, Array]:
         """Return the arrays that are present, by column name: known ones first, then `extra`."""
-        known = {column: getattr(self, attribute(column)) for column in COLUMNS}
+        standard = {column: getattr(self, attribute(column)) for column in COLUMNS}
         if not self.speed_recorded:
-            del known["velocity_m_s"]
-        return {name: a for name, a in known.items() if a is not None} | self.extra
+            del standard["velocity_m_s"]
+        return {name: a for name, a in standard.items() if a is not None} | self.extra
 
     def _called(self) -> dict[str, Array]:
         """Return `columns` under names that state their units."""
@@ -150,12 +150,12 @@ class Run(Shown):
             The mask is not boolean or not of shape (N,), or the slice runs backwards.
         """
         index = selection(which, len(self), self.name)
-        kept = {name: frozen(a[index]) for name, a in self._arrays().items()}
-        extra = {name: kept.pop(name) for name in self.extra}
-        read = {name: there[index] for name, there in self.read.items()}
-        read = {name: there for name, there in read.items() if not there.all()}
-        known = {attribute(column): values for column, values in kept.items()}
-        return replace(self, **known, extra=extra, read=read)  # type: ignore[arg-type]
+        selected = {name: frozen(a[index]) for name, a in self._arrays().items()}
+        extra = {name: selected.pop(name) for name in self.extra}
+        read = {name: sampled[index] for name, sampled in self.read.items()}
+        read = {name: sampled for name, sampled in read.items() if not sampled.all()}
+        standard = {attribute(column): values for column, values in selected.items()}
+        return replace(self, **standard, extra=extra, read=read)  # type: ignore[arg-type]
 
     @classmethod
     def from_arrays(
@@ -270,11 +270,11 @@ class Run(Shown):
                 problem="is missing",
                 mend=f"rename a column (it has {listed(columns)})",
             )
-        own = {column: recorded_samples(time_s, values) for column, values in columns.items()}
-        if any(len(clock) < len(time_s) for clock, _ in own.values()):
-            return cls.from_channels(own, name=name, path=path)
-        known: dict[str, Any] = {attribute(c): columns.pop(c) for c in COLUMNS if c in columns}
-        return cls.from_arrays(time_s, **known, extra=columns, name=name, path=path)
+        channels = {column: recorded_samples(time_s, values) for column, values in columns.items()}
+        if any(len(clock) < len(time_s) for clock, _ in channels.values()):
+            return cls.from_channels(channels, name=name, path=path)
+        standard: dict[str, Any] = {attribute(c): columns.pop(c) for c in COLUMNS if c in columns}
+        return cls.from_arrays(time_s, **standard, extra=columns, name=name, path=path)
 
     def to_frame(self) -> Any:
         """Return the run as a `pandas.DataFrame`, which `from_frame` reads; pandas is optional.
@@ -351,13 +351,13 @@ class Run(Shown):
             columns = dict(columns) | {"velocity_m_s": derived_speed_column(columns)}
         reading: tuple[Finding, ...] = ()
         if SLOW in columns:
-            whole, reading = fill_gaps(name, columns["time_s"], columns[SLOW])
-            columns = dict(columns) | {SLOW: whole}
-        known: dict[str, Any] = {attribute(c): v for c, v in columns.items() if c in COLUMNS}
+            interpolated, reading = fill_gaps(name, columns["time_s"], columns[SLOW])
+            columns = dict(columns) | {SLOW: interpolated}
+        standard: dict[str, Any] = {attribute(c): v for c, v in columns.items() if c in COLUMNS}
         extra = {column: values for column, values in columns.items() if column not in COLUMNS}
         return cls(
             name=name,
-            **known,
+            **standard,
             extra=extra,
             path=path,
             speed_recorded=recorded,
@@ -369,17 +369,17 @@ class Run(Shown):
 
         All other columns are interpolated linearly; angles that restart at each turn are unwrapped.
         """
-        others = {
+        interpolated = {
             attribute(name): frozen(np.interp(time_s, self.time_s, unwrapped(name, values)))
             for name, values in self._arrays().items()
             if name not in ("time_s", "friction_n")
         }
-        extra = {name: others.pop(name) for name in self.extra}
+        extra = {name: interpolated.pop(name) for name in self.extra}
         return replace(
             self,
             time_s=frozen(time_s),
             friction=frozen(friction),
-            **others,  # type: ignore[arg-type]
+            **interpolated,  # type: ignore[arg-type]
             extra=extra,
             read={},
         )
@@ -397,4 +397,4 @@ class Run(Shown):
     def to_csv(self) -> str:
         """Return the run as CSV text, with columns in the units of their names."""
         names = zip(self._called(), self.columns(), strict=True)
-        return csv_of_columns(self._called(), {called: self.read.get(own) for called, own in names})
+        return csv_of_columns(self._called(), {called: self.read.get(key) for called, key in names})

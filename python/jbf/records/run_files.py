@@ -18,30 +18,30 @@ from jbf.text_files import name_of, path_of, real_path
 def _expanded(item: PathLike) -> list[Path]:
     path = Path(item)
     if os.path.isdir(path):
-        found = sorted(p for p in path.iterdir() if p.suffix.lower() == ".csv")
-        if not found:
+        files = sorted(p for p in path.iterdir() if p.suffix.lower() == ".csv")
+        if not files:
             raise InputError(
                 file=path, problem="the folder contains no .csv file", mend="name another folder"
             )
-        return found
+        return files
     if not os.path.lexists(path) and glob.has_magic(str(path)):
-        found = sorted(Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file())
-        if not found:
+        files = sorted(Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file())
+        if not files:
             raise InputError(file=path, problem="no file matches", mend="correct the pattern")
-        return found
+        return files
     return [path]
 
 
 def _unique_names(paths: Sequence[Path]) -> list[str]:
     """Return the stem of each path, with as many parent folders as distinguish equal stems."""
-    whole = [real_path(path) for path in paths]
+    real_paths = [real_path(path) for path in paths]
 
     def name(path: Path, depth: int) -> str:
         return name_of(path, depth)
 
     names = []
-    for path in whole:
-        rivals = [p for p in whole if p.stem == path.stem and p != path]
+    for path in real_paths:
+        rivals = [p for p in real_paths if p.stem == path.stem and p != path]
         depth = 1
         while depth < len(path.parts) and name(path, depth) in {name(p, depth) for p in rivals}:
             depth += 1
@@ -93,11 +93,11 @@ def read_runs(
     files = [file for item in items for file in _expanded(item)]
     if not files:
         raise InputError(problem="no run is given", mend="name at least one CSV file or folder")
-    seen: set[Path] = set()
+    read_files: set[Path] = set()
     for file in files:
-        if real_path(file) in seen:
+        if real_path(file) in read_files:
             raise InputError(file=file, problem="is given twice", mend="name each run once")
-        seen.add(real_path(file))
+        read_files.add(real_path(file))
     runs = [read_run(file, rig, need_friction=need_friction) for file in files]
     return [_named(run, name) for run, name in zip(runs, _unique_names(files), strict=True)]
 

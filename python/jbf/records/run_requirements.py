@@ -30,14 +30,14 @@ def require(run: Run, columns: str | Iterable[str], why: str) -> None:
     InputError
         A column is missing.
     """
-    there = run.columns()
+    available = run.columns()
     for column in [columns] if isinstance(columns, str) else columns:
-        if column not in there:
+        if column not in available:
             raise InputError(
                 file=run.path or run.name,
                 column=column,
                 problem=f"is missing, and {why} needs it",
-                mend=f"add the column (it has {listed(there)})",
+                mend=f"add the column (it has {listed(available)})",
             )
 
 
@@ -49,19 +49,19 @@ def run_on(rig: Rig, run: Run) -> Run:
     InputError
         The run was read for another kind of machine, or without the rig that its columns require.
     """
-    wanted = rig.quantities
-    if run.quantities == wanted:
+    quantities = rig.quantities
+    if run.quantities == quantities:
         return run
-    if run.quantities != OF_BEARING and run.quantities.motion != wanted.motion:
+    if run.quantities != OF_BEARING and run.quantities.motion != quantities.motion:
         raise InputError(
             file=run.path or run.name,
             problem=f"was read for a {run.quantities.motion} drive, but the rig is not one",
             mend="give the rig with which it was read",
         )
-    if run.quantities == OF_BEARING and wanted.motion == "rotary" and run.path is not None:
+    if run.quantities == OF_BEARING and quantities.motion == "rotary" and run.path is not None:
         raise InputError(
             file=run.path,
             problem="was read without the rig, whose [drive] defines its columns",
             mend="read it with the rig: jbf.read_run(path, rig)",
         )
-    return replace(run, quantities=wanted)
+    return replace(run, quantities=quantities)

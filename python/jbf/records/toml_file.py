@@ -44,14 +44,14 @@ Products and quotients of several values within these limits are finite.
 
 def positive(value: object, key: str) -> float:
     """Convert to a positive number of a plausible magnitude; raise as `number` does."""
-    found = number(value, key)
-    if not (0.0 < found < math.inf):
+    size = number(value, key)
+    if not (0.0 < size < math.inf):
         raise InputError(
-            key=key, problem=f"{found} is not above zero and finite", mend="correct the value"
+            key=key, problem=f"{size} is not above zero and finite", mend="correct the value"
         )
-    if not LEAST <= found <= MOST:
-        raise InputError(key=key, problem=f"{found} is not plausible", mend="give it in SI units")
-    return found
+    if not LEAST <= size <= MOST:
+        raise InputError(key=key, problem=f"{size} is not plausible", mend="give it in SI units")
+    return size
 
 
 def table(value: object, key: str) -> Mapping[str, Any]:
@@ -61,19 +61,21 @@ def table(value: object, key: str) -> Mapping[str, Any]:
     return value
 
 
-def refuse_unknown(found: Iterable[str], known: Iterable[str], prefix: str = "") -> None:
-    """Raise for the first key of `found` that is not in `known`, and suggest the nearest known key.
+def refuse_unknown(keys: Iterable[str], valid: Iterable[str], prefix: str = "") -> None:
+    """Raise for the first key of `keys` that is not in `valid`, and suggest the nearest known key.
 
     Raises
     ------
     InputError
         Names the key, preceded by `prefix`, but no file.
     """
-    known = list(known)
-    for key in found:
-        if key not in known:
+    valid = list(valid)
+    for key in keys:
+        if key not in valid:
             raise InputError(
-                key=prefix + str(key), problem="is not known", mend=did_you_mean(str(key), known)
+                key=prefix + str(key),
+                problem="is not known",
+                mend=did_you_mean(str(key), valid),
             )
 
 

@@ -36,10 +36,10 @@ def check_weight_angles(rig: Rig, runs: Sequence[Run]) -> None:
     if rig.quantities.motion != "rotary":
         return
     having = [run for run in runs if WEIGHT_ANGLE in run.extra]
-    lacking = [run for run in runs if WEIGHT_ANGLE not in run.extra]
-    if having and lacking:
+    missing = [run for run in runs if WEIGHT_ANGLE not in run.extra]
+    if having and missing:
         raise InputError(
-            file=lacking[0].path or lacking[0].name,
+            file=missing[0].path or missing[0].name,
             column=WEIGHT_ANGLE,
             problem=f"is missing, but {having[0].name} has it",
             mend="record it in every run, or in none",

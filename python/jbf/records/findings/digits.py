@@ -38,13 +38,13 @@ def resolution(values: Array) -> float:
     last digit. Without quantisation, the smallest difference in a long record is one digit.
     """
     digit = last_digit(values)
-    apart = np.diff(np.unique(values))
-    apart = apart[apart > 0.5 * digit]
-    if len(apart) < FEWEST_GAPS:
+    gaps = np.diff(np.unique(values))
+    gaps = gaps[gaps > 0.5 * digit]
+    if len(gaps) < FEWEST_GAPS:
         return digit
-    least = float(np.min(apart))
-    step = float(np.mean(apart[apart < 1.5 * least]))
-    near = apart[apart < MOST_STEPS * step]
+    smallest = float(np.min(gaps))
+    step = float(np.mean(gaps[gaps < 1.5 * smallest]))
+    near = gaps[gaps < MOST_STEPS * step]
     error = np.abs(near - step * np.round(near / step))
     on_levels = len(near) >= FEWEST_GAPS and bool(np.all(error <= digit * (1.0 + near / step)))
     return max(step, digit) if on_levels else digit

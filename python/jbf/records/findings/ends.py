@@ -24,32 +24,32 @@ TIMES = 4.0
 LEAST_SAMPLES = 60
 
 
-def loose_ends(time: Array, values: Array, beside: int) -> Mask:
+def loose_ends(time: Array, values: Array, neighbours: int) -> Mask:
     """Detect outliers among the first and last samples.
 
     Parameters
     ----------
-    beside
+    neighbours
         Number of adjacent samples that predict a sample: one for a constant, three for a parabola.
     """
-    found = np.zeros(len(values), dtype=bool)
-    if len(values) < max(LEAST_SAMPLES, 2 * MOST + 2 * beside):
-        return found
-    found[: _loose(time, values, beside)] = True
-    found[len(values) - _loose(time[::-1], values[::-1], beside) :] = True
-    return found
+    mask = np.zeros(len(values), dtype=bool)
+    if len(values) < max(LEAST_SAMPLES, 2 * MOST + 2 * neighbours):
+        return mask
+    mask[: _loose(time, values, neighbours)] = True
+    mask[len(values) - _loose(time[::-1], values[::-1], neighbours) :] = True
+    return mask
 
 
-def _loose(time: Array, values: Array, beside: int) -> int:
+def _loose(time: Array, values: Array, neighbours: int) -> int:
     """Count the outliers at the beginning."""
-    n = len(values) - beside
-    t = np.stack([time[k : n + k] - time[:n] for k in range(1, beside + 1)])
-    y = np.stack([values[k : n + k] - values[:n] for k in range(1, beside + 1)])
+    n = len(values) - neighbours
+    t = np.stack([time[k : n + k] - time[:n] for k in range(1, neighbours + 1)])
+    y = np.stack([values[k : n + k] - values[:n] for k in range(1, neighbours + 1)])
     off = np.abs(np.sum(weights_at_zero(t) * y, axis=0))
     within = float(np.max(off[MOST : n - MOST]))
-    far = np.flatnonzero(off[:MOST] > TIMES * within)
+    outliers = np.flatnonzero(off[:MOST] > TIMES * within)
     # If the deviation of all inner samples is zero, there is no scale for the threshold.
-    return int(far[-1]) + 1 if within > 0.0 and len(far) else 0
+    return int(outliers[-1]) + 1 if within > 0.0 and len(outliers) else 0
 
 
 def ends_finding(

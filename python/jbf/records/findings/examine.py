@@ -60,11 +60,13 @@ def examine(run: Run, velocity: Array | None = None, period_s: float | None = No
         native = find_native_of(run.time_s, run.friction, period_s)
     if native is not None:
         return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
-    held, still = find_held(run, np.zeros(len(run), dtype=bool))
-    native = find_native(run.time_s[~still], run.friction[~still]) if held else None
+    held_findings, still = find_held(run, np.zeros(len(run), dtype=bool))
+    native = find_native(run.time_s[~still], run.friction[~still]) if held_findings else None
     if native is not None:
         # An interpolated record may also contain held samples.
-        return Examined((_interpolated(run, native), *held), np.ones(len(run), dtype=bool), native)
+        return Examined(
+            (_interpolated(run, native), *held_findings), np.ones(len(run), dtype=bool), native
+        )
     native = find_repeated(run.time_s, run.friction)
     if native is not None:
         return Examined((_repeated(run, native),), np.ones(len(run), dtype=bool), native)
@@ -72,10 +74,10 @@ def examine(run: Run, velocity: Array | None = None, period_s: float | None = No
     if native is not None:
         return Examined((_filled_in(run, native),), np.ones(len(run), dtype=bool), native)
     of_readings = examine_readings(run, velocity)
-    held, still = find_held(run, ~of_readings.usable)
+    held_findings, still = find_held(run, ~of_readings.usable)
     usable = of_readings.usable & ~still
-    found = (*of_readings.findings, *held, *find_gaps(run), *find_steps(run, usable))
-    return Examined(found, usable)
+    findings = (*of_readings.findings, *held_findings, *find_gaps(run), *find_steps(run, usable))
+    return Examined(findings, usable)
 
 
 def examine_readings(run: Run, velocity: Array) -> Examined:

@@ -37,11 +37,11 @@ def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Fin
     assert run.friction is not None
     v = motion.velocity
     moves = motion.sign_known & usable & (np.abs(v) > SLOW * float(np.max(np.abs(v))))
-    way = np.sign(v[moves])
-    if len(way) < LEAST or abs(float(np.mean(way))) > 0.5:
+    direction = np.sign(v[moves])
+    if len(direction) < LEAST or abs(float(np.mean(direction))) > 0.5:
         return []
     path = motion.angle_rad[moves]
-    x = np.stack([way, np.ones(len(way)), motion.acceleration[moves], path], axis=1)
+    x = np.stack([direction, np.ones(len(direction)), motion.acceleration[moves], path], axis=1)
     scale = np.maximum(np.std(x, axis=0), 1e-12)
     scale[1] = 1.0
     x[:, 2:] -= np.mean(x[:, 2:], axis=0)
@@ -50,13 +50,13 @@ def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Fin
     push, error = push / scale[0], error / scale[0]
     if push > -max(SURE * error, SHARE * float(np.std(run.friction[moves]))):
         return []
-    said = run.quantities
+    quantities = run.quantities
     words = (
-        f"{said.friction_column} has the wrong sign: it drives the motion ({-push:.3g} "
-        f"{said.force}). Positive {said.noun} must oppose positive velocity: negate "
-        f"{said.friction_column}"
+        f"{quantities.friction_column} has the wrong sign: it drives the motion ({-push:.3g} "
+        f"{quantities.force}). Positive {quantities.noun} must oppose positive velocity: negate "
+        f"{quantities.friction_column}"
     )
-    return [Finding("sign", "friction_n", run.name, push, said.force, "none", words)]
+    return [Finding("sign", "friction_n", run.name, push, quantities.force, "none", words)]
 
 
 def _reversing_force(x: Array, force: Array) -> tuple[float, float]:
@@ -68,6 +68,6 @@ def _reversing_force(x: Array, force: Array) -> tuple[float, float]:
     def turned(matrix: Array, vector: Array) -> float:
         return float(np.linalg.lstsq(matrix, vector, rcond=1e-10)[0][0])
 
-    whole, sums = normal.sum(0), right.sum(0)
-    left = [turned(whole - n, sums - r) for n, r in zip(normal, right, strict=True)]
-    return turned(whole, sums), float(np.std(left)) * np.sqrt(STRETCHES - 1)
+    total, sums = normal.sum(0), right.sum(0)
+    leave_one_out = [turned(total - n, sums - r) for n, r in zip(normal, right, strict=True)]
+    return turned(total, sums), float(np.std(leave_one_out)) * np.sqrt(STRETCHES - 1)

@@ -23,18 +23,18 @@ def find_gaps(run: Run) -> list[Finding]:
     The state of a model is integrated across the gap.
     """
     steps = np.diff(run.time_s)
-    usual = float(np.median(steps))
-    even = np.abs(steps - usual) < EVEN * usual
+    median_step = float(np.median(steps))
+    even = np.abs(steps - median_step) < EVEN * median_step
     if even.mean() < MOSTLY:
         return []
     # A missing row lengthens every window that contains it by one step. Jitter lengthens one step
     # and shortens its neighbours.
-    missing = np.rint(steps / usual) - 1.0
+    missing = np.rint(steps / median_step) - 1.0
     for length in range(2, min(STRETCH, len(steps)) + 1):
-        window = np.lib.stride_tricks.sliding_window_view(steps, length).sum(axis=1) / usual
+        window = np.lib.stride_tricks.sliding_window_view(steps, length).sum(axis=1) / median_step
         more = np.pad(np.rint(window) - length, length - 1, constant_values=np.inf)
-        least = np.lib.stride_tricks.sliding_window_view(more, length).min(axis=1)
-        missing = np.minimum(missing, least)
+        smallest = np.lib.stride_tricks.sliding_window_view(more, length).min(axis=1)
+        missing = np.minimum(missing, smallest)
     count = int(missing[missing > 0].sum())
     if count == 0:
         return []

@@ -37,9 +37,9 @@ Within this distance of a reversal or of a start from rest, the friction may hav
 def glitches(values: Array) -> Mask:
     """Detect outliers: samples that deviate from both adjacent samples in the same direction."""
     n = len(values)
-    found = np.zeros(n, dtype=bool)
+    outliers = np.zeros(n, dtype=bool)
     if n < LEAST_SAMPLES:
-        return found
+        return outliers
     from scipy import ndimage  # importing takes most of a second
 
     change = np.diff(values)
@@ -48,13 +48,13 @@ def glitches(values: Array) -> Mask:
     bend = np.abs(before + after)
     # The second difference of white noise has sqrt(6) times its standard deviation.
     local = ndimage.median_filter(bend, WINDOW, mode="reflect") / 0.6745 / np.sqrt(6.0)
-    usual = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
+    typical = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
     step = ndimage.median_filter(np.abs(change), WINDOW, mode="reflect")
     corner = CHANGES * np.maximum(step[:-1], step[1:])
-    found[1:-1] = off > np.maximum(FAR * np.maximum(local, LOUD * usual), corner)
-    if usual == 0.0 or found.sum() > RARE * n:
-        found[:] = False
-    return found
+    outliers[1:-1] = off > np.maximum(FAR * np.maximum(local, LOUD * typical), corner)
+    if typical == 0.0 or outliers.sum() > RARE * n:
+        outliers[:] = False
+    return outliers
 
 
 def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
@@ -88,25 +88,25 @@ def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
 def _loose_ends(run: Run, velocity: Array, mask: Mask) -> Mask:
     """Detect further outliers at the ends of the record, except at reversals and starts."""
     assert run.friction is not None
-    loose, good = np.zeros(len(mask), dtype=bool), ~mask
-    loose[good] = loose_ends(run.time_s[good], run.friction[good], 1)
+    loose, valid = np.zeros(len(mask), dtype=bool), ~mask
+    loose[valid] = loose_ends(run.time_s[valid], run.friction[valid], 1)
     return loose & ~_breakaway(velocity)
 
 
 def _next_to(run: Run, mask: Mask) -> Array:
     """Interpolate the force across the masked outliers."""
     assert run.friction is not None
-    said: Array = np.interp(run.time_s, run.time_s[~mask], run.friction[~mask])
-    return said
+    interpolated: Array = np.interp(run.time_s, run.time_s[~mask], run.friction[~mask])
+    return interpolated
 
 
 def _breakaway(velocity: Array) -> Mask:
     """Mask of the samples next to a reversal or an end of a rest."""
     top = float(np.max(np.abs(velocity), initial=0.0))
-    way = np.where(np.abs(velocity) > SLOW * top, np.sign(velocity), 0.0)
+    direction = np.where(np.abs(velocity) > SLOW * top, np.sign(velocity), 0.0)
     # In a slow reversal, the sign changes many samples from both ends of the slow segment.
-    turns = np.flatnonzero((np.diff(way) != 0.0) | (velocity[1:] * velocity[:-1] < 0.0))
-    beside = np.zeros(len(way), dtype=bool)
+    turns = np.flatnonzero((np.diff(direction) != 0.0) | (velocity[1:] * velocity[:-1] < 0.0))
+    near_breakaway = np.zeros(len(direction), dtype=bool)
     for off in range(1 - BESIDE, BESIDE + 1):
-        beside[np.clip(turns + off, 0, len(way) - 1)] = True
-    return beside
+        near_breakaway[np.clip(turns + off, 0, len(direction) - 1)] = True
+    return near_breakaway

@@ -32,12 +32,12 @@ def held(values: Array) -> Mask:
     begun = float(np.sum(edges == 1)) / max(n - int(same.sum()), 1)
     share = min(max(begun, _by_steps(values), 1e-4), 0.9999)
     # Equal readings due to quantisation: probability p^k for a length k, at n positions.
-    least = max(LEAST, int(np.ceil(np.log(CHANCE / max(n, 1)) / np.log(share))))
-    found = np.zeros(n, dtype=bool)
+    shortest = max(LEAST, int(np.ceil(np.log(CHANCE / max(n, 1)) / np.log(share))))
+    mask = np.zeros(n, dtype=bool)
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        if end - first >= least - 1:
-            found[first:end] = True
-    return found
+        if end - first >= shortest - 1:
+            mask[first:end] = True
+    return mask
 
 
 def _by_steps(values: Array) -> float:
@@ -46,8 +46,8 @@ def _by_steps(values: Array) -> float:
     if step == 0.0:
         return 0.0
     # The variance of the quantisation error is step^2 / 12.
-    own = math.sqrt(max(noise**2 - step**2 / 12.0, 1e-4 * step**2))
-    return math.erf(0.5 * step / own / math.sqrt(2.0))
+    noise_sd = math.sqrt(max(noise**2 - step**2 / 12.0, 1e-4 * step**2))
+    return math.erf(0.5 * step / noise_sd / math.sqrt(2.0))
 
 
 def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:

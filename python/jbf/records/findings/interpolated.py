@@ -109,8 +109,8 @@ def find_native(time: Array, values: Array) -> Native | None:
         noise = _noise(y, rounding)
         if noise == 0.0 or np.ptp(t) > 1.2 * WINDOW * step:
             continue
-        for found in _coarse_search(t, y, step, noise):
-            period, phase = sharpened(t, y, *found)
+        for candidate in _coarse_search(t, y, step, noise):
+            period, phase = sharpened(t, y, *candidate)
             if polygon(t, y, period, phase)[0] < _exact(values, noise):
                 native = _extended_polygon(time, values, first, WINDOW, period, phase, noise)
                 if native is not None:
@@ -125,8 +125,8 @@ def find_native_of(time: Array, values: Array, period_s: float) -> Native | None
     noise = _noise(values, max(ROUNDING * float(np.ptp(values)), 4.0 * last_digit(values)))
     if noise == 0.0:
         return None
-    ways = [sharpened(time, values, period_s, p * period_s, near=True) for p in PHASES.tolist()]
-    best = min(ways, key=lambda way: polygon(time, values, *way)[0])
+    fits = [sharpened(time, values, period_s, p * period_s, near=True) for p in PHASES.tolist()]
+    best = min(fits, key=lambda fit: polygon(time, values, *fit)[0])
     return _fit_polygon(time, values, *best, noise)
 
 
@@ -139,8 +139,8 @@ def _noise(values: Array, rounding: float) -> float:
     rms = float(np.sqrt(np.mean(bends**2) / 6.0))
     if rms <= rounding:
         return 0.0
-    usual = float(np.median(bends[bends > rounding])) / 0.6745 / np.sqrt(6.0)
-    return float(min(rms, FEW * usual))
+    median_noise = float(np.median(bends[bends > rounding])) / 0.6745 / np.sqrt(6.0)
+    return float(min(rms, FEW * median_noise))
 
 
 def _exact(values: Array, noise: float) -> float:
@@ -179,13 +179,13 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
     periods, phases = _grid(_beats(time, values, step))
     each = polygon_rms(t, y, periods, phases)
     # The residual of any such polygon is small for a record that was smoothed by a filter.
-    usual = float(np.median(each))
+    median_residual = float(np.median(each))
     best = np.argsort(each, kind="stable")[:FOLLOWED]
-    for left, period, phase in np.stack([each, periods, phases])[:, best].T.tolist():
-        if left > LIKELY_SHORT * noise:
+    for residual, period, phase in np.stack([each, periods, phases])[:, best].T.tolist():
+        if residual > LIKELY_SHORT * noise:
             break
         period, phase = sharpened(t, y, period, phase)
-        if polygon(t, y, period, phase)[0] < _exact(values, min(noise, usual)):
+        if polygon(t, y, period, phase)[0] < _exact(values, min(noise, median_residual)):
             native = _extended_polygon(time, values, first, LONGER, period, phase, noise)
             if native is not None:
                 return native
@@ -219,8 +219,8 @@ def _grid(periods: Array) -> tuple[Array, Array]:
 def _as_rough_as_noise(values: Array) -> bool:
     """Return True if adjacent samples are uncorrelated, which excludes interpolation."""
     near = np.median(np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2]))
-    far = np.median(np.abs(values[2 * FAR :] - 2.0 * values[FAR:-FAR] + values[: -2 * FAR]))
-    return bool(near > ROUGH * far)
+    distant = np.median(np.abs(values[2 * FAR :] - 2.0 * values[FAR:-FAR] + values[: -2 * FAR]))
+    return bool(near > ROUGH * distant)
 
 
 def is_smooth(values: Array, share: float = SMOOTH) -> bool:
@@ -266,12 +266,12 @@ def _longest(
     for times in (17, 13, 11, 7, 5, 3, 2):
         for k in range(times):
             longer = (times * period, phase + k * period)
-            left, _, _ = polygon(time, values, *longer)
-            if left < NEARLY * noise:
+            residual, _, _ = polygon(time, values, *longer)
+            if residual < NEARLY * noise:
                 # Refine again, since the error of the shorter period is multiplied as well.
                 longer = sharpened(time, values, *longer, near=True)
-                left, _, _ = polygon(time, values, *longer)
-            if left < _exact(values, noise):
+                residual, _, _ = polygon(time, values, *longer)
+            if residual < _exact(values, noise):
                 return _longest(time, values, *longer, noise)
     return period, phase
 
@@ -279,13 +279,13 @@ def _longest(
 def _fit_polygon(
     time: Array, values: Array, period: float, phase: float, noise: float
 ) -> Native | None:
-    left, knots, corners = polygon(time, values, period, phase)
+    residual, knots, corners = polygon(time, values, period, phase)
     inside = (knots >= time[0]) & (knots <= time[-1]) & np.isfinite(corners)
-    if left > _exact(values, noise) or inside.sum() > MOST_CORNERS * len(time):
+    if residual > _exact(values, noise) or inside.sum() > MOST_CORNERS * len(time):
         return None
     # The residual is small at every phase for a record that was smoothed by a filter.
     elsewhere = [polygon(time, values, period, phase + s * period)[0] for s in ELSEWHERE]
-    if left > CLEARLY * min(elsewhere):
+    if residual > CLEARLY * min(elsewhere):
         return None
     read = _at_ends(corners[inside], values)
     native = Native(knots[inside], read, period)
@@ -316,5 +316,7 @@ def _coarse_search(t: Array, y: Array, step: float, noise: float) -> list[tuple[
     periods, phases = _grid(PERIODS[long_enough] * step)
     each = polygon_rms(t, y, periods, phases)
     best = [k for k in np.argsort(each, kind="stable").tolist() if each[k] < LIKELY * noise]
-    found = {periods[k]: phases[k] for k in reversed(best)}
-    return [(period, found[period]) for period in dict.fromkeys(periods[best].tolist())][:FOLLOWED]
+    phase_of_period = {periods[k]: phases[k] for k in reversed(best)}
+    return [(period, phase_of_period[period]) for period in dict.fromkeys(periods[best].tolist())][
+        :FOLLOWED
+    ]

@@ -46,13 +46,13 @@ def find_interpolated_samples(time: Array, values: Array) -> Native | None:
     level = np.abs(values[2:] - values[:-2]) <= 2.0 * rounding
     line = (off <= rounding) & ~level
     # If the friction itself is linear there, the adjacent samples are also close to a line.
-    beside = (off > rounding) & (np.convolve(line, [1, 0, 1], "same") > 0)
-    usual = float(np.median(off[beside])) if np.any(beside) else 0.0
-    if usual == 0.0 or rounding > FINE * usual or _far_from_corners(line, off > usual):
+    next_to_line = (off > rounding) & (np.convolve(line, [1, 0, 1], "same") > 0)
+    typical = float(np.median(off[next_to_line])) if np.any(next_to_line) else 0.0
+    if typical == 0.0 or rounding > FINE * typical or _far_from_corners(line, off > typical):
         return None
-    near = off[(off > rounding) & (off <= usual)]
+    near = off[(off > rounding) & (off <= typical)]
     # Quantisation puts samples on a line as often as one step off it.
-    chance = len(near) / usual * max(quantum_of(values), rounding)
+    chance = len(near) / typical * max(quantum_of(values), rounding)
     count = int(line.sum())
     if count < max(LEAST, LEAST_SHARE * len(time), BY_CHANCE * chance):
         return None
@@ -69,7 +69,7 @@ def _far_from_corners(line: Mask, corner: Mask) -> bool:
         return True
     place, corners = np.flatnonzero(line), np.flatnonzero(corner)
     after = np.searchsorted(corners, place)
-    left = place - corners[np.maximum(after - 1, 0)]
-    right = corners[np.minimum(after, len(corners) - 1)] - place
-    distance = np.minimum(np.abs(left), np.abs(right))
+    before = place - corners[np.maximum(after - 1, 0)]
+    behind = corners[np.minimum(after, len(corners) - 1)] - place
+    distance = np.minimum(np.abs(before), np.abs(behind))
     return float(np.median(distance)) > CORNERS

@@ -34,9 +34,9 @@ def polygon(time: Array, values: Array, period: float, phase: float) -> tuple[fl
     corners : ndarray
         Values at the corners; nan if undetermined.
     """
-    left, corners, first = _solved(time, values, np.array([period]), np.array([phase]))
+    residual, corners, first = _solved(time, values, np.array([period]), np.array([phase]))
     knots = time[0] + phase + period * (first[0] + np.arange(len(corners)))
-    return float(left[0]), knots, corners
+    return float(residual[0]), knots, corners
 
 
 def polygon_rms(time: Array, values: Array, period: Array, phase: Array) -> Array:
@@ -61,9 +61,9 @@ def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Ar
         Number of the first corner of each polygon, shape (m,).
     """
     place = (time - time[0] - phase[:, None]) / period[:, None]
-    whole = np.floor(place)
-    share = (place - whole).ravel()
-    low = whole.astype(np.intp)
+    segment = np.floor(place)
+    share = (place - segment).ravel()
+    low = segment.astype(np.intp)
     first = low[:, 0].copy()
     count = low[:, -1] - first + 2
     offset = np.cumsum(count) - count
@@ -73,16 +73,16 @@ def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Ar
     y = np.tile(values - level, len(period))
     rest = 1.0 - share
     diagonal = np.bincount(at, rest**2, total) + np.bincount(at + 1, share**2, total)
-    beside = np.bincount(at, rest * share, total)
+    off_diagonal = np.bincount(at, rest * share, total)
     right = np.bincount(at, rest * y, total) + np.bincount(at + 1, share * y, total)
     # A corner without nearby samples (a gap, an end) is undetermined.
-    band = np.stack([np.concatenate(([0.0], beside[:-1])), diagonal + 1e-9])
+    band = np.stack([np.concatenate(([0.0], off_diagonal[:-1])), diagonal + 1e-9])
     corners = linalg.solveh_banded(band, right, overwrite_ab=True, overwrite_b=True)
     gap = (y - rest * corners[at] - share * corners[at + 1]).reshape(place.shape)
     free = len(time) - np.add.reduceat((diagonal > 1e-6).astype(np.intp), offset)
     corners = np.where(diagonal > 1e-3, corners + level, np.nan)
-    left: Array = np.sqrt(np.sum(gap**2, axis=1) / np.maximum(free, 1))
-    return left, corners, first
+    residual: Array = np.sqrt(np.sum(gap**2, axis=1) / np.maximum(free, 1))
+    return residual, corners, first
 
 
 def sharpened(
@@ -105,10 +105,14 @@ def sharpened(
         before = best[0]
         periods = np.repeat(best[1] + reach_period * steps, len(steps))
         phases = np.tile(best[2] + reach_phase * steps, len(steps))
-        left = polygon_rms(time, values, periods, phases)
-        least = int(np.argmin(left))
-        if left[least] < best[0]:
-            best = (float(left[least]), float(periods[least]), float(phases[least]))
+        residual = polygon_rms(time, values, periods, phases)
+        smallest = int(np.argmin(residual))
+        if residual[smallest] < best[0]:
+            best = (
+                float(residual[smallest]),
+                float(periods[smallest]),
+                float(phases[smallest]),
+            )
         if k == 0:
             first = best[0]
         # For a true polygon, the residual is proportional to the step size of the search.

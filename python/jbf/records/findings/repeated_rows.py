@@ -36,16 +36,16 @@ def repeated_rows(run: Run) -> Mask | None:
     if place is None or not run.speed_recorded or run.read:
         return None
     place = np.unwrap(place) if place is run.angle_rad else place
-    steps, way = np.diff(run.time_s), np.abs(np.diff(place))
+    steps, path_steps = np.diff(run.time_s), np.abs(np.diff(place))
     by_speed = np.abs(run.velocity[:-1]) * steps
     # The ratio of the total displacements cancels the unit of the speed.
-    unit = float(np.sum(way)) / max(float(np.sum(by_speed)), 1e-300)
+    unit = float(np.sum(path_steps)) / max(float(np.sum(by_speed)), 1e-300)
     moving = unit * by_speed > COUNTS * step_of(place)
     same = np.ones(len(steps), dtype=bool)
     for name, column in run.columns().items():
         if name not in ("time_s", SLOW):
             same &= np.diff(column) == 0.0
-    rows, stood = int(np.sum(same & moving)), int(np.sum((way == 0.0) & moving))
+    rows, stood = int(np.sum(same & moving)), int(np.sum((path_steps == 0.0) & moving))
     if rows < max(LEAST_ROWS, LEAST_SHARE * moving.sum(), TOGETHER * stood):
         return None
     return np.concatenate(([False], same & ~_of_rests(run, same, moving)))
@@ -61,11 +61,11 @@ def _of_rests(run: Run, same: Mask, moving: Mask) -> Mask:
         for last, first, end in zip(lasted, firsts, ends, strict=True)
         if np.any(moving[first:end])
     )
-    found = np.zeros(len(same), dtype=bool)
+    rests = np.zeros(len(same), dtype=bool)
     for last, first, end in zip(lasted, firsts, ends, strict=True):
         if last > LONGER * silent:
-            found[first:end] = True
-    return found
+            rests[first:end] = True
+    return rests
 
 
 def as_read(run: Run) -> Run:
@@ -78,5 +78,5 @@ def as_read(run: Run) -> Run:
         f"{share:.2g} % of the rows repeat the previous one while {run.quantities.mover} moves: "
         "the logger is faster than its source"
     )
-    found = Finding("repeated_rows", "time_s", run.name, share, "%", "left out", words)
-    return replace(run.select(~again), reading=(*run.reading, found))
+    finding = Finding("repeated_rows", "time_s", run.name, share, "%", "left out", words)
+    return replace(run.select(~again), reading=(*run.reading, finding))

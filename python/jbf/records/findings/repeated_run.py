@@ -24,21 +24,21 @@ ALIKE = 1e-6
 
 def copies(runs: Sequence[Run]) -> dict[int, int]:
     """Indices of runs that repeat an earlier run, mapped to the index of the first one."""
-    found: dict[int, int] = {}
+    first_of_copy: dict[int, int] = {}
     for i, run in enumerate(runs):
         for first in range(i):
-            if first not in found and same_recording(runs[first], run):
-                found[i] = first
+            if first not in first_of_copy and same_recording(runs[first], run):
+                first_of_copy[i] = first
                 break
-    return found
+    return first_of_copy
 
 
 def same_recording(a: Run, b: Run) -> bool:
     """Return whether two runs are the same recording, sample by sample."""
-    one, other = a.columns(), b.columns()
-    if a.friction is None or len(a) != len(b) or set(one) != set(other):
+    columns_a, columns_b = a.columns(), b.columns()
+    if a.friction is None or len(a) != len(b) or set(columns_a) != set(columns_b):
         return False
-    return all(_same(name, one[name], other[name]) for name in one)
+    return all(_same(name, columns_a[name], columns_b[name]) for name in columns_a)
 
 
 def _same(name: str, a: Array, b: Array) -> bool:

@@ -40,12 +40,12 @@ def saturated(values: Array) -> tuple[Mask, list[float]]:
     noise = _noise(values)
     if noise == 0.0 or noise < COARSE * step_of(values):
         return mask, ends
-    for way in (1.0, -1.0):
-        levels, counts = np.unique(-way * values, return_counts=True)
-        at = way * values == -levels[0]
+    for sign in (1.0, -1.0):
+        levels, counts = np.unique(-sign * values, return_counts=True)
+        at = sign * values == -levels[0]
         if counts[0] >= max(LEAST, TIMES * np.max(counts[1 : 1 + NEXT], initial=0)):
             mask |= ndimage.maximum_filter1d(at, REACH)
-            ends.append(float(-way * levels[0]))
+            ends.append(float(-sign * levels[0]))
     return mask, ends
 
 
@@ -77,7 +77,9 @@ def find_saturation(run: Run) -> tuple[list[Finding], Mask]:
         return [], mask
     share = float(np.mean(np.isin(run.friction, ends)))
     unit = run.quantities.force
-    said = " and ".join(f"{end:.4g} {unit}" for end in sorted(ends))
-    words = f"the {run.quantities.noun} is saturated at {said} in {100.0 * share:.2g} % of the run"
+    values = " and ".join(f"{end:.4g} {unit}" for end in sorted(ends))
+    words = (
+        f"the {run.quantities.noun} is saturated at {values} in {100.0 * share:.2g} % of the run"
+    )
     size = float(np.max(np.abs(ends)))
     return [Finding("saturation", "friction_n", run.name, size, unit, "excluded", words)], mask

@@ -15,8 +15,8 @@ def separate_clock(run: Run) -> list[Finding]:
     if force is None and motion is None:
         return []
     rates = [
-        1.0 / float(np.median(np.diff(run.time_s if there is None else run.time_s[there])))
-        for there in (force, motion)
+        1.0 / float(np.median(np.diff(run.time_s if sampled is None else run.time_s[sampled])))
+        for sampled in (force, motion)
     ]
     noun = run.quantities.noun
     words = f"the {noun} was sampled at {rates[0]:.4g} Hz and the motion at {rates[1]:.4g} Hz"

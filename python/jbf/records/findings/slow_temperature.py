@@ -38,18 +38,20 @@ def find_slow_temperature(run: Run) -> list[Finding]:
     if run.temperature_c is None:
         return []
     _, held_s, noise_k = _steady(run.time_s, run.temperature_c)
-    found = []
+    findings = []
     if held_s > 0.0:
         words = f"the temperature is constant for {held_s:.2g} s between readings"
         done = "interpolated linearly between readings"
-        found.append(Finding("held_samples", "temperature_c", run.name, held_s, "s", done, words))
+        findings.append(
+            Finding("held_samples", "temperature_c", run.name, held_s, "s", done, words)
+        )
     if noise_k > 0.0:
         words = f"the temperature has noise of {noise_k:.2g} K"
         done = f"averaged over {SMOOTH_S:g} s"
-        found.append(
+        findings.append(
             Finding("noisy_temperature", "temperature_c", run.name, noise_k, "K", done, words)
         )
-    return found
+    return findings
 
 
 def _steady(time: Array, celsius: Array) -> tuple[Array, float, float]:

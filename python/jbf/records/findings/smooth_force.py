@@ -48,10 +48,10 @@ def find_smooth_force(run: Run, sliding: Mask) -> list[Finding]:
     force = run.friction[sliding]
     if not is_without_noise(force):
         return []
-    said = run.quantities
+    names = run.quantities
     noise = white_noise(force, ORDERS[1])
     words = (
-        f"the {said.noun} is a command or was filtered: its white noise is at most {noise:.2g} "
-        f"{said.force}, so its noise floor is unknown"
+        f"the {names.noun} is a command or was filtered: its white noise is at most {noise:.2g} "
+        f"{names.force}, so its noise floor is unknown"
     )
-    return [Finding("smooth_force", "friction_n", run.name, noise, said.force, "none", words)]
+    return [Finding("smooth_force", "friction_n", run.name, noise, names.force, "none", words)]

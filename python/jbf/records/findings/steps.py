@@ -41,12 +41,12 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
     levels = _near_levels(values) if drawn else np.unique(values)
     if len(levels) < FEWEST_LEVELS or len(levels) > MOST_LEVELS * len(values):
         return 0.0
-    apart = np.diff(levels)
+    gaps = np.diff(levels)
     # Gaps are multiples of the step at levels without samples, with small rounding residues.
-    step = float(np.median(apart[apart <= 1.5 * np.median(apart)]))
-    times = apart / step
-    whole = np.abs(times - np.round(times)) < CRUMBS * np.maximum(times, 5.0)
-    return step if whole.mean() > ALL else 0.0
+    step = float(np.median(gaps[gaps <= 1.5 * np.median(gaps)]))
+    times = gaps / step
+    is_multiple = np.abs(times - np.round(times)) < CRUMBS * np.maximum(times, 5.0)
+    return step if is_multiple.mean() > ALL else 0.0
 
 
 def _near_levels(values: Array) -> Array:

@@ -25,12 +25,12 @@ def contradiction_of(
     """
     dt = np.diff(time)
     gap = np.abs(np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * dt)
-    usual = float(np.median(gap) / 0.6745)
+    typical = float(np.median(gap) / 0.6745)
     expected = np.sqrt(2.0 * sd_path**2 + 0.5 * (sd_speed * dt) ** 2)
-    apart = gap > CONTRADICTION * np.maximum(usual, expected)
-    if not 0 < apart.sum() <= RARE * len(apart):
+    contradicts = gap > CONTRADICTION * np.maximum(typical, expected)
+    if not 0 < contradicts.sum() <= RARE * len(contradicts):
         return np.zeros(len(time))
-    wide = np.pad(np.where(apart, gap / dt, 0.0), CONTRADICTION_REACH)
+    wide = np.pad(np.where(contradicts, gap / dt, 0.0), CONTRADICTION_REACH)
     windows = np.lib.stride_tricks.sliding_window_view(wide, 2 * CONTRADICTION_REACH)
-    found: Array = windows.max(axis=1)
-    return found
+    largest: Array = windows.max(axis=1)
+    return largest

@@ -62,21 +62,21 @@ def compared(
     time: Array, path: Array, speed: Array, half_widths: tuple[int, ...] = HALF_WIDTHS
 ) -> Iterator[Compared]:
     """Yield path and speed over windows of several widths, in ascending order of width."""
-    whole = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
+    integral = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
     steps = np.diff(time)
-    usual = float(np.quantile(steps, COMMON)) if len(steps) else 0.0
+    typical_step = float(np.quantile(steps, COMMON)) if len(steps) else 0.0
     for half in half_widths:
         if len(time) < 4 * half + LEAST:
             return
         lasts = time[2 * half :] - time[: -2 * half]
         by_path = (path[2 * half :] - path[: -2 * half]) / lasts
-        by_speed = (whole[2 * half :] - whole[: -2 * half]) / lasts
-        apart = time[3 * half : -half] - time[half : -3 * half]
-        acceleration = (by_path[2 * half :] - by_path[: -2 * half]) / apart
+        by_speed = (integral[2 * half :] - integral[: -2 * half]) / lasts
+        spacing = time[3 * half : -half] - time[half : -3 * half]
+        acceleration = (by_path[2 * half :] - by_path[: -2 * half]) / spacing
         lengths = time[4 * half :] - time[: -4 * half]
-        gaps = np.cumsum(np.r_[0, steps > usual * max(LONG, SHARE * 4 * half)])
-        kept = (lengths < WHOLE * np.median(lengths)) & (gaps[4 * half :] == gaps[: -4 * half])
+        gaps = np.cumsum(np.r_[0, steps > typical_step * max(LONG, SHARE * 4 * half)])
+        use = (lengths < WHOLE * np.median(lengths)) & (gaps[4 * half :] == gaps[: -4 * half])
         inner = slice(half, -half)
-        if kept.sum() >= LEAST:
+        if use.sum() >= LEAST:
             count = step_of(path) / float(np.median(lasts))
-            yield Compared(by_path[inner][kept], by_speed[inner][kept], acceleration[kept], count)
+            yield Compared(by_path[inner][use], by_speed[inner][use], acceleration[use], count)

@@ -92,7 +92,7 @@ def corrected_records(
     name, time, speed = run.name, run.time_s, run.velocity
     corrected = stamps_s is not None
     stamps_s = time if stamps_s is None else stamps_s
-    said = run.quantities
+    quantities = run.quantities
     stamps = uneven_stamps(name, stamps_s, corrected=corrected)
     position = recorded_position(run, radius_m)
     if position is None:
@@ -103,23 +103,25 @@ def corrected_records(
                 problem="is missing; an angle determines no speed without the journal's radius",
                 mend="add the column, or give the rig its [bearing]",
             )
-        speed, odd = mend_speed(name, time, speed, None, said.speed)
-        speed, loose, ends = mend_speed_ends(name, time, speed, None, said.speed)
+        speed, odd = mend_speed(name, time, speed, None, quantities.speed)
+        speed, loose, ends = mend_speed_ends(name, time, speed, None, quantities.speed)
         return CorrectedRecords(None, 0.0, speed, True, _present(odd, *ends, stamps), loose)
     step = quantum_of(position.path_m) or step_of(position.path_m)
     position, astray = mend_position(name, time, position)
     position, loose, ends = mend_path_ends(name, time, position)
     if not run.speed_recorded:
-        found = _present(astray, *ends, stamps)
-        alone = _without_speed(name, time, position.path_m, step, found, loose, said.speed)
-        return replace(alone, arm_m=position.arm_m)
+        of_position = _present(astray, *ends, stamps)
+        without_speed = _without_speed(
+            name, time, position.path_m, step, of_position, loose, quantities.speed
+        )
+        return replace(without_speed, arm_m=position.arm_m)
     zero = unit = None
     hum = 0.0
     # A difference of the positions has no separate unit or zero that could be wrong.
     aside = derived_speed(name, stamps_s, position.path_m, speed)
     if aside is None:
-        speed, hum, zero = speed_zero(name, time, position.path_m, speed, step, said.speed)
-        unit = wrong_unit(name, time, position, speed, said)
+        speed, hum, zero = speed_zero(name, time, position.path_m, speed, step, quantities.speed)
+        unit = wrong_unit(name, time, position, speed, quantities)
         if unit is not None and unit.of_speed:
             speed, hum = speed * unit.factor, hum * abs(unit.factor)
         elif unit is not None:
@@ -129,19 +131,19 @@ def corrected_records(
             name, time, position.path_m, speed
         )
     path = position.path_m
-    odd = held = None
+    odd = stale = None
     measured = aside is None
     if measured:
-        speed, odd = mend_speed(name, time, speed, path, said.speed)
-        speed, off, more = mend_speed_ends(name, time, speed, path, said.speed)
+        speed, odd = mend_speed(name, time, speed, path, quantities.speed)
+        speed, off, more = mend_speed_ends(name, time, speed, path, quantities.speed)
         loose, ends = loose | off, [*ends, *more]
-        position, held = replace_stale_positions(name, time, position, speed, said.mover)
+        position, stale = replace_stale_positions(name, time, position, speed, quantities.mover)
         path = position.path_m
     else:
         speed = centred_speed(time, path)
     shaken = stamps or jittered_path(name, time, path, speed)
     scale = None if unit is None else unit.finding
-    findings = _present(astray, *ends, zero, scale, aside, odd, held, shaken)
+    findings = _present(astray, *ends, zero, scale, aside, odd, stale, shaken)
     return CorrectedRecords(path, step, speed, measured, findings, loose, position.arm_m, hum)
 
 
@@ -150,16 +152,18 @@ def _without_speed(
     time: Array,
     path: Array,
     step: float,
-    found: tuple[Finding, ...],
+    findings: tuple[Finding, ...],
     loose: Mask,
     unit: str,
 ) -> CorrectedRecords:
     """Return the records of a motion without a recorded speed."""
     speed = centred_speed(time, path)
     words = "no speed was recorded"
-    made = Finding("no_speed", "velocity_m_s", name, 0.0, unit, "derived from the position", words)
-    shaken = () if found else _present(jittered_path(name, time, path, speed))
-    return CorrectedRecords(path, step, speed, False, (made, *found, *shaken), loose)
+    derived = Finding(
+        "no_speed", "velocity_m_s", name, 0.0, unit, "derived from the position", words
+    )
+    shaken = () if findings else _present(jittered_path(name, time, path, speed))
+    return CorrectedRecords(path, step, speed, False, (derived, *findings, *shaken), loose)
 
 
 def _present(*findings: Finding | None) -> tuple[Finding, ...]:

@@ -36,22 +36,22 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
     # replaces the maximum, because messages that arrive together make the difference unbounded.
     local = np.convolve(np.abs(speed), np.ones(SPANS[-1]) / SPANS[-1], "same")
     moving = local > 0.02 * float(np.quantile(np.abs(speed), USUAL))
-    usual = float(np.median(np.diff(time)))
+    median_step = float(np.median(np.diff(time)))
     for span in SPANS:
         difference = (path[span:] - path[:-span]) / (time[span:] - time[:-span])
-        tolerance = TO * step / (span * usual)
+        tolerance = TO * step / (span * median_step)
         middle = moving[span // 2 : span // 2 + len(difference)]
         if noise_of(difference[middle]) < COARSE * tolerance:
             continue
         # Backward and centred differences.
         for after in sorted({0, span // 2}):
             where = slice(span - after, len(time) - after)
-            kept = moving[where]
-            if kept.sum() < 50:
+            in_motion = moving[where]
+            if in_motion.sum() < 50:
                 continue
-            near = np.abs(speed[where] - difference)[kept] <= tolerance
+            near = np.abs(speed[where] - difference)[in_motion] <= tolerance
             if near.mean() > ALIKE:
-                return _finding(name, span, (0.5 * span - after) * usual)
+                return _finding(name, span, (0.5 * span - after) * median_step)
     return None
 
 
@@ -65,5 +65,5 @@ def _finding(name: str, span: int, late_s: float) -> Finding:
 
 def centred_speed(time: Array, path: Array) -> Array:
     """Speed from the path without delay, m/s; used to detect rests."""
-    found: Array = np.gradient(path, time)
-    return found
+    speed: Array = np.gradient(path, time)
+    return speed

@@ -20,16 +20,16 @@ def even_clock(time_s: Array) -> Array | None:
     steps = np.diff(time_s)
     if len(steps) < 2:
         return None
-    usual = float(np.median(steps))
-    if usual <= 0.0 or np.ptp(steps) <= 1e-6 * usual:
+    median_step = float(np.median(steps))
+    if median_step <= 0.0 or np.ptp(steps) <= 1e-6 * median_step:
         return None
-    counted = np.concatenate(([0.0], np.cumsum(np.rint(steps / usual))))
+    counted = np.concatenate(([0.0], np.cumsum(np.rint(steps / median_step))))
     clocks = [
         np.polynomial.Polynomial.fit(index, time_s, 1)(index)
         for index in (np.arange(len(time_s), dtype=float), counted)
         if np.all(np.diff(index) > 0.0)
     ]
     nearest = min(clocks, key=lambda clock: float(np.mean(np.abs(time_s - clock))))
-    residual = np.abs(time_s - nearest) / usual
-    far = np.max(residual) > LONGEST_RESIDUAL or np.quantile(residual, 0.9) > USUAL_RESIDUAL
-    return None if far else np.asarray(nearest)
+    residual = np.abs(time_s - nearest) / median_step
+    irregular = np.max(residual) > LONGEST_RESIDUAL or np.quantile(residual, 0.9) > USUAL_RESIDUAL
+    return None if irregular else np.asarray(nearest)

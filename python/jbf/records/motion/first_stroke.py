@@ -25,6 +25,6 @@ def begins_with_oscillation(time_s: Array, velocity: Array) -> bool:
     steps = 0.5 * (v[1:] + v[:-1]) * np.diff(time_s)
     # The displacement in a step with a reversal is small, and is not divided between the
     # directions.
-    ways = np.abs(np.add.reduceat(steps, np.unique(np.concatenate(([0], turns - 1)))))
+    displacements = np.abs(np.add.reduceat(steps, np.unique(np.concatenate(([0], turns - 1)))))
     first = float(np.sum(np.abs(steps[: max(turns[0] - 1, 1)])))
-    return first < HUM * float(np.max(ways))
+    return first < HUM * float(np.max(displacements))

@@ -44,11 +44,11 @@ ASIDE = "excluded from the motion"
 def mend_position(name: str, time: Array, position: Position) -> tuple[Position, Finding | None]:
     """Interpolate the path across its outliers."""
     path = position.path_m
-    least, mask = COUNTS * step_of(path), np.zeros(len(path), dtype=bool)
+    threshold, mask = COUNTS * step_of(path), np.zeros(len(path), dtype=bool)
     while mask.sum() <= RARE * len(path):
         # Of two adjacent outliers, the second is detected once the first is excluded.
-        good = np.flatnonzero(~mask)
-        more = good[_off(time[good], path[good], least)]
+        valid = np.flatnonzero(~mask)
+        more = valid[_off(time[valid], path[valid], threshold)]
         if not len(more):
             break
         mask[more] = True
@@ -57,8 +57,8 @@ def mend_position(name: str, time: Array, position: Position) -> tuple[Position,
     mended = _between(time, path, mask)
     size = float(np.max(np.abs(path - mended))) / position.arm_m
     words = _words("position", time, mask, f"{size:.3g} {position.unit}")
-    found = Finding("glitches", position.column, name, size, position.unit, ASIDE, words)
-    return position.along(mended), found
+    finding = Finding("glitches", position.column, name, size, position.unit, ASIDE, words)
+    return position.along(mended), finding
 
 
 def mend_speed(
@@ -69,9 +69,9 @@ def mend_speed(
     if n < LEAST_SAMPLES:
         return speed, None
     before, after = _both_sides(np.diff(speed))
-    usual = _around(np.abs(np.diff(speed)))
+    typical = _around(np.abs(np.diff(speed)))
     off = _smaller_difference(before, after)
-    off[off <= CHANGES * np.maximum(usual[:-1], usual[1:])] = 0.0
+    off[off <= CHANGES * np.maximum(typical[:-1], typical[1:])] = 0.0
     bend = _around(np.abs(before + after)) / 0.6745 / np.sqrt(6.0)
     off[off <= FAR * bend] = 0.0
     mask = np.concatenate(([False], off != 0.0, [False]))
@@ -97,8 +97,8 @@ def mend_path_ends(
     mask = loose_ends(time, path, 3)
     mended = _between(time, path, mask)
     off = (path - mended) / position.arm_m
-    found = ends_finding(position.column, "position", name, mask, off, position.unit, ASIDE)
-    return (position.along(mended) if found else position), mask, [found] if found else []
+    finding = ends_finding(position.column, "position", name, mask, off, position.unit, ASIDE)
+    return (position.along(mended) if finding else position), mask, [finding] if finding else []
 
 
 def mend_speed_ends(
@@ -114,32 +114,32 @@ def mend_speed_ends(
         missed = _missed(time, path, speed) > 2.0 * _missed(time, path, mended)
         if not missed[mask].all():
             mask[:], mended = False, speed
-    found = ends_finding("velocity_m_s", "speed", name, mask, speed - mended, unit, ASIDE)
-    return mended, mask, [found] if found else []
+    finding = ends_finding("velocity_m_s", "speed", name, mask, speed - mended, unit, ASIDE)
+    return mended, mask, [finding] if finding else []
 
 
-def _off(time: Array, path: Array, least: float) -> Mask:
+def _off(time: Array, path: Array, threshold: float) -> Mask:
     """Mask of the samples that deviate from a cubic through two adjacent samples on either side."""
     n = len(path)
-    found = np.zeros(n, dtype=bool)
+    mask = np.zeros(n, dtype=bool)
     if n < LEAST_SAMPLES:
-        return found
+        return mask
     t = np.stack([time[k : n - 4 + k] - time[2 : n - 2] for k in (0, 1, 3, 4)])
     y = np.stack([path[k : n - 4 + k] - path[2 : n - 2] for k in (0, 1, 3, 4)])
     weights = weights_at_zero(t)
     off = -np.sum(weights * y, axis=0)
     size = np.abs(off)
-    far = size > np.maximum(FAR * _around(size) / 0.6745, least)
+    outlying = size > np.maximum(FAR * _around(size) / 0.6745, threshold)
     # An outlier causes opposite deviations at the adjacent samples, by its weight in their cubics.
-    for beside, weight in (
+    for neighbour, weight in (
         (np.pad(off, (1, 0))[:-1], np.pad(weights[2], (1, 0))[:-1]),
         (np.pad(off, (0, 1))[1:], np.pad(weights[1], (0, 1))[1:]),
     ):
-        far &= (-beside * off > BESIDE * weight * size**2) & (np.abs(beside) < size)
+        outlying &= (-neighbour * off > BESIDE * weight * size**2) & (np.abs(neighbour) < size)
     # At a jump of the speed, the steps on both sides differ by three times the deviation.
-    far &= size > JUMP * np.abs((y[3] - y[2]) - (y[1] - y[0]))
-    found[2:-2] = far
-    return found
+    outlying &= size > JUMP * np.abs((y[3] - y[2]) - (y[1] - y[0]))
+    mask[2:-2] = outlying
+    return mask
 
 
 def _both_sides(change: Array) -> tuple[Array, Array]:
@@ -155,16 +155,16 @@ def _smaller_difference(before: Array, after: Array) -> Array:
     )
     off = np.where((before * after > 0.0) & (less > ALIKE * more), less, 0.0)
     # Samples next to an outlier deviate from it as well, so only the largest deviation is kept.
-    most = np.maximum(np.pad(off, (1, 0))[:-1], np.pad(off, (0, 1))[1:])
-    found: Array = np.where(off > most, off, 0.0)
-    return found
+    largest = np.maximum(np.pad(off, (1, 0))[:-1], np.pad(off, (0, 1))[1:])
+    excess: Array = np.where(off > largest, off, 0.0)
+    return excess
 
 
 def _median(values: Array, window: int) -> Array:
     from scipy import ndimage  # importing takes most of a second
 
-    found: Array = ndimage.median_filter(values, window, mode="reflect")
-    return found
+    median: Array = ndimage.median_filter(values, window, mode="reflect")
+    return median
 
 
 def _around(sizes: Array) -> Array:
@@ -174,8 +174,8 @@ def _around(sizes: Array) -> Array:
     """
     from scipy import ndimage
 
-    found: Array = ndimage.maximum_filter1d(_median(sizes, WINDOW), WINDOW, mode="reflect")
-    return found
+    largest: Array = ndimage.maximum_filter1d(_median(sizes, WINDOW), WINDOW, mode="reflect")
+    return largest
 
 
 def _missed(time: Array, path: Array, speed: Array) -> Array:
@@ -188,10 +188,10 @@ def _missed(time: Array, path: Array, speed: Array) -> Array:
 def _between(time: Array, values: Array, mask: Mask) -> Array:
     """Replace masked samples by a cubic through the two valid ones on either side."""
     mended: Array = values.copy()
-    good = np.flatnonzero(~mask)
+    valid = np.flatnonzero(~mask)
     for i in np.flatnonzero(mask):
-        k = int(np.searchsorted(good, i))
-        near = good[max(k - 2, 0) : k + 2]
+        k = int(np.searchsorted(valid, i))
+        near = valid[max(k - 2, 0) : k + 2]
         t, y = time[near] - time[i], values[near]
         # A cubic within the record, a straight line at its ends.
         mended[i] = np.dot(weights_at_zero(t), y)

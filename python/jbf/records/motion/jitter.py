@@ -40,15 +40,15 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
         True if the instants of the even clock are used instead.
     """
     steps = np.diff(time)
-    usual = float(np.median(steps))
-    near = np.abs(steps - usual) < EVEN * usual
+    median_step = float(np.median(steps))
+    near = np.abs(steps - median_step) < EVEN * median_step
     if len(steps) < 60 or near.mean() < MOSTLY:
         return None
     # A sampling rate that changes smoothly is not jitter. `noise_of` takes third differences of the
     # steps, which are fourth differences of the time stamps. For white noise, the variance of the
     # fourth differences is 70 times that of the noise, and that of third differences 20 times.
     size = noise_of(steps[near]) * float(np.sqrt(20.0 / 70.0))
-    if size < LEAST * usual:
+    if size < LEAST * median_step:
         return None
     words = f"the time stamps deviate from a regular clock by {1e3 * size:.3g} ms RMS"
     done = "replaced by the regular clock" if corrected else "used as recorded"
@@ -60,38 +60,38 @@ def jittered_path(name: str, time: Array, path: Array, speed: Array) -> Finding 
 
     The encoder was then read at instants that differ from the time stamps.
     """
-    usual = float(np.median(np.diff(time)))
-    whole = np.abs(np.diff(time) / usual - 1.0) < LEAST
-    if whole.mean() < MOSTLY:
+    median_step = float(np.median(np.diff(time)))
+    regular = np.abs(np.diff(time) / median_step - 1.0) < LEAST
+    if regular.mean() < MOSTLY:
         return None
     rough = np.diff(path, ORDER)
-    spoilt = np.convolve(~whole, np.ones(ORDER), "valid") > 0.0
+    spoilt = np.convolve(~regular, np.ones(ORDER), "valid") > 0.0
     inner = np.abs(speed[ORDER // 2 : ORDER // 2 + len(rough)])
     top = float(np.quantile(inner, 0.98))
     step = step_of(path)
     floor = step / np.sqrt(12.0)
     sizes, slow = [], floor
     for low, high in ((0.0, 0.15), (0.3, 0.6), (0.6, 1.1)):
-        which = (inner >= low * top) & (inner < high * top) & ~spoilt
-        if which.sum() < 60:
+        in_band = (inner >= low * top) & (inner < high * top) & ~spoilt
+        if in_band.sum() < 60:
             if low > 0.0:
                 return None
             continue
-        noise = float(np.median(np.abs(rough[which]))) / 0.6745 / UNIT
+        noise = float(np.median(np.abs(rough[in_band]))) / 0.6745 / UNIT
         if low == 0.0:
             slow = max(noise, floor)
             continue
-        pairs = which[1:] & which[:-1]
+        pairs = in_band[1:] & in_band[:-1]
         if not np.any(pairs):
             return None
         if _correlation(rough[1:][pairs], rough[:-1][pairs]) > WHITE or noise < max(
             BEYOND * slow, COUNTS * step
         ):
             return None
-        mean = float(np.sqrt(np.mean(inner[which] ** 2)))
+        mean = float(np.sqrt(np.mean(inner[in_band] ** 2)))
         sizes.append(float(np.sqrt(noise**2 - slow**2)) / mean)
     size = sizes[-1]
-    if size < LEAST * usual or not 1.0 / AGREE < sizes[0] / size < AGREE:
+    if size < LEAST * median_step or not 1.0 / AGREE < sizes[0] / size < AGREE:
         return None
     words = (
         "the position noise grows with the speed, as with time stamp errors of "

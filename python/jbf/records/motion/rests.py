@@ -118,12 +118,12 @@ def _reverses(time_s: Array, velocity: Array, first: int, end: int, step: float)
     With the mean acceleration between the adjacent motions, a reversal would remain within the
     encoder step for about the same duration.
     """
-    way = min(end - first, STILL_SAMPLES)
-    before, after = max(first - way, 0), min(end + way, len(time_s)) - 1
+    reach = min(end - first, STILL_SAMPLES)
+    before, after = max(first - reach, 0), min(end + reach, len(time_s)) - 1
     v0, v1 = velocity[before], velocity[after]
     # A speed of the size of the rounding error is zero.
-    least = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity)))
-    if min(abs(v0), abs(v1)) < least or v0 == v1 == 0.0:
+    slowest = 0.5 * STILL_SHARE * float(np.max(np.abs(velocity)))
+    if min(abs(v0), abs(v1)) < slowest or v0 == v1 == 0.0:
         return False
     # Also covers a speed that touches zero, with two reversals or none.
     rate = (abs(v0) + abs(v1)) / (time_s[after] - time_s[before])
@@ -154,20 +154,20 @@ def rest_edges(rest: Mask, time_s: Array, velocity: Array, acceleration: Array) 
     slow start begins before its speed is visible: the number of samples before it follows from the
     motion next to the rest.
     """
-    beside = np.zeros(len(rest), dtype=bool)
+    at_edge = np.zeros(len(rest), dtype=bool)
     edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        most = min(int(end - first), STILL_SAMPLES)
+        longest = min(int(end - first), STILL_SAMPLES)
         for moving, inward in ((first - 1, 1), (end, -1)):
             if not 0 <= moving < len(rest):
                 continue
             v, a = velocity[moving], -inward * acceleration[moving]
             step_s = abs(time_s[moving + inward] - time_s[moving])
             ago = v / (a * step_s) if v * a > 0.0 else 0.0
-            count = min(max(int(np.ceil(min(ago, most))), 1), most)
+            count = min(max(int(np.ceil(min(ago, longest))), 1), longest)
             inside = moving + inward * np.arange(1, count + 1)
-            beside[inside] = True
-    return beside
+            at_edge[inside] = True
+    return at_edge
 
 
 def backward_near_rest(rest: Mask, time_s: Array, velocity: Array, acceleration: Array) -> Mask:
@@ -192,21 +192,21 @@ def backward_near_rest(rest: Mask, time_s: Array, velocity: Array, acceleration:
     return backward
 
 
-def uncertain_near_rest(rest: Mask, path: Array, velocity: Array, least: float) -> Mask:
-    """Mask of samples next to a rest with a displacement of less than `least`, m, along the speed.
+def uncertain_near_rest(rest: Mask, path: Array, velocity: Array, shift: float) -> Mask:
+    """Mask of samples next to a rest with a displacement of less than `shift`, m, along the speed.
 
     A polynomial oscillates at the onset of a motion, and does not determine the first direction.
     """
     unsure = np.zeros(len(rest), dtype=bool)
     edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        way = np.sign(velocity[first:end])
+        direction = np.sign(velocity[first:end])
         if first > 0:
-            gone = (path[first:end] - path[first - 1]) * way > least
-            unsure[first:end] |= ~np.logical_or.accumulate(gone)
+            displaced = (path[first:end] - path[first - 1]) * direction > shift
+            unsure[first:end] |= ~np.logical_or.accumulate(displaced)
         if end < len(rest):
-            gone = ((path[end] - path[first:end]) * way > least)[::-1]
-            unsure[first:end] |= ~np.logical_or.accumulate(gone)[::-1]
+            displaced = ((path[end] - path[first:end]) * direction > shift)[::-1]
+            unsure[first:end] |= ~np.logical_or.accumulate(displaced)[::-1]
     return unsure
 
 

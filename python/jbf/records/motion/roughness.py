@@ -61,16 +61,16 @@ def white_noise(signal: Array, order: int) -> float:
 
 def local_noise(signal: Array) -> Array | float:
     """`noise_of` for each sample if the noise is heteroscedastic, otherwise a single number."""
-    usual = noise_of(signal)
+    overall = noise_of(signal)
     if len(signal) < 4 * UNEVEN_SAMPLES:
-        return usual
+        return overall
     # Importing takes most of a second; not needed for the prediction of a short run.
     from scipy import ndimage
 
     third = np.pad(np.abs(np.diff(signal, 3)), (1, 2), mode="reflect")
     local = ndimage.median_filter(third, UNEVEN_SAMPLES, mode="reflect") / 0.6745 / np.sqrt(20.0)
-    uneven = local > UNEVEN * usual
-    return np.where(uneven, local, usual) if uneven.any() else usual
+    uneven = local > UNEVEN * overall
+    return np.where(uneven, local, overall) if uneven.any() else overall
 
 
 def step_of(angle: Array) -> float:

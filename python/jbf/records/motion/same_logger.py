@@ -34,11 +34,11 @@ def further_starts(motions: Sequence[Smoothed]) -> tuple[ReadingErrors, ...]:
     if len(motions) < 2 or min(len(motion.readings.time_s) for motion in motions) < 2:
         return ()
     sizes = np.array([_relative_sizes(motion) for motion in motions])
-    seen = np.isfinite(sizes).all(axis=0)
-    spread = np.ptp(sizes[:, seen], axis=0)
+    determined = np.isfinite(sizes).all(axis=0)
+    spread = np.ptp(sizes[:, determined], axis=0)
     if np.max(spread) <= 1.0:
         return ()
-    order = np.argsort(sizes[:, seen][:, int(np.argmax(spread))], kind="stable")
+    order = np.argsort(sizes[:, determined][:, int(np.argmax(spread))], kind="stable")
     chosen = {int(order[0]), int(order[len(order) // 2]), int(order[-1])}
     return tuple(motions[i].errors for i in sorted(chosen))
 
@@ -52,7 +52,7 @@ def _relative_sizes(motion: Smoothed) -> Array:
     readings, errors = motion.readings, motion.errors
     step_s = float(np.median(np.diff(readings.time_s)))
     velocity = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)
-    seen = np.array([np.isfinite(readings.position).any(), velocity.any(), True])
+    recorded = np.array([np.isfinite(readings.position).any(), velocity.any(), True])
     logs = np.log([errors.position_variance, errors.velocity_variance]) / np.log(SAME)
     sizes = np.append(logs, errors.velocity_delay_s / (SAME_DELAY * step_s))
-    return np.asarray(np.where(seen, sizes, np.nan))
+    return np.asarray(np.where(recorded, sizes, np.nan))

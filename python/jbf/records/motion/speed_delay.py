@@ -31,7 +31,7 @@ def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding
     """Return a finding if the speed lags the path by more than the smoother corrects."""
     sharpest = min(
         (_lateness(c) for c in compared(time, path, speed)),
-        key=lambda found: found[1],
+        key=lambda candidate: candidate[1],
         default=(0.0, np.inf),
     )
     late_s, error_s = sharpest

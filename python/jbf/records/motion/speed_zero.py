@@ -59,8 +59,8 @@ def speed_zero(
     if abs(zero) < ERRORS * error or abs(zero) * _longest(time, still) < GONE * step:
         return speed, 0.0, None
     words = f"the speed reads {zero:.3g} {unit} at constant position"
-    found = Finding("speed_zero", "velocity_m_s", name, zero, unit, "subtracted", words)
-    return speed - zero, step_of(speed), found
+    finding = Finding("speed_zero", "velocity_m_s", name, zero, unit, "subtracted", words)
+    return speed - zero, step_of(speed), finding
 
 
 def _still(path: Array, step: float) -> Mask:

@@ -30,14 +30,14 @@ def replace_stale_positions(
     """Replace held readings of the path by the position that follows from the speed."""
     path = position.path_m
     moved = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
-    least = max(COUNTS * step_of(path), 1e-9 * float(np.ptp(path)))
+    threshold = max(COUNTS * step_of(path), 1e-9 * float(np.ptp(path)))
     edges = np.diff(np.concatenate(([0], (np.diff(path) == 0.0).astype(np.int8), [0])))
     mended, lasted, count = path.copy(), 0.0, 0
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         # Readings first + 1 to end repeat the one at first; end + 1 is a new one.
         if end - first < LEAST or end + 1 >= len(path):
             continue
-        if abs(moved[end] - moved[first]) < least:
+        if abs(moved[end] - moved[first]) < threshold:
             continue
         # Accept only motion throughout the held readings, which excludes the ends of a rest.
         each = np.abs(np.diff(moved[first : end + 1]))
@@ -46,14 +46,14 @@ def replace_stale_positions(
         missed = moved[end + 1] - moved[first]
         if abs(path[end + 1] - path[first] - missed) > CATCHES_UP * abs(missed):
             continue
-        held = slice(first + 1, end + 1)
+        stale = slice(first + 1, end + 1)
         share = (path[end + 1] - path[first]) / missed
-        mended[held] = path[first] + share * (moved[held] - moved[first])
+        mended[stale] = path[first] + share * (moved[stale] - moved[first])
         lasted, count = max(lasted, float(time[end] - time[first])), count + end - first
     if not 0 < count <= MOST * len(path):
         return position, None
     readings = count_of(count, "position reading repeats", "position readings repeat")
     words = f"{readings} the previous value while {mover} moves"
     done = "replaced by the integrated speed"
-    found = Finding("held_samples", position.column, name, lasted, "s", done, words)
-    return position.along(mended), found
+    finding = Finding("held_samples", position.column, name, lasted, "s", done, words)
+    return position.along(mended), finding

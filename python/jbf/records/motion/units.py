@@ -63,10 +63,14 @@ def wrong_unit(
             Finding("sign", position.column, name, ratio, "1", done, words + " turned"), -1
         )
     column, unit, by = position.column, "", slope_near(time, position.path_m, speed, ratio)
-    for which, guess, factor in _units(position, turns=quantities.motion == "rotary"):
+    for column_of_unit, guess, factor in _units(position, turns=quantities.motion == "rotary"):
         if abs(abs(ratio) / factor - 1.0) < NEAR:
-            said = called if which == "velocity_m_s" else which
-            column, unit, by = which, f"; {said} in {guess}?", float(np.copysign(factor, ratio))
+            noun = called if column_of_unit == "velocity_m_s" else column_of_unit
+            column, unit, by = (
+                column_of_unit,
+                f"; {noun} in {guess}?",
+                float(np.copysign(factor, ratio)),
+            )
             break
     turned = " and with opposite sign" if ratio < 0.0 else ""
     hint = unit or ("; check the radius of the journal" if position.arm_m != 1.0 else "")

@@ -30,7 +30,7 @@ def refused_words(effect: Effect) -> str:
 
 
 def effects_page(
-    pages: Iterable[Effect], law: str | None = None, said: Quantities = OF_BEARING
+    pages: Iterable[Effect], law: str | None = None, quantities: Quantities = OF_BEARING
 ) -> str:
     """List the effects in the order of the signal chain, one line each, under a heading per stage.
 
@@ -42,28 +42,28 @@ def effects_page(
         If given, effects that cannot be combined with this law follow in a separate block, each
         with the reason. The quantities are then those of a bearing if the law needs one, otherwise
         those of a linear axis.
-    said
+    quantities
         Names of the motion and of the measured quantity. Overridden if `law` is given.
     """
     pages = list(pages)
     if law is not None:
         reasons_of = {e.name: reason_not_applicable(e, law) for e in pages}
         refused = {name: reason for name, reason in reasons_of.items() if reason is not None}
-        said = OF_BEARING if find_law(law).needs_bearing else LINEAR
-        there = effects_page([e for e in pages if e.name not in refused], None, said)
+        quantities = OF_BEARING if find_law(law).needs_bearing else LINEAR
+        applicable = effects_page([e for e in pages if e.name not in refused], None, quantities)
         widest = max(map(len, refused), default=0)
         reasons = [x for n, r in refused.items() for x in hanging(f"{n:<{widest}}  ", r)]
         head = ["", f"[not with {law}: the law ...]"] if reasons else []
-        return "\n".join([there, *head, *reasons])
+        return "\n".join([applicable, *head, *reasons])
     widest = max((len(e.name) for e in pages), default=0)
     lines: list[str] = []
     stage = None
     for effect in pages:
-        own = "" if effect.name in built_in() else "user-defined, "
-        if own + effect.stage != stage:
-            stage = own + effect.stage
+        prefix = "" if effect.name in built_in() else "user-defined, "
+        if prefix + effect.stage != stage:
+            stage = prefix + effect.stage
             lines += ([""] if lines else []) + [f"[{stage}]"]
-        lines += hanging(f"{effect.name:<{widest}}  ", summary_of(effect, said))
+        lines += hanging(f"{effect.name:<{widest}}  ", summary_of(effect, quantities))
     return "\n".join(lines)
 
 

@@ -10,7 +10,7 @@ from jbf.control.robustness import Outcome
 from jbf.control.thesis_tables import Tables
 
 
-def tables_dict(tables: Tables, others: Sequence[tuple[str, Tables]]) -> dict[str, Any]:
+def tables_dict(tables: Tables, alternatives: Sequence[tuple[str, Tables]]) -> dict[str, Any]:
     """Return the content of `jbf control tables --json`."""
     values = {n: p.value for n, p in tables.model.parameters.items()}
     return {
@@ -22,11 +22,11 @@ def tables_dict(tables: Tables, others: Sequence[tuple[str, Tables]]) -> dict[st
         "assumptions": [
             {
                 "name": name,
-                "ratios": {f"{c.row}, {c.column}": c.ratio for c in other.predicted},
-                "within_2": other.within(2.0),
-                "within_1.5": other.within(1.5),
+                "ratios": {f"{c.row}, {c.column}": c.ratio for c in alternative.predicted},
+                "within_2": alternative.within(2.0),
+                "within_1.5": alternative.within(1.5),
             }
-            for name, other in others
+            for name, alternative in alternatives
         ],
     }
 

@@ -23,11 +23,11 @@ def plot_runs(results: Sequence[Result], figure: Figure | None = None) -> Figure
     from matplotlib.figure import Figure
 
     n, rows = len(results), len(TRACES)
-    made = Figure(figsize=(4.2 * n, 12.5), layout="constrained") if figure is None else figure
-    grid = made.subplots(rows, n, squeeze=False)
+    drawing = Figure(figsize=(4.2 * n, 12.5), layout="constrained") if figure is None else figure
+    grid = drawing.subplots(rows, n, squeeze=False)
     for column, result in enumerate(results):
         _column([grid[row][column] for row in range(rows)], result, first=column == 0)
-    return made
+    return drawing
 
 
 def plot_run_of_loop(run: Result, axes: Sequence[Axes] | None = None) -> list[Axes]:
@@ -35,11 +35,11 @@ def plot_run_of_loop(run: Result, axes: Sequence[Axes] | None = None) -> list[Ax
 
     The axes are response, error, friction against speed, friction in time, and learned quantities.
     """
-    found = axes_or_new(axes, len(TRACES), 1, (7.0, 12.5))
-    _column(found, run, first=True)
-    return found
+    run_axes = axes_or_new(axes, len(TRACES), 1, (7.0, 12.5))
+    _column(run_axes, run, first=True)
+    return run_axes
 
 
 def _column(axes: Sequence[Axes], run: Result, *, first: bool) -> None:
-    for ax, what in zip(axes, TRACES, strict=True):
-        control_trace(run, what, ax=ax, named=first)
+    for ax, trace in zip(axes, TRACES, strict=True):
+        control_trace(run, trace, ax=ax, named=first)

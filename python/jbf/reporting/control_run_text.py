@@ -22,12 +22,12 @@ _FLAGS = {
 
 def status_words(result: Result) -> str:
     """Format the status flags of a run, each with the share of samples in which it is set."""
-    said = []
+    flags = []
     for flag, word in _FLAGS.items():
         share = float(((result.status & flag) > 0).mean())
         if share > 0.0:
-            said.append(f"{word} {100.0 * share:.2g} %")
-    return ", ".join(said) or "ok"
+            flags.append(f"{word} {100.0 * share:.2g} %")
+    return ", ".join(flags) or "ok"
 
 
 def runs_text(results: Sequence[Result]) -> str:

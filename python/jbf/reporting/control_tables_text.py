@@ -68,7 +68,7 @@ def score_text(tables: Tables) -> str:
     The worst deviation of the fitted cells comes first.
     """
     worst = max(abs(c.ratio - 1.0) for c in tables.column("none") if c.ratio is not None)
-    far = [
+    outlying = [
         f"{c.row}, {_TITLES[c.column]} ({c.ratio:.2f})"
         for c in tables.predicted
         if c.ratio is not None and not 1.0 / _FAR <= c.ratio <= _FAR
@@ -78,15 +78,15 @@ def score_text(tables: Tables) -> str:
         f"Predicted: {len(tables.predicted)} cells, {tables.within(2.0)} within a factor of 2, "
         f"{tables.within(1.5)} within 1.5.",
     ]
-    if far:
-        lines.append(f"Larger deviations: {'; '.join(far)}.")
+    if outlying:
+        lines.append(f"Larger deviations: {'; '.join(outlying)}.")
     return "\n".join(lines)
 
 
-def assumptions_text(found: Sequence[tuple[str, Tables]]) -> str:
+def assumptions_text(alternatives: Sequence[tuple[str, Tables]]) -> str:
     """Format the ratios to the thesis under alternative assumptions, one line each."""
     rows: list[tuple[str, ...]] = [("", "dynamic model, learned", "Coulomb", "in 2", "in 1.5")]
-    for name, tables in found:
+    for name, tables in alternatives:
         learning = " ".join(_ratio(c) for c in tables.column("learning"))
         coulomb = " ".join(_ratio(c) for c in tables.column("coulomb"))
         rows.append((name, learning, coulomb, str(tables.within(2.0)), str(tables.within(1.5))))
@@ -117,7 +117,7 @@ def better_text(tables: Tables) -> str:
     )
 
 
-def tables_report(tables: Tables, others: Sequence[tuple[str, Tables]]) -> str:
+def tables_report(tables: Tables, alternatives: Sequence[tuple[str, Tables]]) -> str:
     """Return the complete output of `jbf control tables`."""
     load = tables.model.rig.load
     load_n = 0.0 if load is None else load.normal_n
@@ -131,7 +131,7 @@ def tables_report(tables: Tables, others: Sequence[tuple[str, Tables]]) -> str:
             "",
             score_text(tables),
             "",
-            assumptions_text(others),
+            assumptions_text(alternatives),
             "",
             better_text(tables),
             "",

@@ -63,7 +63,7 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         Command that produced the report, printed in the page footer.
     """
     before, after = diagnosis.before, diagnosis.after
-    said = diagnosis.model.rig.quantities
+    quantities = diagnosis.model.rig.quantities
     head, runs = _run_table(diagnosis)
     pairs = correlation_pairs(diagnosis.fit)[:5]
     headline, rest = headline_and_rest(diagnosis)
@@ -94,14 +94,14 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         ),
         ledger=ledger_rows(diagnosis),
         laws=law_rows(diagnosis),
-        unit=said.force,
+        unit=quantities.force,
         effects=[_effect(diagnosis, name) for name in diagnosis.effects],
         parameters=parameter_rows(
-            diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters, said
+            diagnosis.model.law, diagnosis.model.effects, diagnosis.fit.parameters, quantities
         ),
         held=[i for i, p in enumerate(values.values()) if p.held],
         correlations="; ".join(f"{a} with {b} {c:+.2f}" for a, b, c in pairs),
-        power=power_rows(diagnosis.power, diagnosis.model.law, said),
+        power=power_rows(diagnosis.power, diagnosis.model.law, quantities),
         power_picture=_power(diagnosis),
         level=level_words(diagnosis.level),
         rounds=_rounds(diagnosis),
@@ -120,9 +120,9 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
 
 def _effect(diagnosis: Diagnosis, name: str) -> Effect:
     """Return the catalogue entry of an effect, worded for the kind of rig."""
-    page, said = find_effect(name), diagnosis.model.rig.quantities
-    summary = summary_of(page, said) + known_mass(diagnosis.model, name)
-    return replace(page, summary=summary, limits=limits_of(page, said))
+    page, quantities = find_effect(name), diagnosis.model.rig.quantities
+    summary = summary_of(page, quantities) + known_mass(diagnosis.model, name)
+    return replace(page, summary=summary, limits=limits_of(page, quantities))
 
 
 def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[str, ...]]]:
@@ -167,14 +167,14 @@ class Round:
 
 
 def _rounds(diagnosis: Diagnosis) -> list[Round]:
-    found = []
+    rounds = []
     for i, step in enumerate(diagnosis.steps):
         if not step.trials:
             continue
         rows = zip(step.trials, trial_rows(step), strict=True)
         named = any(t.evidence > 0.0 for t in step.trials)
         ax = _wide(ranking_height(step)) if named else None
-        found.append(
+        rounds.append(
             Round(
                 " + ".join([BARE, *step.effects]),
                 svg([ranking(diagnosis, i, ax=ax)], "Evidence of each candidate") if named else "",
@@ -182,7 +182,7 @@ def _rounds(diagnosis: Diagnosis) -> list[Round]:
                 listed(t.effect for t in step.trials if t.reason == CHANCE),
             )
         )
-    return found
+    return rounds
 
 
 def _wide(height: float) -> Axes:

@@ -53,12 +53,12 @@ def before_and_after(
 
     The final model is drawn only if it differs from the base law.
     """
-    said = diagnosis.model.rig.quantities
-    noise_band(ax, diagnosis.before.noise_rms, unit=said.force)
+    quantities = diagnosis.model.rig.quantities
+    noise_band(ax, diagnosis.before.noise_rms, unit=quantities.force)
     changed = bool(diagnosis.model.effects) and diagnosis.after is not diagnosis.before
-    draw_means(ax, pattern, BEFORE, said, "base law" if changed else "")
+    draw_means(ax, pattern, BEFORE, quantities, "base law" if changed else "")
     if changed:
-        draw_means(ax, means_along(diagnosis.after, pattern.axis), MODEL, said, "final")
+        draw_means(ax, means_along(diagnosis.after, pattern.axis), MODEL, quantities, "final")
     if titled:
         legend_on_top(ax)
     else:

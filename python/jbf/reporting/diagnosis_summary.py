@@ -26,8 +26,8 @@ def verdict_line(diagnosis: Diagnosis) -> str:
     """Return the verdict with the effects on which it is based."""
     names = []
     for effect in diagnosis.effects:
-        others = diagnosis.alternatives.get(effect, ())
-        names.append(listed([effect, *others], "or") if others else effect)
+        alternatives = diagnosis.alternatives.get(effect, ())
+        names.append(listed([effect, *alternatives], "or") if alternatives else effect)
     return f"Verdict: {diagnosis.verdict}" + (f" ({', '.join(names)})" if names else "")
 
 
@@ -69,21 +69,23 @@ def _parameters(diagnosis: Diagnosis, room: int) -> list[str]:
     free = {name: p for name, p in fit.parameters.items() if not p.held}
     precise = sorted(free, key=lambda name: -_precision(free[name]))[:room]
     # The parameters of the machine first, then those of the law and of the other effects.
-    own = [n for n in free if n in precise and n.partition(".")[0] in diagnosis.machine]
-    order = [*own, *(name for name in free if name in precise and name not in own)]
-    said = model.rig.quantities
-    rows = parameter_rows(model.law, model.effects, {name: free[name] for name in order}, said)
+    of_machine = [n for n in free if n in precise and n.partition(".")[0] in diagnosis.machine]
+    order = [*of_machine, *(name for name in free if name in precise and name not in of_machine)]
+    quantities = model.rig.quantities
+    rows = parameter_rows(
+        model.law, model.effects, {name: free[name] for name in order}, quantities
+    )
     head = ("Parameters", "value", "standard error", "", "unit")
     cells = [
         (f"  {name}", value, error, share, unit) for name, value, error, share, unit, _ in rows
     ]
-    found = [_cut(line) for line in columns([head, *cells], "<>>><", 0)]
+    rows_text = [_cut(line) for line in columns([head, *cells], "<>>><", 0)]
     groups = {
         "less precise": [name for name in free if name not in order],
         "not determined": [name for name, p in fit.parameters.items() if p.held],
     }
     named = [f"{word}: {', '.join(names)}" for word, names in groups.items() if names]
-    return found + ([_cut(f"  {'; '.join(named)}")] if named else [])
+    return rows_text + ([_cut(f"  {'; '.join(named)}")] if named else [])
 
 
 def _precision(value: ParameterValue) -> float:
@@ -101,9 +103,9 @@ def _findings(diagnosis: Diagnosis) -> list[str]:
         largest = max(findings, key=lambda finding: abs(finding.size))
         # A finding common to several runs names them all, separated by commas.
         runs = dict.fromkeys(r for f in (largest, *findings) for r in f.run.split(", "))
-        others = f" and {count_of(len(runs) - 1, 'other run')}" if len(runs) > 1 else ""
+        other_runs = f" and {count_of(len(runs) - 1, 'other run')}" if len(runs) > 1 else ""
         lead = f"  {kind.replace('_', ' ')}: "
-        place = f" ({next(iter(runs))}{others}; {largest.done})"
+        place = f" ({next(iter(runs))}{other_runs}; {largest.done})"
         lines.append(_cut(lead + _cut(largest.words, WIDEST - len(lead + place)) + place))
     if len(kinds) > MOST_FINDINGS:
         lines.append(f"  and {count_of(len(kinds) - MOST_FINDINGS, 'other kind')} of findings")
@@ -122,8 +124,8 @@ def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
         advice = advice_on(worst.axis, diagnosis.after.campaign)
         paragraphs.append(_paragraph("Next: ", advice.to_do, 2))
     if diagnosis.limitations:
-        first, *others = diagnosis.limitations
-        more = f" (and {len(others)} more)" if others else ""
+        first, *further = diagnosis.limitations
+        more = f" (and {len(further)} more)" if further else ""
         paragraphs.append(_paragraph("Not supported by these runs: ", f"{first}{more}", 2))
     if not all(effect in next_experiment for effect in diagnosis.not_detectable):
         names = ", ".join(diagnosis.not_detectable)
@@ -131,15 +133,19 @@ def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
     return paragraphs
 
 
-def _paragraph(lead: str, text: str, most: int) -> list[str]:
+def _paragraph(lead: str, text: str, line_limit: int) -> list[str]:
     """Wrap a paragraph, and truncate it to a number of lines."""
     lines = hanging(lead, text, 0 if lead else 2)
-    return lines if len(lines) <= most else [*lines[: most - 1], f"{lines[most - 1]} ..."]
+    return (
+        lines
+        if len(lines) <= line_limit
+        else [*lines[: line_limit - 1], f"{lines[line_limit - 1]} ..."]
+    )
 
 
 def _cut(text: str, width: int = WIDEST) -> str:
     """Truncate a text, between words where possible."""
     if len(text) <= width:
         return text
-    kept = text[: max(width - 4, 0)]
-    return f"{kept[: kept.rfind(' ')] if ' ' in kept.strip() else kept} ..."
+    shortened = text[: max(width - 4, 0)]
+    return f"{shortened[: shortened.rfind(' ')] if ' ' in shortened.strip() else shortened} ..."

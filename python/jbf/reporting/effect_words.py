@@ -10,45 +10,45 @@ from jbf.reporting.paragraphs import hanging
 from jbf.reporting.words import number, value_and_error
 
 
-def summary_of(effect: Effect, said: Quantities) -> str:
+def summary_of(effect: Effect, terms: Quantities) -> str:
     """Describe an effect in one clause, worded for the kind of machine."""
-    if said.motion == "bearing":
+    if terms.motion == "bearing":
         return effect.summary
-    inertia = "inertia" if said.motion == "rotary" else "mass"
-    own = {
-        "sensor_offset": f"offset of {said.sensor}, or a constant {said.noun} "
+    inertia = "inertia" if terms.motion == "rotary" else "mass"
+    descriptions = {
+        "sensor_offset": f"offset of {terms.sensor}, or a constant {terms.noun} "
         "(gravity on an inclined axis, a spring, a counterweight)",
-        "sensor_drift": f"zero of {said.sensor} drifts linearly during a run",
-        "sensor_lag": f"{said.sensor} or its filter follows the {said.noun} with a time lag",
-        "sensor_hysteresis": f"{said.sensor} reads less while the {said.noun} rises than while it "
-        "falls: play or friction in the force path",
+        "sensor_drift": f"zero of {terms.sensor} drifts linearly during a run",
+        "sensor_lag": f"{terms.sensor} or its filter follows the {terms.noun} with a time lag",
+        "sensor_hysteresis": f"{terms.sensor} reads less while the {terms.noun} rises than while "
+        "it falls: play or friction in the force path",
         "sensor_nonlinearity": (
-            f"nonlinear {said.sensor}: it reads a large {said.noun} too large or too small"
+            f"nonlinear {terms.sensor}: it reads a large {terms.noun} too large or too small"
         ),
         "inertia": (
-            f"{inertia} that the drive accelerates, contained in the reading of {said.sensor}"
+            f"{inertia} that the drive accelerates, contained in the reading of {terms.sensor}"
         ),
         "drive_compliance": "elasticity of a belt, coupling or shaft between the position sensor "
         "and the load",
-        "cogging": f"{said.noun} of the motor that is periodic in the position, also at rest",
+        "cogging": f"{terms.noun} of the motor that is periodic in the position, also at rest",
     }
-    return own.get(effect.name) or _here(effect.summary, said)
+    return descriptions.get(effect.name) or _here(effect.summary, terms)
 
 
-def limits_of(effect: Effect, said: Quantities) -> str:
+def limits_of(effect: Effect, terms: Quantities) -> str:
     """Describe the limits of an effect, worded for the kind of machine."""
-    if said.motion == "bearing":
+    if terms.motion == "bearing":
         return effect.limits
-    return _here(effect.limits, said)
+    return _here(effect.limits, terms)
 
 
-def _here(words: str, said: Quantities) -> str:
+def _here(words: str, terms: Quantities) -> str:
     """Replace the terms of a bearing rig in a catalogue text by those of the machine."""
-    for of_bearing, here in (
+    for of_bearing, of_machine in (
         ("the journal", "the load"),
         ("which gamma represents", "which the viscous friction of the law represents"),
     ):
-        words = words.replace(of_bearing, here)
+        words = words.replace(of_bearing, of_machine)
     return words
 
 
@@ -56,11 +56,11 @@ def effect_lines(model: Model) -> list[str]:
     """Describe each effect of a model of a drive; empty for a rig without [drive]."""
     if model.rig.drive is None or not model.effects:
         return []
-    said = model.rig.quantities
+    quantities = model.rig.quantities
     lines = ["", "Meaning of the effects"]
     for name in model.effects:
         lines += hanging(
-            f"{name}: ", summary_of(find_effect(name), said) + known_mass(model, name), 4
+            f"{name}: ", summary_of(find_effect(name), quantities) + known_mass(model, name), 4
         )
     return lines
 
@@ -73,11 +73,11 @@ def known_mass(model: Model, effect: str) -> str:
     drive = model.rig.drive
     if effect != "inertia" or drive is None or drive.friction == "voltage":
         return ""  # an inertia in V s^2/rad has no counterpart in kg m^2
-    known = drive.inertia_kg_m2 if drive.motion == "rotary" else drive.mass_kg
-    if known is None:
+    rig_value = drive.inertia_kg_m2 if drive.motion == "rotary" else drive.mass_kg
+    if rig_value is None:
         return ""
     name = "inertia.m_e"
     unit = units_of(model.law, model.effects, model.rig.quantities)[name]
     value, error = value_and_error(model.parameters[name])
-    found = f"{value} +/- {error}" if error else value
-    return f"; {found} {unit}, rig file: {number(known, 4)}"
+    estimate = f"{value} +/- {error}" if error else value
+    return f"; {estimate} {unit}, rig file: {number(rig_value, 4)}"

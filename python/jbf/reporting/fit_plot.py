@@ -33,10 +33,10 @@ def plot_fit(fit: Fit, axes: Sequence[Axes] | None = None) -> list[Axes]:
     return [left, right]
 
 
-def plot_bootstrap(found: Bootstrap, axes: Sequence[Axes] | None = None) -> list[Axes]:
+def plot_bootstrap(bootstrap: Bootstrap, axes: Sequence[Axes] | None = None) -> list[Axes]:
     """Plot the parameters with their intervals and the bootstrap estimates, on one axes."""
-    (ax,) = axes_or_new(axes, 1, 1, (7.0, height(found.values)))
-    parameters(found.fit, answers=found.values, ax=ax)
+    (ax,) = axes_or_new(axes, 1, 1, (7.0, height(bootstrap.values)))
+    parameters(bootstrap.fit, answers=bootstrap.values, ax=ax)
     ax.set_title("Parameters with estimates from repeated fits", loc="left", fontsize="medium")
     return [ax]
 

@@ -91,12 +91,12 @@ def fit_report(fit: Fit) -> str:
     return "\n".join([*lines, *effect_lines(model), *finding_lines(fit.findings)])
 
 
-def bootstrap_report(found: Bootstrap) -> str:
+def bootstrap_report(bootstrap: Bootstrap) -> str:
     """Format the fit with bootstrap standard errors."""
-    repeats = len(next(iter(found.values.values())))
+    repeats = len(next(iter(bootstrap.values.values())))
     return (
         f"Standard errors from {repeats} fits to simulated records of the same runs\n"
-        + fit_report(found.fit)
+        + fit_report(bootstrap.fit)
     )
 
 

@@ -71,10 +71,10 @@ def failure_cards(diagnosis: Diagnosis) -> list[Card]:
     if not diagnosis.failures:
         return []
     try:
-        made = explained_residual(diagnosis.before, diagnosis.after)
+        contributions = explained_residual(diagnosis.before, diagnosis.after)
     except InputError:
-        made = {}
-    return [_failed(diagnosis, failure, made) for failure in diagnosis.failures]
+        contributions = {}
+    return [_failed(diagnosis, failure, contributions) for failure in diagnosis.failures]
 
 
 def remainder_cards(diagnosis: Diagnosis) -> list[Card]:
@@ -82,14 +82,16 @@ def remainder_cards(diagnosis: Diagnosis) -> list[Card]:
     return [_remaining(diagnosis.after, remainder) for remainder in diagnosis.residual_structure]
 
 
-def _failed(diagnosis: Diagnosis, failure: Failure, made: Mapping[str, Sequence[Array]]) -> Card:
+def _failed(
+    diagnosis: Diagnosis, failure: Failure, contributions: Mapping[str, Sequence[Array]]
+) -> Card:
     ax = one_axes(None, SIZE)
     before_and_after(diagnosis, failure, ax, titled=False)
-    left = means_along(diagnosis.after, failure.axis)
+    remaining = means_along(diagnosis.after, failure.axis)
     unit = diagnosis.model.rig.quantities.force
-    first, now = _size(failure), _size(left)
+    first, now = _size(failure), _size(remaining)
     advice = advice_on(failure.axis, diagnosis.after.campaign)
-    shares = _shares(diagnosis.before, failure, made)
+    shares = _shares(diagnosis.before, failure, contributions)
     causes = listed(f"{name} ({100.0 * s:.0f} % of it)" for name, s in shares.items())
     fell = f"the means fall from {number(first, 2)} to {number(now, 2)} {unit}"
     fails = any(f.axis == failure.axis for f in diagnosis.after.failures)
@@ -125,9 +127,9 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
     elif remainder.axis == "run" and len(after.runs) == 1:
         residual_in_time(after, 0, ax=ax)
     elif remainder.axis in SEEN_ALONG or any(remainder.axis == f.axis for f in after.failures):
-        said = after.model.rig.quantities
-        noise_band(ax, after.noise_rms, unit=said.force)
-        draw_means(ax, means_along(after, remainder.axis), MODEL, said)
+        quantities = after.model.rig.quantities
+        noise_band(ax, after.noise_rms, unit=quantities.force)
+        draw_means(ax, means_along(after, remainder.axis), MODEL, quantities)
         ax.set_title("", loc="left")
         legend_above(ax, 2)
     else:
@@ -150,7 +152,7 @@ def _size(failure: Failure) -> float:
 
 
 def _shares(
-    before: Comparison, failure: Failure, made: Mapping[str, Sequence[Array]]
+    before: Comparison, failure: Failure, contributions: Mapping[str, Sequence[Array]]
 ) -> dict[str, float]:
     """Estimate the share of a pattern that each effect explains, in descending order.
 
@@ -158,17 +160,17 @@ def _shares(
     """
     u_tr = transition_speed(before.model.law, before.model.values.tolist())
     axes = [a for a in all_axes(before.campaign, u_tr) if a.axis == failure.axis]
-    whole = float(np.sum(failure.counts * failure.means_n**2))
-    if not axes or whole <= 0.0 or len(axes[0].bins) != len(failure.bins):
+    sum_of_squares = float(np.sum(failure.counts * failure.means_n**2))
+    if not axes or sum_of_squares <= 0.0 or len(axes[0].bins) != len(failure.bins):
         return {}
     shares = {}
-    for name, parts in made.items():
+    for name, parts in contributions.items():
         means, counts = bin_means(axes[0], before.samples, list(parts))
-        shares[name] = float(np.sum(counts * means * failure.means_n)) / whole
-    kept = {name: s for name, s in shares.items() if s >= LEAST_SHARE}
+        shares[name] = float(np.sum(counts * means * failure.means_n)) / sum_of_squares
+    largest = {name: s for name, s in shares.items() if s >= LEAST_SHARE}
     # Effects that partly cancel sum to more than the whole pattern: normalize the shares.
-    most = max(sum(kept.values()), 1.0)
-    return {name: s / most for name, s in sorted(kept.items(), key=lambda item: -item[1])}
+    total = max(sum(largest.values()), 1.0)
+    return {name: s / total for name, s in sorted(largest.items(), key=lambda item: -item[1])}
 
 
 def _sentence(words: str) -> str:

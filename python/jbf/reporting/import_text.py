@@ -24,15 +24,15 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
     kept
         True if a map from an earlier inspection exists and was not overwritten.
     """
-    held = []
+    contents = []
     for table in guess.tables:
         name = f" [{table.name}]" if table.name else ""
         rows = "" if table.rows is None else f", {count_of(table.rows, 'row')}"
         rate = "" if table.rate_hz is None else f", {table.rate_hz:g} Hz stated"
-        held.append(f"{count_of(len(table.columns), 'column')}{name}{rows}{rate}")
+        contents.append(f"{count_of(len(table.columns), 'column')}{name}{rows}{rate}")
     further = ", ".join(path.name for path in guess.beside)
     names = f"{guess.path.name} with {further}" if further else guess.path.name
-    lines = [f"{names}: {guess.format}, {'; '.join(held)}"]
+    lines = [f"{names}: {guess.format}, {'; '.join(contents)}"]
     rows_ = [(e.key, e.expression, "" if e.sure else "?", f"({e.why})") for e in guess.entries]
     if rows_:
         lines += ["", "Columns found:", *columns(rows_, "<<<<")]
@@ -64,12 +64,12 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
     return "\n".join(lines)
 
 
-def import_report(found: Import) -> str:
+def import_report(campaign: Import) -> str:
     """List the runs, their columns, the clock alignments, and the excluded pieces."""
-    runs = [piece for piece in found.pieces if piece.keep]
-    out = [piece for piece in found.pieces if not piece.keep]
+    runs = [piece for piece in campaign.pieces if piece.keep]
+    out = [piece for piece in campaign.pieces if not piece.keep]
     seconds = sum(piece.to_s - piece.from_s for piece in runs)
-    files = found.ledger["files"]
+    files = campaign.ledger["files"]
     steady = any(channel["clock"] == STEADY for channel in files[0]["channels"])
     length = "steady states" if steady else f"{seconds:.4g} s in total"
     lines = [f"{count_of(len(runs), 'run')} of {length}, from {_file_count(files)}:"]
@@ -83,9 +83,9 @@ def import_report(found: Import) -> str:
     if len(runs) > _MOST:
         lines.append(f"  and {len(runs) - _MOST} more")
     lines += ["", "Columns:", *columns(channel_rows(files[:1]), "<<<<<")]
-    clocks = clock_lines(found.ledger)
+    clocks = clock_lines(campaign.ledger)
     lines += ["", "Clocks:", *clocks] if clocks else []
-    lines += skipped_row_lines(found.ledger)
+    lines += skipped_row_lines(campaign.ledger)
     if out:
         lines += ["", "Left out:"]
         lines += columns(
@@ -102,7 +102,7 @@ def import_report(found: Import) -> str:
 
 def channel_rows(files: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str, str, str]]:
     """Return one row per channel: name, expression, unit conversion, rate, clock."""
-    found: dict[tuple[str, str, str, str, str], None] = {}
+    channels: dict[tuple[str, str, str, str, str], None] = {}
     for page in files:
         for channel in page["channels"]:
             if channel["channel"] == "cut":
@@ -110,9 +110,9 @@ def channel_rows(files: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str
             read = ", ".join(r["unit"] or "no unit" for r in channel["read"])
             rate = "" if channel["rate_hz"] is None else f"{channel['rate_hz']:g} Hz"
             row = (channel["channel"], channel["made_of"], f"{read} -> {channel['unit']}")
-            whole = (*row, rate, f"clock: {channel['clock']}")
-            found[whole] = None
-    return list(found)
+            channel_row = (*row, rate, f"clock: {channel['clock']}")
+            channels[channel_row] = None
+    return list(channels)
 
 
 def _file_count(files: Sequence[Mapping[str, Any]]) -> str:
@@ -135,29 +135,30 @@ def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
 
 def skipped_row_lines(ledger: Mapping[str, Any]) -> list[str]:
     """List the excluded rows of each file, and the notes on the file."""
-    said = []
+    notes = []
     for page in ledger["files"]:
         for dropped in page["dropped"]:
             first = f", the first in row {dropped['first_row']}" if "first_row" in dropped else ""
             rows = count_of(dropped["rows"], "row")
-            of = dropped.get("file", page["file"])
-            said.append(f"{of}: {rows} left out: {dropped['why']}{first}")
-        said += [f"{page['file']}: {note}" for note in page["notes"]]
-    return ["", "Notes:", *[line for s in said for line in hanging("- ", s)]] if said else []
+            file = dropped.get("file", page["file"])
+            notes.append(f"{file}: {rows} left out: {dropped['why']}{first}")
+        notes += [f"{page['file']}: {note}" for note in page["notes"]]
+    return ["", "Notes:", *[line for s in notes for line in hanging("- ", s)]] if notes else []
 
 
-def short_import(found: Import) -> str:
+def short_import(campaign: Import) -> str:
     """Summarize the import in one line."""
-    runs = sum(piece.keep for piece in found.pieces)
+    runs = sum(piece.keep for piece in campaign.pieces)
     return (
-        f"Import({count_of(runs, 'run')} from {_file_count(found.ledger['files'])}: {found.folder})"
+        f"Import({count_of(runs, 'run')} from {_file_count(campaign.ledger['files'])}: "
+        f"{campaign.folder})"
     )
 
 
-def import_columns(found: Import) -> dict[str, list[Any]]:
+def import_columns(campaign: Import) -> dict[str, list[Any]]:
     """Return one row per piece."""
     names = ("name", "file", "from_s", "to_s", "keep", "why")
-    return {name: [getattr(piece, name) for piece in found.pieces] for name in names}
+    return {name: [getattr(piece, name) for piece in campaign.pieces] for name in names}
 
 
 def provenance_rows(ledgers: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str]]:
@@ -166,13 +167,13 @@ def provenance_rows(ledgers: Iterable[Mapping[str, Any]]) -> list[tuple[str, str
     for ledger in ledgers:
         for page in ledger["files"]:
             channels = "; ".join(
-                f"{c} = {made} ({unit}{', ' + rate if rate else ''})"
-                for c, made, unit, rate, _ in channel_rows([page])
+                f"{c} = {expression} ({unit}{', ' + rate if rate else ''})"
+                for c, expression, unit, rate, _ in channel_rows([page])
             )
             dropped = "".join(f"; {d['rows']} rows left out: {d['why']}" for d in page["dropped"])
             out = page["left_out"]
-            left = f"; {count_of(len(out), 'piece')} left out" if out else ""
-            rows.append((page["file"], page["sha256"][:12], channels + dropped + left))
+            omitted = f"; {count_of(len(out), 'piece')} left out" if out else ""
+            rows.append((page["file"], page["sha256"][:12], channels + dropped + omitted))
             for further in page.get("beside", ()):
                 alignment = further["alignment"]
                 how = "" if alignment is None else alignment["text"]

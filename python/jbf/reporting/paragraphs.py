@@ -29,6 +29,6 @@ def columns(rows: Sequence[Sequence[str]], align: str, indent: int = 2) -> list[
 def hanging(lead: str, text: str, indent: int = 2) -> list[str]:
     """Wrap a paragraph so that continuation lines are indented by the width of its lead."""
     head = " " * indent + lead
-    kept = _TOGETHER.sub(lambda found: found[0].replace(" ", "\0"), text)
-    wrapped = textwrap.wrap(kept, WIDTH, initial_indent=head, subsequent_indent=" " * len(head))
+    unbroken = _TOGETHER.sub(lambda match: match[0].replace(" ", "\0"), text)
+    wrapped = textwrap.wrap(unbroken, WIDTH, initial_indent=head, subsequent_indent=" " * len(head))
     return [line.replace("\0", " ") for line in wrapped] or [head.rstrip()]

@@ -37,26 +37,26 @@ def power_lines(power: Iterable[Power], model: Model) -> list[str]:
 
 def level_words(level: Level) -> str:
     """Describe the false-alarm rate and the log-likelihood gain that a detection requires."""
-    said = (
+    text = (
         f"false-alarm rate at most {100.0 * level.false_alarm_rate:.3g} %: each of "
         f"{count_of(level.candidates, 'candidate')} must gain {number(level.critical)} in twice "
         "the log likelihood"
     )
     if level.blocks:
-        said += f" (wild bootstrap of {level.blocks} blocks of the residual)"
+        text += f" (wild bootstrap of {level.blocks} blocks of the residual)"
     allowed = level.white_noise_threshold + level.artefact_margin
     if level.artefact_margin:
-        said += f"; at least {number(allowed)} with the margin for recording artefacts"
+        text += f"; at least {number(allowed)} with the margin for recording artefacts"
     if level.min_gain > max(level.critical, allowed):
-        said += f"; the minimum effect size corresponds to a gain of {number(level.min_gain)}"
+        text += f"; the minimum effect size corresponds to a gain of {number(level.min_gain)}"
     if level.decoys:
         below = 100.0 * rate_below(level.decoys_named, level.decoys)
-        told = f"{below:.2g}" if below < 99.5 else "100"
-        said += (
+        rate = f"{below:.2g}" if below < 99.5 else "100"
+        text += (
             f"; in {level.decoys} simulations with decoys (candidates displaced along these runs) "
-            f"an effect was named {level.decoys_named} times (false-alarm rate below {told} %)"
+            f"an effect was named {level.decoys_named} times (false-alarm rate below {rate} %)"
         )
-    return said
+    return text
 
 
 def planned_report(planned: PlannedPower) -> str:
@@ -114,8 +114,8 @@ def short_plan(plan: Plan) -> str:
 
 def short_power(planned: PlannedPower) -> str:
     """Summarize the power of planned runs in one line."""
-    found = sum(p.detectable_80 is not None for p in planned.power)
+    detectable = sum(p.detectable_80 is not None for p in planned.power)
     return (
-        f"PlannedPower: {count_of(len(planned.runs), 'run')}, {found} of "
+        f"PlannedPower: {count_of(len(planned.runs), 'run')}, {detectable} of "
         f"{count_of(len(planned.power), 'effect')} detectable"
     )

@@ -24,20 +24,20 @@ A line contains at most two such lists.
 
 def first_of(items: Iterable[str], join: str = ", ") -> str:
     """Join items, and replace those beyond the maximum length by an ellipsis."""
-    kept = list(items)
-    whole = join.join(kept)
-    while len(whole) > LONGEST and kept:
-        kept.pop()
-        whole = join.join([*kept, "..."])
-    return whole
+    shown = list(items)
+    joined = join.join(shown)
+    while len(joined) > LONGEST and shown:
+        shown.pop()
+        joined = join.join([*shown, "..."])
+    return joined
 
 
 def _values(parameters: Mapping[str, ParameterValue]) -> str:
-    def one(name: str, p: ParameterValue) -> str:
+    def described(name: str, p: ParameterValue) -> str:
         value, error = value_and_error(p)
         return f"{name} {value} +/- {error}" if error else f"{name} {value}"
 
-    return first_of(one(name, p) for name, p in parameters.items())
+    return first_of(described(name, p) for name, p in parameters.items())
 
 
 def _fitted(fit: Fit) -> str:
@@ -59,10 +59,10 @@ def short_fit(fit: Fit) -> str:
     )
 
 
-def short_bootstrap(found: Bootstrap) -> str:
+def short_bootstrap(bootstrap: Bootstrap) -> str:
     """Summarize the number of repeated fits, and the parameters with bootstrap standard errors."""
-    repeats = len(next(iter(found.values.values())))
-    return f"Bootstrap({count_of(repeats, 'fit')};\n    {_fitted(found.fit)})"
+    repeats = len(next(iter(bootstrap.values.values())))
+    return f"Bootstrap({count_of(repeats, 'fit')};\n    {_fitted(bootstrap.fit)})"
 
 
 def short_trajectory_fit(fit: TrajectoryFit) -> str:

@@ -50,17 +50,17 @@ def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> str
 
 def fit_table(fit: Fit) -> str:
     """Tabulate the parameters with standard errors."""
-    said = fit.model.rig.quantities
+    quantities = fit.model.rig.quantities
     search = "" if fit.converged else ", not converged"
-    title = f"Fit: {law_and_effects(fit.model)}; RMS {number(fit.rms)} {said.force}{search}"
-    rows = parameter_rows(fit.model.law, fit.model.effects, fit.parameters, said)
+    title = f"Fit: {law_and_effects(fit.model)}; RMS {number(fit.rms)} {quantities.force}{search}"
+    rows = parameter_rows(fit.model.law, fit.model.effects, fit.parameters, quantities)
     return table(title, PARAMETER_HEAD, rows)
 
 
-def bootstrap_table(found: Bootstrap) -> str:
+def bootstrap_table(bootstrap: Bootstrap) -> str:
     """Tabulate the parameters with bootstrap standard errors."""
-    model = found.fit.model
-    rows = parameter_rows(model.law, model.effects, found.fit.parameters, model.rig.quantities)
+    model = bootstrap.fit.model
+    rows = parameter_rows(model.law, model.effects, bootstrap.fit.parameters, model.rig.quantities)
     return table("Errors from fits of simulated records", PARAMETER_HEAD, rows)
 
 
@@ -102,8 +102,8 @@ def diagnosis_table(diagnosis: Diagnosis) -> str:
 
 def model_table(model: Model) -> str:
     """Tabulate the parameters, titled with the law and the effects."""
-    said = model.rig.quantities
-    rows = parameter_rows(model.law, model.effects, model.parameters, said)
+    quantities = model.rig.quantities
+    rows = parameter_rows(model.law, model.effects, model.parameters, quantities)
     return table(f"Model: {law_and_effects(model)}", PARAMETER_HEAD, rows)
 
 
@@ -130,16 +130,16 @@ def plan_table(plan: Plan) -> str:
     return table(short_plan(plan), ("run", "motion"), rows)
 
 
-def check_table(found: Check) -> str:
+def check_table(result: Check) -> str:
     """Tabulate the simulated success rates of the diagnosis."""
-    lines = [(line.strip(),) for line in check_report(found).splitlines() if line.strip()]
+    lines = [(line.strip(),) for line in check_report(result).splitlines() if line.strip()]
     return table(lines[0][0] if lines else "Check", ("",), lines[1:])
 
 
-def import_table(found: Import) -> str:
+def import_table(campaign: Import) -> str:
     """Tabulate the runs and the excluded pieces."""
     rows = [
         (p.name or f"left out: {p.why}", p.file, f"{p.from_s:.3f}", f"{p.to_s:.3f}")
-        for p in found.pieces
+        for p in campaign.pieces
     ]
-    return table(f"Import: {found.folder}", ("run", "file", "from (s)", "to (s)"), rows)
+    return table(f"Import: {campaign.folder}", ("run", "file", "from (s)", "to (s)"), rows)

@@ -37,7 +37,7 @@ def svg(axes: Sequence[Axes], alt: str) -> Markup:
         )
     text = buffer.getvalue()
     text = text[text.index("<svg") :].strip()
-    text = _COLOUR.sub(lambda found: f"var(--{_NAMED[found[1]]})", text)
+    text = _COLOUR.sub(lambda match: f"var(--{_NAMED[match[1]]})", text)
     text = _FACE.sub(r"\1var(--face)", text)
     # The page sets the width.
     names = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'

@@ -52,13 +52,13 @@ def parameter_rows(
 def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
     """Return pairs of parameters correlated above 0.3 in absolute value, strongest first."""
     names = [name for name, p in fit.parameters.items() if not p.held]
-    found = [
+    pairs = [
         (names[i], names[j], float(fit.correlations[i, j]))
         for i in range(len(names))
         for j in range(i + 1, len(names))
         if np.isfinite(fit.correlations[i, j]) and abs(fit.correlations[i, j]) > LEAST_CORRELATION
     ]
-    return sorted(found, key=lambda pair: -abs(pair[2]))
+    return sorted(pairs, key=lambda pair: -abs(pair[2]))
 
 
 def ratio(error_n: float, noise_rms: float) -> str:
@@ -114,20 +114,23 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
     for finding in findings:
         kinds.setdefault(finding.kind, []).append(finding)
     rows = []
-    for kind, found in kinds.items():
+    for kind, of_kind in kinds.items():
         runs: dict[str, list[str]] = {}
-        for f in found:
+        for f in of_kind:
             runs.setdefault(f.words, []).append(f.run)
-        said = [f"{words}, in {_named(those)}" for words, those in runs.items()]
+        descriptions = [f"{words}, in {_named(those)}" for words, those in runs.items()]
         rest = sum(map(len, list(runs.values())[MOST_RUNS_NAMED:]))
         if rest:
-            said = [*said[:MOST_RUNS_NAMED], f"and in {count_of(rest, 'other run')}"]
-        rows.append((kind.replace("_", " "), f"{'; '.join(said)} ({found[0].done})"))
+            descriptions = [
+                *descriptions[:MOST_RUNS_NAMED],
+                f"and in {count_of(rest, 'other run')}",
+            ]
+        rows.append((kind.replace("_", " "), f"{'; '.join(descriptions)} ({of_kind[0].done})"))
     return rows
 
 
 def power_rows(
-    power: Iterable[Power], law: str, said: Quantities
+    power: Iterable[Power], law: str, quantities: Quantities
 ) -> list[tuple[str, str, str, str, str]]:
     """Return the detection limits of each effect.
 
@@ -137,24 +140,32 @@ def power_rows(
     """
     rows = []
     for p in power:
-        unit = units_of(law, (p.effect,), said)[f"{p.effect}.{p.parameter}"]
+        unit = units_of(law, (p.effect,), quantities)[f"{p.effect}.{p.parameter}"]
         share = "" if p.share_80 is None or p.always else f"{100.0 * p.share_80:.2g} %"
-        found = (
+        detectable = (
             "never"
             if p.detectable_80 is None
             else f"{p.parameter} {number(p.detectable_80)} {unit}".strip()
         )
-        found = "any size" if p.always else found
-        alone = (
+        detectable = "any size" if p.always else detectable
+        distinguishable = (
             ""
             if p.detectable_80 is None
             else "never"
             if p.distinguishable_80 is None
             else number(p.distinguishable_80)
         )
-        if p.detectable_80 is not None and alone == number(p.detectable_80):
-            alone = "same"
-        rows.append((p.effect, found, share, alone, ", ".join(p.confounded_with[:MOST_RUNS_NAMED])))
+        if p.detectable_80 is not None and distinguishable == number(p.detectable_80):
+            distinguishable = "same"
+        rows.append(
+            (
+                p.effect,
+                detectable,
+                share,
+                distinguishable,
+                ", ".join(p.confounded_with[:MOST_RUNS_NAMED]),
+            )
+        )
     return rows
 
 

@@ -39,11 +39,11 @@ def fit_page(fit: Fit) -> str:
     return _page("Fit", fit_report(fit), plot_fit(fit), alt)
 
 
-def bootstrap_page(found: Bootstrap) -> str:
+def bootstrap_page(bootstrap: Bootstrap) -> str:
     """Return the HTML text of a bootstrap's page."""
     alt = "Parameters with estimates from repeated fits"
-    words = bootstrap_report(found)
-    return _page("Fit with bootstrap standard errors", words, plot_bootstrap(found), alt)
+    words = bootstrap_report(bootstrap)
+    return _page("Fit with bootstrap standard errors", words, plot_bootstrap(bootstrap), alt)
 
 
 def trajectory_page(fit: TrajectoryFit) -> str:

@@ -95,16 +95,16 @@ def verdict_sentence(diagnosis: Diagnosis, place: str = " below") -> str:
 
 def headline_and_rest(diagnosis: Diagnosis) -> tuple[str, str]:
     """Split the verdict into a headline and the remaining sentences."""
-    whole = verdict_sentence(diagnosis)
+    verdict = verdict_sentence(diagnosis)
     if diagnosis.verdict == "unexplained":
         if diagnosis.effects:
-            rest = whole.partition(". ")[2]
+            rest = verdict.partition(". ")[2]
             return f"Missing: {listed(diagnosis.effects)}. {_STRUCTURE}.", rest
-        return f"{_STRUCTURE}.", whole
+        return f"{_STRUCTURE}.", verdict
     if diagnosis.verdict == "adequate":
-        return "Nothing is missing.", whole
-    first, stop, rest = whole.partition(". ")
-    return f"{first}." if stop else whole, rest
+        return "Nothing is missing.", verdict
+    first, stop, rest = verdict.partition(". ")
+    return f"{first}." if stop else verdict, rest
 
 
 def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
@@ -114,31 +114,33 @@ def _unconfirmed_sentence(diagnosis: Diagnosis) -> str:
     """
     if diagnosis.verdict not in ("adequate", "missing"):
         return ""
-    asked = [t for t in diagnosis.steps[-1].trials if t.outcome == "rejected" and t.evidence > 0.0]
-    if not asked or any(t.outcome == "added" for t in diagnosis.steps[-1].trials):
+    unconfirmed = [
+        t for t in diagnosis.steps[-1].trials if t.outcome == "rejected" and t.evidence > 0.0
+    ]
+    if not unconfirmed or any(t.outcome == "added" for t in diagnosis.steps[-1].trials):
         return ""
-    names = listed(t.effect for t in asked)
+    names = listed(t.effect for t in unconfirmed)
     return f" Improves the fit, but held-out runs do not confirm it, so it is not named: {names}."
 
 
 def _offset_sentence(diagnosis: Diagnosis) -> str:
     """Name the effects that fit as well as a drive's offset; empty if none does."""
-    others = [
-        other
+    alternatives = [
+        alternative
         for name in diagnosis.machine
-        for other in diagnosis.alternatives.get(name, ())
+        for alternative in diagnosis.alternatives.get(name, ())
         if name == "sensor_offset"
     ]
-    if not others:
+    if not alternatives:
         return ""
-    return f" In these runs the offset cannot be distinguished from {listed(others, 'or')}."
+    return f" In these runs the offset cannot be distinguished from {listed(alternatives, 'or')}."
 
 
 def law_sentence(diagnosis: Diagnosis) -> str:
     """Name the law selected from the data, or another law that predicts with fewer terms."""
     if diagnosis.laws:
-        first, *others = diagnosis.laws
-        tied = [other.law for other in others if other.tied]
+        first, *other_laws = diagnosis.laws
+        tied = [other.law for other in other_laws if other.tied]
         words = f" Law selected from the data: {first.law}"
         if tied:
             return f"{words}, the simplest of those that predict equally well ({listed(tied)} too)."
@@ -146,10 +148,10 @@ def law_sentence(diagnosis: Diagnosis) -> str:
     other = diagnosis.simpler_law
     if other is None:
         return ""
-    here, unit = diagnosis.steps[-1].held_out_rms, diagnosis.model.rig.quantities.force
+    held_out_rms, unit = diagnosis.steps[-1].held_out_rms, diagnosis.model.rig.quantities.force
     return (
         f" The law {other.law} without further friction effects predicts held-out runs within "
-        f"{number(other.held_out_rms)} {unit} (the model above: {number(here)} {unit}); "
+        f"{number(other.held_out_rms)} {unit} (the model above: {number(held_out_rms)} {unit}); "
         "--law auto compares all laws."
     )
 
@@ -174,23 +176,23 @@ def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
     first, last = diagnosis.steps[0], diagnosis.steps[-1]
     unit = diagnosis.model.rig.quantities.force
     held_out_n = last.held_out_rms
-    reached = f"{number(held_out_n)} {unit}, {against_noise(held_out_n, last.noise_rms, unit)}"
+    final_error = f"{number(held_out_n)} {unit}, {against_noise(held_out_n, last.noise_rms, unit)}"
     added = listed(diagnosis.effects)
-    fall = f"the held-out error falls from {number(first.held_out_rms)} {unit} to {reached}"
+    fall = f"the held-out error falls from {number(first.held_out_rms)} {unit} to {final_error}"
     if diagnosis.verdict == "adequate":
         law = f"the {diagnosis.model.law} law without effects"
         if diagnosis.machine:
             terms = listed(diagnosis.machine)
             law = f"the {diagnosis.model.law} law with {terms}"
         held_out = "runs" if len(diagnosis.before.campaign.prepared) > 1 else "parts of the run"
-        return f"Nothing is missing: {law} predicts held-out {held_out} within {reached}."
+        return f"Nothing is missing: {law} predicts held-out {held_out} within {final_error}."
     if diagnosis.verdict == "missing":
         return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}."
     if diagnosis.verdict == "ambiguous":
         ties = "; ".join(
-            f"{listed(_weighed(diagnosis, (effect, *others)), 'or')}"
-            for effect, others in diagnosis.alternatives.items()
-            if others and effect in diagnosis.effects
+            f"{listed(_weighed(diagnosis, (effect, *alternatives)), 'or')}"
+            for effect, alternatives in diagnosis.alternatives.items()
+            if alternatives and effect in diagnosis.effects
         )
         return (
             f"An effect is missing, but these runs cannot tell which: {ties}. "
@@ -199,7 +201,7 @@ def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
     structure = f"{_STRUCTURE}{_worst(diagnosis.residual_structure, place)}."
     if diagnosis.effects:
         return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}. {structure}"
-    return f"{structure} The held-out error is {reached}."
+    return f"{structure} The held-out error is {final_error}."
 
 
 def _worst(remains: Sequence[Remainder], place: str) -> str:
@@ -214,11 +216,11 @@ def _confounders_sentence(names: tuple[str, ...]) -> str:
     """Name effects in the model that the verdict omits, and the reason; empty for an empty list."""
     if not names:
         return ""
-    one = len(names) == 1
+    lone = len(names) == 1
     return (
-        f" The model also contains {listed(names)}, which {'improves' if one else 'improve'} the "
-        f"held-out prediction but {'is' if one else 'are'} not named, because the runs disagree on "
-        f"{'its' if one else 'their'} parameters."
+        f" The model also contains {listed(names)}, which {'improves' if lone else 'improve'} the "
+        f"held-out prediction but {'is' if lone else 'are'} not named, because the runs disagree "
+        f"on {'its' if lone else 'their'} parameters."
     )
 
 

@@ -37,8 +37,8 @@ def _span(parameters: Parameters) -> tuple[float | None, float | None]:
     return first, last
 
 
-def _pixels(parameters: Parameters, key: str = "pixels", usual: int = 1000) -> int:
-    return min(max(int(parameters.get(key, usual)), 10), MOST_PIXELS)
+def _pixels(parameters: Parameters, key: str = "pixels", default: int = 1000) -> int:
+    return min(max(int(parameters.get(key, default)), 10), MOST_PIXELS)
 
 
 def state(session: Session, parameters: Parameters) -> Any:
@@ -103,9 +103,11 @@ def open_campaign(session: Session, parameters: Parameters) -> Any:
 def demo(session: Session, parameters: Parameters) -> Any:
     """Open the demo data; copy them into the folder if `jbf demo` has not written them there."""
     with as_file(files("jbf") / "data" / "demo" / "hidden") as shipped:
-        there = [name for name in DEMO_PLACES if _holds(session.folder.root / name, shipped)]
-        where = there[0] if there else DEMO_PLACES[-1]
-        if not there:
+        shipped_copies = [
+            name for name in DEMO_PLACES if _holds(session.folder.root / name, shipped)
+        ]
+        where = shipped_copies[0] if shipped_copies else DEMO_PLACES[-1]
+        if not shipped_copies:
             shutil.copytree(shipped, session.folder.root / where, dirs_exist_ok=True)
     runs = sorted(path.name for path in (session.folder.root / where).glob("*.csv"))
     session.open(f"{where}/rig.toml", [f"{where}/{name}" for name in runs])
@@ -127,16 +129,18 @@ def look(session: Session, parameters: Parameters) -> Any:
 def try_map(session: Session, parameters: Parameters) -> Any:
     """Return the runs that a map yields from files."""
     form = parameters.get("form")
-    told = None if form is None else dict(form)
-    return importer.try_map(session.folder, _files(parameters), str(parameters["map"]), told)
+    trims = None if form is None else dict(form)
+    return importer.try_map(session.folder, _files(parameters), str(parameters["map"]), trims)
 
 
 def import_files(session: Session, parameters: Parameters) -> Any:
     """Import files as runs and open them."""
     into = str(parameters["into"])
-    found = importer.import_runs(session.folder, _files(parameters), str(parameters["map"]), into)
-    session.open(found["rig"], found["files"])
-    return found
+    imported = importer.import_runs(
+        session.folder, _files(parameters), str(parameters["map"]), into
+    )
+    session.open(imported["rig"], imported["files"])
+    return imported
 
 
 def _files(parameters: Parameters) -> list[str]:
@@ -216,9 +220,9 @@ def keep(session: Session, parameters: Parameters) -> Any:
 def text(session: Session, parameters: Parameters) -> Any:
     """Return the content of a file that `keep` would write, as a download."""
     name, content = saved_files.text_of(session, str(parameters["what"]))
-    said = f"attachment; filename*=UTF-8''{quote(name)}"
+    disposition = f"attachment; filename*=UTF-8''{quote(name)}"
     # Never displayed as a page of this server: a report is opened from disk.
-    return Response(content, headers={"content-disposition": said}, media_type="text/plain")
+    return Response(content, headers={"content-disposition": disposition}, media_type="text/plain")
 
 
 QUERIES: dict[str, Callable[[Session, Parameters], Any]] = {

@@ -52,12 +52,12 @@ def _stribeck(comparison: Comparison) -> Answer:
 
     The data are the means of record and model per direction, the steady curve, and the regimes.
     """
-    ways = [
-        {name: value.tolist() if name != "way" else value for name, value in vars(own).items()}
-        for own in friction_over_speed(comparison)
+    branches = [
+        {name: value.tolist() if name != "way" else value for name, value in vars(branch).items()}
+        for branch in friction_over_speed(comparison)
     ]
-    found = {"ways": ways, "regimes_m_s": regimes(comparison.model)}
-    return {**found, "steady": _steady_curve(comparison)}
+    curves = {"ways": branches, "regimes_m_s": regimes(comparison.model)}
+    return {**curves, "steady": _steady_curve(comparison)}
 
 
 def _steady_curve(comparison: Comparison) -> Answer | None:
@@ -67,8 +67,8 @@ def _steady_curve(comparison: Comparison) -> Answer | None:
     """
     model = comparison.model
     motions = [p.motion.velocity for p in comparison.campaign.prepared]
-    most = max(float(np.nanmax(np.abs(v))) for v in motions)
-    speeds = most * np.geomspace(1e-4, 1.0, 120)
+    top_speed = max(float(np.nanmax(np.abs(v))) for v in motions)
+    speeds = top_speed * np.geomspace(1e-4, 1.0, 120)
     try:
         force = model.steady_friction(speeds)
     except JbfError:
@@ -84,10 +84,10 @@ def _parameters(model: Model, values: Mapping[str, ParameterValue]) -> Answer:
 
 def of_fit(fit: Fit) -> Answer:
     """Return the parameters of a fit with their correlations."""
-    told = [name for name, p in fit.parameters.items() if not p.held]
+    estimated = [name for name, p in fit.parameters.items() if not p.held]
     return {
         "parameters": _parameters(fit.model, fit.parameters),
-        "correlations": {"names": told, "matrix": np.round(fit.correlations, 3).tolist()},
+        "correlations": {"names": estimated, "matrix": np.round(fit.correlations, 3).tolist()},
         "doubtful": list(fit.doubtful),
         "converged": fit.converged,
     }
@@ -103,25 +103,25 @@ def of_step(step: Step) -> Answer:
 
 def of_power(power: Iterable[Power], model: Model) -> list[Answer]:
     """Return the detection limits of each effect, worded as in the reports."""
-    found = list(power)
-    rows = power_rows(found, model.law, model.rig.quantities)
+    limits = list(power)
+    rows = power_rows(limits, model.law, model.rig.quantities)
     names = ("effect", "found", "share", "alone", "like")
     return [
         {**dict(zip(names, row, strict=True)), "hidden": p.hidden}
-        for p, row in zip(found, rows, strict=True)
+        for p, row in zip(limits, rows, strict=True)
     ]
 
 
 def of_diagnosis(diagnosis: Diagnosis) -> Answer:
     """Return the verdict, the summary and the proposed run of a diagnosis."""
-    told = diagnosis.to_dict()
+    content = diagnosis.to_dict()
     next_run = diagnosis.experiment
     return {
         "sentence": verdict_sentence(diagnosis, ""),
         "summary": diagnosis.summary(full=True),
         "next_run": None if next_run is None else next_run.run.to_csv(),
         **{
-            key: told[key]
+            key: content[key]
             for key in ("verdict", "effects", "alternatives", "weights", "steps",
                         "residual_structure", "next_experiment", "not_tried", "elapsed_s")
         },

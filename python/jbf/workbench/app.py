@@ -97,12 +97,12 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
 
 def _answered(action: Action, session: Session, parameters: Parameters) -> Response:
     try:
-        found = action(session, parameters)
+        answer = action(session, parameters)
     except JbfError as error:
         return _refused(str(error))
     except (KeyError, TypeError, ValueError) as error:
         return _refused(f"the request is not valid ({type(error).__name__}: {error})", 400)
-    return found if isinstance(found, Response) else JSONResponse(found)
+    return answer if isinstance(answer, Response) else JSONResponse(answer)
 
 
 def _refused(words: str, code: int = 422) -> JSONResponse:
@@ -115,21 +115,21 @@ async def _page(request: Request) -> Response:
 
 
 async def _vendored(request: Request) -> Response:
-    found = vendored.file(request.path_params["name"])
-    if found is None:
+    file = vendored.file(request.path_params["name"])
+    if file is None:
         return _refused("file not found", 404)
-    kind = "text/css" if found.suffix == ".css" else "text/javascript"
-    return Response(found.read_bytes(), media_type=kind)
+    kind = "text/css" if file.suffix == ".css" else "text/javascript"
+    return Response(file.read_bytes(), media_type=kind)
 
 
 async def _news(session: Session, request: Request) -> AsyncIterator[str]:
     """Yield the state as server-sent events whenever it has changed."""
-    told, quiet = -1, 0.0
+    sent_version, quiet = -1, 0.0
     while not await request.is_disconnected():
         running = session.jobs.job is not None
         # The elapsed time of a running fit changes as well.
-        if session.version != told or (running and quiet >= 1.0):
-            told, quiet = session.version, 0.0
+        if session.version != sent_version or (running and quiet >= 1.0):
+            sent_version, quiet = session.version, 0.0
             state = await run_in_threadpool(session.to_dict)
             yield f"data: {json.dumps(state)}\n\n"
         elif quiet >= PULSE_S:

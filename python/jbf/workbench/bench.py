@@ -95,9 +95,9 @@ class Bench:
             raise InputError(
                 file=name, problem="an end is not a number", mend="give two instants, s"
             )
-        left = int(((run.time_s >= first) & (run.time_s <= last)).sum())
-        if left < MIN_SAMPLES:
-            problem = f"only {left} samples would remain"
+        remaining = int(((run.time_s >= first) & (run.time_s <= last)).sum())
+        if remaining < MIN_SAMPLES:
+            problem = f"only {remaining} samples would remain"
             raise InputError(file=name, problem=problem, mend=f"keep at least {MIN_SAMPLES}")
         self.trims[name] = (first, last)
 
@@ -114,10 +114,10 @@ class Bench:
         InputError
             All runs are excluded.
         """
-        found = tuple(self._trimmed(run) for run in self.runs if run.name not in self.excluded)
-        if not found:
+        runs = tuple(self._trimmed(run) for run in self.runs if run.name not in self.excluded)
+        if not runs:
             raise InputError(problem="all runs are excluded", mend="include at least one")
-        return found
+        return runs
 
     def _trimmed(self, run: Run) -> Run:
         if run.name not in self.trims:
@@ -128,13 +128,13 @@ class Bench:
     def steps(self) -> Steps:
         """Return the steps that produce these runs."""
         rows = zip(self.runs, self.run_names, strict=True)
-        here = PurePosixPath(self.rig_name).parent
+        folder = PurePosixPath(self.rig_name).parent
         return Steps(
             rig=self.rig_name,
             runs=[name for run, name in rows if run.name not in self.excluded],
             imported=self.imported,
-            map=(here / "map.toml").as_posix(),
-            out=here.as_posix(),
+            map=(folder / "map.toml").as_posix(),
+            out=folder.as_posix(),
             trims=dict(self.trims),
         )
 
@@ -167,15 +167,15 @@ class Bench:
         ]
 
 
-def _imported(folder: Folder, here: PurePosixPath) -> tuple[str, ...]:
+def _imported(folder: Folder, parent: PurePosixPath) -> tuple[str, ...]:
     """Return the recordings from which a campaign was imported, if located next to its folder."""
     try:
-        ledger = json.loads(read_text(folder.path((here / LEDGER).as_posix())))
-        names = [(here.parent / str(file["file"])).as_posix() for file in ledger["files"]]
-        there = all(folder.path(name).is_file() for name in names)
+        ledger = json.loads(read_text(folder.path((parent / LEDGER).as_posix())))
+        names = [(parent.parent / str(file["file"])).as_posix() for file in ledger["files"]]
+        exist = all(folder.path(name).is_file() for name in names)
     except (JbfError, ValueError, KeyError, TypeError):
         return ()
-    return tuple(names) if there else ()
+    return tuple(names) if exist else ()
 
 
 def _findings(rig: Rig, run: Run) -> list[dict[str, Any]]:

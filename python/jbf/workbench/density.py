@@ -44,8 +44,8 @@ class Density:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the data for the page."""
-        found: dict[str, Any] = {"frame": self.frame.to_dict(), "measured": self.measured}
-        return found if self.model is None else {**found, "model": self.model}
+        content: dict[str, Any] = {"frame": self.frame.to_dict(), "measured": self.measured}
+        return content if self.model is None else {**content, "model": self.model}
 
 
 @lru_cache(maxsize=8)

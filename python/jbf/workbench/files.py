@@ -53,9 +53,9 @@ class Folder:
         parts = PurePosixPath(name).parts
         odd = not parts or "\0" in name or "\\" in name or ".." in parts or name.startswith("/")
         if not odd:
-            found = Path(os.path.realpath(self.root.joinpath(*parts)))
-            if found.is_relative_to(self.root) and found != self.root:
-                return found
+            resolved = Path(os.path.realpath(self.root.joinpath(*parts)))
+            if resolved.is_relative_to(self.root) and resolved != self.root:
+                return resolved
         raise InputError(
             file=quoted(name), problem="is not a name in the folder", mend="choose an existing one"
         )
@@ -76,9 +76,9 @@ class Folder:
         """
         kind = PurePosixPath(name).suffix.lower()
         if "/" in name or "\\" in name or name.startswith(".") or kind not in _UPLOADS:
-            known = ", ".join(sorted(_UPLOADS))
+            endings = ", ".join(sorted(_UPLOADS))
             raise InputError(
-                file=quoted(name), problem="is not a recording, rig or map", mend=f"give {known}"
+                file=quoted(name), problem="is not a recording, rig or map", mend=f"give {endings}"
             )
         path = self.path(name)
         if os.path.lexists(self.root / name):
@@ -89,37 +89,43 @@ class Folder:
 
     def listing(self) -> dict[str, Any]:
         """List campaigns (a rig and runs in one folder), rigs, maps, models and recordings."""
-        found: dict[str, Any] = {"rigs": [], "maps": [], "models": [], "csv": [], "other": []}
+        names_by_kind: dict[str, Any] = {
+            "rigs": [],
+            "maps": [],
+            "models": [],
+            "csv": [],
+            "other": [],
+        }
         for number, path in enumerate(self._walk()):
             if number == MOST_FILES:
-                found["more"] = True
+                names_by_kind["more"] = True
                 break
             suffix, name = path.suffix.lower(), self._listed(path)
             if suffix == ".toml":
                 kind = _toml_kind(path)
                 if kind:
-                    found[kind].append(name)
+                    names_by_kind[kind].append(name)
             elif suffix == ".csv":
-                found["csv"].append(name)
+                names_by_kind["csv"].append(name)
             elif suffix in _RECORDINGS:
-                found["other"].append(name)
-        found["campaigns"] = [
+                names_by_kind["other"].append(name)
+        names_by_kind["campaigns"] = [
             {"rig": rig, "runs": runs}
-            for rig in found["rigs"]
-            if (runs := [c for c in found["csv"] if _parent(c) == _parent(rig)])
+            for rig in names_by_kind["rigs"]
+            if (runs := [c for c in names_by_kind["csv"] if _parent(c) == _parent(rig)])
         ]
-        return found
+        return names_by_kind
 
     def _listed(self, path: Path) -> str:
         return path.relative_to(self.root).as_posix()
 
     def _walk(self) -> Iterator[Path]:
-        for here, folders, files in os.walk(self.root):
-            depth = len(Path(here).relative_to(self.root).parts)
+        for folder, folders, files in os.walk(self.root):
+            depth = len(Path(folder).relative_to(self.root).parts)
             folders[:] = sorted(f for f in folders if not f.startswith(".") and depth < DEPTH)
             for file in sorted(files):
                 if not file.startswith("."):
-                    yield Path(here) / file
+                    yield Path(folder) / file
 
 
 def _parent(name: str) -> str:

@@ -88,13 +88,13 @@ class Guard:
             code, words = refusal
             await PlainTextResponse(words, code)(scope, receive, with_headers)
             return
-        taken = 0
+        received_bytes = 0
 
         async def limited() -> MutableMapping[str, Any]:
-            nonlocal taken
+            nonlocal received_bytes
             message = await receive()
-            taken += len(message.get("body", b""))
-            if taken > self.largest:
+            received_bytes += len(message.get("body", b""))
+            if received_bytes > self.largest:
                 raise TooLarge
             return message
 

@@ -44,17 +44,17 @@ def guess_map(folder: Folder, name: str) -> dict[str, Any]:
     stem = PurePosixPath(name).stem
     names = chain([stem], (f"{stem}_{k}" for k in count(2)))
     path = folder.path(name)
-    found, open_joint = _first_joint(path)
-    text = map_text(found)
+    proposal, open_joint = _first_joint(path)
+    text = map_text(proposal)
     return {
         "file": name,
         "into": next(n for n in names if not folder.path(n).exists()),
-        "format": found.format,
+        "format": proposal.format,
         "map": text,
         "form": form_of(text),
         "columns": file_columns(path),
         "quantities": quantities(),
-        "questions": [*open_joint, *map(str, found.questions)],
+        "questions": [*open_joint, *map(str, proposal.questions)],
     }
 
 
@@ -66,9 +66,9 @@ def _first_joint(path: Path) -> tuple[Guess, list[str]]:
     try:
         return look(path), []
     except JointNotChosen as several:
-        first, *others = several.joints
-        said = f"joint: columns of {first}; others: {', '.join(others)}"
-        return look(path, first), [said]
+        first, *other_joints = several.joints
+        question = f"joint: columns of {first}; others: {', '.join(other_joints)}"
+        return look(path, first), [question]
 
 
 def try_map(
@@ -82,12 +82,12 @@ def try_map(
     if form is not None:
         text = changed_by(text, list(form["rows"]), dict(form["rig"]))
     paths, cut = _paths(folder, names), _cut_file(folder, text)
-    beside = _additional_files(folder, text)
+    additional = _additional_files(folder, text)
     answer: dict[str, Any] = {"map": text, "form": form_of(text), "runs": [], "problem": None}
     try:
-        with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
+        with tempfile.TemporaryDirectory(prefix="jbf-map-") as scratch:
             answer |= _content_of(
-                import_files(paths, _map_file(there, text), cut_file=cut, beside=beside)
+                import_files(paths, _map_file(scratch, text), cut_file=cut, beside=additional)
             )
     except InputError as error:
         answer["problem"] = str(unplaced(error))
@@ -100,14 +100,16 @@ def import_runs(folder: Folder, names: Sequence[str], text: str, into: str) -> d
     if out.exists():
         raise InputError(file=into, problem="already exists", mend="name another folder")
     paths, cut = _paths(folder, names), _cut_file(folder, text)
-    beside = _additional_files(folder, text)
-    with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
+    additional = _additional_files(folder, text)
+    with tempfile.TemporaryDirectory(prefix="jbf-map-") as scratch:
         try:
-            found = import_files(paths, _map_file(there, text), out, cut_file=cut, beside=beside)
+            campaign = import_files(
+                paths, _map_file(scratch, text), out, cut_file=cut, beside=additional
+            )
         except InputError as error:
             raise unplaced(error) from None
-        answer = _content_of(found)
-    runs = [folder.name(out / f"{piece.name}.csv") for piece in found.pieces if piece.keep]
+        answer = _content_of(campaign)
+    runs = [folder.name(out / f"{piece.name}.csv") for piece in campaign.pieces if piece.keep]
     return {**answer, "rig": folder.name(out / "rig.toml"), "files": runs}
 
 
@@ -138,10 +140,10 @@ def _map_file(folder: str, text: str) -> Path:
     return path
 
 
-def _content_of(found: Import) -> dict[str, Any]:
-    said, runs = found.rig.quantities, []
-    units = {"friction_n": said.force, "velocity_m_s": said.speed, "position_m": said.length}
-    for run in found.runs:
+def _content_of(campaign: Import) -> dict[str, Any]:
+    of_rig, runs = campaign.rig.quantities, []
+    units = {"friction_n": of_rig.force, "velocity_m_s": of_rig.speed, "position_m": of_rig.length}
+    for run in campaign.runs:
         columns = [
             {
                 "name": name,
@@ -151,7 +153,7 @@ def _content_of(found: Import) -> dict[str, Any]:
             for name, values in run.columns().items()
         ]
         runs.append({"name": run.name, "samples": len(run), "columns": columns})
-    return {"runs": runs, "pieces": [vars(piece) for piece in found.pieces]}
+    return {"runs": runs, "pieces": [vars(piece) for piece in campaign.pieces]}
 
 
 def _spread(values: Any) -> list[float]:

@@ -63,20 +63,20 @@ SUGGESTED = (
 
 def file_columns(path: Path) -> list[dict[str, Any]]:
     """Return the columns of a file: name, unit, first values as in the file."""
-    found = []
+    columns = []
     with open_source(path) as source:
         for table in source.tables:
             head = source.head(table, FIRST)
             for column in table.columns:
                 values = head.get(column.name, np.empty(0))[:FIRST]
-                found.append(
+                columns.append(
                     {
                         "name": column.name,
                         "unit": column.unit or split_unit(column.name)[1],
                         "first": [_shown(value) for value in values],
                     }
                 )
-    return found
+    return columns
 
 
 def _shown(value: Any) -> str:
@@ -85,12 +85,14 @@ def _shown(value: Any) -> str:
 
 def quantities() -> list[dict[str, Any]]:
     """Return the possible assignments of a column: key, description, offered units."""
-    found = []
+    entries = []
     for key in (*WORDS, *(k for k in KNOWN if k not in WORDS)):
-        wanted = wanted_unit(key)
-        units = [u for u in SUGGESTED if (unit := parse_unit(u)) is not None and unit.fits(wanted)]
-        found.append({"key": key, "words": WORDS.get(key, key), "units": units})
-    return found
+        required = wanted_unit(key)
+        units = [
+            u for u in SUGGESTED if (unit := parse_unit(u)) is not None and unit.fits(required)
+        ]
+        entries.append({"key": key, "words": WORDS.get(key, key), "units": units})
+    return entries
 
 
 def form_of(text: str) -> dict[str, Any]:
@@ -101,19 +103,19 @@ def form_of(text: str) -> dict[str, Any]:
     InputError
         The text is not a map.
     """
-    made = _map_of(text)
+    mapping = _map_of(text)
     rows = []
-    for key, expression in made.columns.items():
-        plain = _PLAIN.fullmatch(expression)
+    for key, expression in mapping.columns.items():
+        match = _PLAIN.fullmatch(expression)
         row: dict[str, Any] = {"key": key, "expression": expression}
-        if plain is not None:
+        if match is not None:
             row |= {
-                "column": plain["column"],
-                "unit": plain["unit"],
-                "turned": bool(plain["sign"]),
+                "column": match["column"],
+                "unit": match["unit"],
+                "turned": bool(match["sign"]),
             }
         rows.append(row)
-    return {"rows": rows, "rig": {name: dict(part) for name, part in made.rig.items()}}
+    return {"rows": rows, "rig": {name: dict(part) for name, part in mapping.rig.items()}}
 
 
 def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> str:
@@ -224,9 +226,9 @@ def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, A
                 problem=f"two columns are assigned to {words}", mend="keep one of them"
             )
         columns[key] = expression_of(row)
-    kept = {k: v for k, v in formulas.items() if k not in columns}
+    other_formulas = {k: v for k, v in formulas.items() if k not in columns}
     numbers = {place: _number(value) for place, value in rig.items()}
-    return rewritten(text, {**columns, **kept}, numbers)
+    return rewritten(text, {**columns, **other_formulas}, numbers)
 
 
 def _number(value: Any) -> Any:
@@ -272,8 +274,8 @@ def _parsed(text: str) -> Any:
 
 
 def _map_of(text: str) -> Map:
-    with tempfile.TemporaryDirectory(prefix="jbf-map-") as there:
-        path = Path(there) / "map.toml"
+    with tempfile.TemporaryDirectory(prefix="jbf-map-") as scratch:
+        path = Path(scratch) / "map.toml"
         path.write_text(text, encoding="utf-8")
         try:
             return read_map(path)

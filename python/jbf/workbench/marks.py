@@ -23,7 +23,7 @@ def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
     model, campaign = comparison.model, comparison.campaign
     u_tr = transition_speed(model.law, model.values.tolist())
     binned = {axis.axis: axis for axis in all_axes(campaign, u_tr)}
-    found = []
+    marks = []
     for failure in comparison.failures:
         advice = vars(advice_on(failure.axis, campaign))
         mark: dict[str, Any] = {**failure.to_dict(), **advice, "bin": "", "ranges_s": {}}
@@ -33,11 +33,11 @@ def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
             mark["bin"] = labels(failure.axis, failure.bins)[worst]
             for number, (p, places) in enumerate(zip(campaign.prepared, axis.places, strict=True)):
                 time = p.run.time_s
-                here = [(time[a], time[b - 1]) for a, b in ranges_of(places == worst)]
-                if here:
-                    mark["ranges_s"][str(number)] = [(float(a), float(b)) for a, b in here]
-        found.append(mark)
-    return found
+                intervals_s = [(time[a], time[b - 1]) for a, b in ranges_of(places == worst)]
+                if intervals_s:
+                    mark["ranges_s"][str(number)] = [(float(a), float(b)) for a, b in intervals_s]
+        marks.append(mark)
+    return marks
 
 
 def worst_bin(failure: Failure) -> int:

@@ -55,16 +55,16 @@ class Frame:
         inside = (across >= 0) & (across < self.columns) & (up >= 0) & (up < self.rows)
         with np.errstate(invalid="ignore"):
             place = up.astype(np.int32) * np.int32(self.columns) + across.astype(np.int32)
-        found: Places = np.where(inside, place, np.int32(self.rows * self.columns))
-        return found
+        pixels: Places = np.where(inside, place, np.int32(self.rows * self.columns))
+        return pixels
 
     def counts(self, places: Sequence[Places]) -> Counts:
         """Return the number of samples in each pixel, shape (rows, columns)."""
         pixels = self.rows * self.columns
-        found = np.zeros(pixels + 1, dtype=np.int64)
+        total = np.zeros(pixels + 1, dtype=np.int64)
         for part in places:
-            found += np.bincount(part, minlength=pixels + 1)
-        return found[:pixels].reshape(self.rows, self.columns)
+            total += np.bincount(part, minlength=pixels + 1)
+        return total[:pixels].reshape(self.rows, self.columns)
 
     def picture(self, places: Sequence[Places]) -> str:
         """Return the number of samples in each pixel as encoded by `shade`."""
@@ -80,8 +80,8 @@ def shade(counts: Counts) -> str:
 
     The scale is logarithmic, the order row by row, the encoding base64.
     """
-    most = max(int(counts.max(initial=0)), 1)
-    level = np.log1p(counts) / np.log1p(most)
+    largest = max(int(counts.max(initial=0)), 1)
+    level = np.log1p(counts) / np.log1p(largest)
     shown = np.where(counts > 0, np.maximum(np.round(255 * level), 40), 0).astype(np.uint8)
     return base64.b64encode(shown.tobytes()).decode("ascii")
 

@@ -59,7 +59,7 @@ TEXTS: dict[str, tuple[str, Callable[[Session], str]]] = {
 """File name and text function of each kind of file."""
 
 
-def text_of(session: Session, what: str) -> tuple[str, str]:
+def text_of(session: Session, kind: str) -> tuple[str, str]:
     """Return name and text of a file.
 
     Raises
@@ -67,25 +67,25 @@ def text_of(session: Session, what: str) -> tuple[str, str]:
     InputError
         The kind is unknown, or not available for this model.
     """
-    if what not in TEXTS:
-        raise InputError(problem=f"{what!r} is not known", mend=f"choose one of {', '.join(TEXTS)}")
-    name, text = TEXTS[what]
+    if kind not in TEXTS:
+        raise InputError(problem=f"{kind!r} is not known", mend=f"choose one of {', '.join(TEXTS)}")
+    name, text = TEXTS[kind]
     return name, text(session)
 
 
-def save_as_file(session: Session, what: str) -> dict[str, list[str]]:
+def save_as_file(session: Session, kind: str) -> dict[str, list[str]]:
     """Write a file into the folder; returns the names of written files, and of replaced ones."""
-    if what == "session":
+    if kind == "session":
         name = FILE
         before = session.folder.path(name).exists()
         save(session)
         return {"written": [name], "replaced": [name] * before}
-    if what == "trimmed":
+    if kind == "trimmed":
         session.folder.path(TRIMMED).mkdir(exist_ok=True)
         runs = session.on_bench().used_runs()
         texts = {f"{TRIMMED}/{run.name.replace('/', '-')}.csv": run.to_csv() for run in runs}
     else:
-        name, text = text_of(session, what)
+        name, text = text_of(session, kind)
         texts = {name: text}
     # If a name is a link that leads outside, nothing is written.
     paths = {name: session.folder.path(name) for name in texts}

@@ -39,13 +39,13 @@ class RunSeries:
 
     def columns(self) -> dict[str, Array]:
         """Return the available columns by name."""
-        found: Mapping[str, Array | None] = {
+        candidates: Mapping[str, Array | None] = {
             "velocity_m_s": self.velocity,
             "friction_n": self.friction,
             "model_n": self.model_n,
             "residual_n": self.residual_n,
         }
-        return {name: values for name, values in found.items() if values is not None}
+        return {name: values for name, values in candidates.items() if values is not None}
 
 
 @lru_cache(maxsize=512)
@@ -70,14 +70,14 @@ def drawn(data: RunSeries, from_s: float | None, to_s: float | None, pixels: int
     begin = data.time_s[0] if from_s is None else from_s
     end = data.time_s[-1] if to_s is None else to_s
     stretch = Stretch.between(data.time_s, float(begin), float(end), pixels)
-    found = thinned(data.time_s, data.columns(), stretch)
+    reduced = thinned(data.time_s, data.columns(), stretch)
     return {
         "samples": len(data.time_s),
         "from_s": float(data.time_s[0]),
         "to_s": float(data.time_s[-1]),
         "stride": stretch.stride,
         **{name: listed(values, TIME_DIGITS if name == "time_s" else DIGITS)
-           for name, values in found.items()},
+           for name, values in reduced.items()},
     }  # fmt: skip
 
 

@@ -131,14 +131,14 @@ class Session:
             order = Order(kind, bench.rig, bench.used_runs(), place, law, effects=tuple(effects))
             words = _words(kind, law, effects)
 
-            made: list[int] = []
+            numbers: list[int] = []
 
             def part(answer: Any) -> None:
-                made.append(self._added(answer, parent, "", law, place))
+                numbers.append(self._added(answer, parent, "", law, place))
 
             def ended(ending: Ending, answer: Any) -> None:
-                if made:
-                    self._ranked(ending, answer, made[0])
+                if numbers:
+                    self._ranked(ending, answer, numbers[0])
                 else:
                     self._ended(ending, answer, parent, words, law, place)
 
@@ -242,7 +242,7 @@ class Session:
         """Return the complete state for the page."""
         with self.lock:
             job, bench = self.jobs.job, self.bench
-            told: dict[str, Any] = {
+            state: dict[str, Any] = {
                 "version": self.version,
                 "folder": str(self.folder.root),
                 "rig": None if bench is None else bench.rig_name,
@@ -258,8 +258,8 @@ class Session:
             if bench is not None:
                 node = None if self.models.current is None else self.models.node()
                 steps = bench.steps()
-                told["command"], told["python"] = commands(node, steps), python(node, steps)
-            return told
+                state["command"], state["python"] = commands(node, steps), python(node, steps)
+            return state
 
     def _effects(self) -> list[dict[str, Any]]:
         node = self.models.nodes.get(self.models.current or 0)
@@ -294,13 +294,13 @@ def first_law(rig: Rig) -> str:
 
 
 def _units(rig: Rig) -> dict[str, str]:
-    said = rig.quantities
+    quantities = rig.quantities
     return {
-        "force": said.force,
-        "speed": said.speed,
-        "velocity": said.velocity,
-        "friction": said.friction,
-        "noun": said.noun,
+        "force": quantities.force,
+        "speed": quantities.speed,
+        "velocity": quantities.velocity,
+        "friction": quantities.friction,
+        "noun": quantities.noun,
     }
 
 

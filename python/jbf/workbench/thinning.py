@@ -56,23 +56,23 @@ def thinned(time_s: Array, columns: Mapping[str, Array], stretch: Stretch) -> di
     last = np.minimum(starts + stride, stretch.end) - 1
     begin, close = time_s[starts], time_s[last]
     quarter = 0.25 * (close - begin)
-    found = {"time_s": np.column_stack([begin + quarter, close - quarter]).ravel()}
+    reduced = {"time_s": np.column_stack([begin + quarter, close - quarter]).ravel()}
     for name, values in columns.items():
         low = np.fmin.reduceat(values[part], starts - stretch.first)
         high = np.fmax.reduceat(values[part], starts - stretch.first)
-        found[name] = np.column_stack([low, high]).ravel()
-    return found
+        reduced[name] = np.column_stack([low, high]).ravel()
+    return reduced
 
 
-def ranges_of(mask: npt.NDArray[np.bool_], most: int = 400) -> list[tuple[int, int]]:
+def ranges_of(mask: npt.NDArray[np.bool_], limit: int = 400) -> list[tuple[int, int]]:
     """Return first sample and end (exclusive) of each interval in which a mask is true.
 
-    Intervals with the smallest gaps are merged until at most `most` remain.
+    Intervals with the smallest gaps are merged until at most `limit` remain.
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
     first, end = edges[::2], edges[1::2]
-    if len(first) > most:
+    if len(first) > limit:
         gaps = first[1:] - end[:-1]
-        wide = np.sort(np.argpartition(-gaps, most - 1)[: most - 1])
+        wide = np.sort(np.argpartition(-gaps, limit - 1)[: limit - 1])
         first, end = first[np.append(0, wide + 1)], end[np.append(wide, len(end) - 1)]
     return [(int(a), int(b)) for a, b in zip(first, end, strict=True)]

@@ -48,9 +48,9 @@ def unpacked(archive: bytes) -> dict[str, bytes]:
     ValueError
         The archive is not the one that was reviewed.
     """
-    found = base64.b64encode(hashlib.sha512(archive).digest()).decode("ascii")
-    if found != SHA512:
-        raise ValueError(f"{NAME} {VERSION} has the hash {found}, not {SHA512}")
+    digest = base64.b64encode(hashlib.sha512(archive).digest()).decode("ascii")
+    if digest != SHA512:
+        raise ValueError(f"{NAME} {VERSION} has the hash {digest}, not {SHA512}")
     with tarfile.open(fileobj=io.BytesIO(archive), mode="r:gz") as tar:
         contents = {}
         for member, name in FILES.items():

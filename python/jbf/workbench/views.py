@@ -25,11 +25,11 @@ MAP_SPEEDS = 24
 
 def series_by_run(session: Session, number: int | None) -> dict[str, RunSeries]:
     """Return every run by name: with a model's prediction if available, otherwise as read."""
-    found = {run.name: as_read(run) for run in session.on_bench().runs}
+    by_name = {run.name: as_read(run) for run in session.on_bench().runs}
     files = None if number is None else session.records(number)
     for name, file in (files or {}).items():
-        found[name] = as_modelled(file)
-    return found
+        by_name[name] = as_modelled(file)
+    return by_name
 
 
 def series_of_run(session: Session, number: int | None, name: str) -> RunSeries:
@@ -43,22 +43,22 @@ def series(
     pixels: int,
 ) -> dict[str, Any]:  # fmt: skip
     """Return a section of a run, with the prediction of the second model if one is selected."""
-    whole = series_of_run(session, number, name)
-    found = drawn(whole, *span, pixels)
+    run = series_of_run(session, number, name)
+    section = drawn(run, *span, pixels)
     compared = session.models.compared
     if compared is not None and compared != number:
-        other = series_of_run(session, compared, name)
-        if other.model_n is not None and len(other.time_s) == len(whole.time_s):
+        second = series_of_run(session, compared, name)
+        if second.model_n is not None and len(second.time_s) == len(run.time_s):
             stretch = Stretch.between(
-                whole.time_s, float(span[0] or whole.time_s[0]),
-                float(whole.time_s[-1] if span[1] is None else span[1]), pixels,
+                run.time_s, float(span[0] or run.time_s[0]),
+                float(run.time_s[-1] if span[1] is None else span[1]), pixels,
             )  # fmt: skip
-            columns = {"compared_n": other.model_n}
-            if other.residual_n is not None:
-                columns["compared_residual_n"] = other.residual_n
-            shown = thinned(whole.time_s, columns, stretch)
-            found |= {name: listed(shown[name]) for name in columns}
-    return found
+            columns = {"compared_n": second.model_n}
+            if second.residual_n is not None:
+                columns["compared_residual_n"] = second.residual_n
+            shown = thinned(run.time_s, columns, stretch)
+            section |= {name: listed(shown[name]) for name in columns}
+    return section
 
 
 def plane(session: Session, number: int | None, names: list[str], size: Size) -> dict[str, Any]:
@@ -87,19 +87,19 @@ def masks_of(
     if "mark" in selection:
         return _marked(session, number, int(selection["mark"]), runs)
     only = selection.get("run")
-    found = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}
+    masks = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}
     if "box" in selection:
         ends = zip(selection["box"], (-np.inf, np.inf, -np.inf, np.inf), strict=True)
         left, right, low, high = (open_ if end is None else float(end) for end, open_ in ends)
         for name, run in runs.items():
             if run.friction is not None and only in (None, name):
                 box = (left, right, low, high)
-                found[name] = within(run.velocity, run.friction, box)
-    elif only in found:
+                masks[name] = within(run.velocity, run.friction, box)
+    elif only in masks:
         time = runs[only].time_s
         first, last = sorted((float(selection["from_s"]), float(selection["to_s"])))
-        found[only] = (time >= first) & (time <= last)
-    return found
+        masks[only] = (time >= first) & (time <= last)
+    return masks
 
 
 def _marked(
@@ -110,17 +110,17 @@ def _marked(
         raise InputError(problem="the model has no such lack of fit", mend="choose one of the list")
     ranges = node["failures"][place]["ranges_s"]
     names = node["record_names"]
-    found = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}
+    masks = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}
     for key, stretches in ranges.items():
         name = names[int(key)]
-        if name not in found:
+        if name not in masks:
             continue
         time = runs[name].time_s
         for first, last in stretches:
             # The ends are samples of the record, which are written and read exactly.
             begin, end = np.searchsorted(time, first), np.searchsorted(time, last, side="right")
-            found[name][begin:end] = True
-    return found
+            masks[name][begin:end] = True
+    return masks
 
 
 def brushed(
@@ -145,19 +145,23 @@ def brushed(
         ends += [float(np.nanmin(speed)), float(np.nanmax(speed))]
         cells += [(row, int(column)) for column in np.unique(_column(speed, edges))]
         residual = run.residual_n
-        there = np.empty(0) if residual is None else residual[chosen]
-        there = there[np.isfinite(there)]
-        residuals.append(there)
+        residual_values = np.empty(0) if residual is None else residual[chosen]
+        residual_values = residual_values[np.isfinite(residual_values)]
+        residuals.append(residual_values)
         stretches = [
             (float(run.time_s[a]), float(run.time_s[b - 1])) for a, b in ranges_of(masks[name])
         ]
-        by_run[name] = {"samples": len(chosen), "rms": _rms(there), "stretches_s": stretches}
-    there = np.concatenate(residuals) if residuals else np.empty(0)
+        by_run[name] = {
+            "samples": len(chosen),
+            "rms": _rms(residual_values),
+            "stretches_s": stretches,
+        }
+    residual_values = np.concatenate(residuals) if residuals else np.empty(0)
     return {
-        "samples": sum(one["samples"] for one in by_run.values()),
+        "samples": sum(statistics["samples"] for statistics in by_run.values()),
         "by_run": by_run,
-        "rms": _rms(there),
-        "mean_n": float(np.mean(there)) if len(there) else None,
+        "rms": _rms(residual_values),
+        "mean_n": float(np.mean(residual_values)) if len(residual_values) else None,
         "speeds_m_s": [min(ends), max(ends)] if ends else None,
         "cells": cells,
         "selected": _density(session, number, names, size).layer_of(
@@ -176,8 +180,8 @@ def speed_edges(runs: tuple[RunSeries, ...]) -> Array:
 
     They are closer near standstill, where friction changes most.
     """
-    most = max((float(np.nanmax(np.abs(s.velocity))) for s in runs), default=0.0) or 1.0
-    half = most * np.linspace(0.0, 1.0, MAP_SPEEDS // 2 + 1) ** 2
+    top_speed = max((float(np.nanmax(np.abs(s.velocity))) for s in runs), default=0.0) or 1.0
+    half = top_speed * np.linspace(0.0, 1.0, MAP_SPEEDS // 2 + 1) ** 2
     return np.concatenate([-half[:0:-1], half])
 
 
@@ -215,26 +219,28 @@ def signature(
     It is scaled by least squares to the residual.
     """
     run = session.on_bench().run(name)
-    known = series_of_run(session, number, name)
+    run_series = series_of_run(session, number, name)
     base = session.model(number)
     if effect in base.effects or effect not in catalogue():
         raise InputError(problem=f"{effect} is in the model already, or unknown", mend="choose")
     richer = Model(base.rig, base.law, [*base.effects, effect], _usual(base, effect), base.clock)
     added = richer.predict(run) - base.predict(run)
-    added = np.interp(known.time_s, run.time_s, added)
-    residual = known.residual_n
+    added = np.interp(run_series.time_s, run.time_s, added)
+    residual = run_series.residual_n
     if residual is None:
         raise InputError(problem="this model has not been compared yet", mend="wait a moment")
     ok = np.isfinite(residual) & np.isfinite(added)
     square = float(added[ok] @ added[ok])
     scale = float(residual[ok] @ added[ok]) / square if square > 0 else 0.0
     stretch = Stretch.between(
-        known.time_s,
-        float(known.time_s[0] if span[0] is None else span[0]),
-        float(known.time_s[-1] if span[1] is None else span[1]),
+        run_series.time_s,
+        float(run_series.time_s[0] if span[0] is None else span[0]),
+        float(run_series.time_s[-1] if span[1] is None else span[1]),
         pixels,
     )
-    shown = thinned(known.time_s, {"residual_n": residual, "signature_n": scale * added}, stretch)
+    shown = thinned(
+        run_series.time_s, {"residual_n": residual, "signature_n": scale * added}, stretch
+    )
     return {"times_usual": scale, **{k: listed(v, 11 if k == "time_s" else 6)
                                      for k, v in shown.items()}}  # fmt: skip
 

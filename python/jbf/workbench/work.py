@@ -149,7 +149,7 @@ def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
                     }
                 )
 
-        found = manual_round(
+        outcome = manual_round(
             order.rig,
             order.runs,
             order.effects,
@@ -158,7 +158,7 @@ def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
             progress=progress,
             fitted_as=fitted_as,
         )
-        return {**of_step(found.step), "power": of_power(found.power, found.fit.model)}
+        return {**of_step(outcome.step), "power": of_power(outcome.power, outcome.fit.model)}
     diagnosis = diagnose(order.rig, order.runs, law=order.law, clock=order.clock, progress=progress)
     return {
         **of_model(diagnosis.after),

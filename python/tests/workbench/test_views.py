@@ -57,10 +57,10 @@ def test_zoomed_interval_includes_one_sample_beyond_each_end() -> None:
 def test_limited_ranges_cover_all_selected_samples(mask: list[bool], most: int) -> None:
     selected = np.array(mask, dtype=bool)
     exact = np.zeros(len(selected), dtype=bool)
-    for a, b in ranges_of(selected, most=1000):
+    for a, b in ranges_of(selected, limit=1000):
         exact[a:b] = True
     assert np.array_equal(exact, selected)
-    joined = ranges_of(selected, most=most)
+    joined = ranges_of(selected, limit=most)
     covered = np.zeros(len(selected), dtype=bool)
     for a, b in joined:
         covered[a:b] = True

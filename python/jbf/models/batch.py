@@ -167,13 +167,13 @@ def batch(
         )
         single = precision == np.dtype(np.float32)
         if data is not None:
-            wanted = numbers(data, "data", precision)
-            if wanted.shape != speeds.shape[:1]:
+            recorded = numbers(data, "data", precision)
+            if recorded.shape != speeds.shape[:1]:
                 raise _refuse(
-                    "data", f"has shape {wanted.shape}", "give one coefficient per sample"
+                    "data", f"has shape {recorded.shape}", "give one coefficient per sample"
                 )
             squares = core.squares_f32 if single else core.squares_f64
-            return squares(sets, speeds.reshape(-1), each, dt_s, wanted)
+            return squares(sets, speeds.reshape(-1), each, dt_s, recorded)
         result = _result(out, (len(speeds), len(sets)), precision)
         friction = core.friction_f32 if single else core.friction_f64
         friction(sets, speeds.reshape(-1), each, dt_s, result.reshape(-1))

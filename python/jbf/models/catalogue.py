@@ -281,21 +281,21 @@ def find_effect(name: str) -> Effect:
     InputError
         The effect is unknown; the message suggests the most similar name.
     """
-    known = effects()
+    catalogue = effects()
     if isinstance(name, str):
-        name = current_effect(name, known)
-    if not isinstance(name, str) or name not in known:
+        name = current_effect(name, catalogue)
+    if not isinstance(name, str) or name not in catalogue:
         raise InputError(
             problem=f'effect "{name}" is not known',
-            mend=f"{did_you_mean(name, known)} (`jbf effects` lists them)",
+            mend=f"{did_you_mean(name, catalogue)} (`jbf effects` lists them)",
         )
-    return known[name]
+    return catalogue[name]
 
 
 def find_law(name: str) -> Law:
     """Return the law of the given name; raise an InputError if it is unknown."""
-    known = laws()
-    return known[one_of(name, known, "law")]
+    catalogue = laws()
+    return catalogue[one_of(name, catalogue, "law")]
 
 
 def find_clock(name: str) -> Clock:
@@ -356,25 +356,25 @@ def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:
 
 def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
     """Map dotted names to parameters: those of the law first, then those of each effect."""
-    found = {p.name: p for p in find_law(law).parameters}
+    parameters = {p.name: p for p in find_law(law).parameters}
     for name in chosen:
-        found |= {f"{name}.{p.name}": p for p in find_effect(name).parameters}
-    return found
+        parameters |= {f"{name}.{p.name}": p for p in find_effect(name).parameters}
+    return parameters
 
 
-def find_parameter(name: str, known: Collection[str]) -> str:
+def find_parameter(name: str, names: Collection[str]) -> str:
     """Return the full dotted name of a parameter given with or without its unit.
 
     For example, `warm_up.tau` yields `warm_up.tau_s`. An old name yields the current one. An
     InputError is raised for an unknown name.
     """
-    name = current_parameter(name, known)
-    if name in known:
+    name = current_parameter(name, names)
+    if name in names:
         return name
-    longer = [full for full in known if full.startswith(f"{name}_")]
+    longer = [full for full in names if full.startswith(f"{name}_")]
     if len(longer) == 1:
         return longer[0]
-    raise InputError(problem=f'parameter "{name}" is not known', mend=did_you_mean(name, known))
+    raise InputError(problem=f'parameter "{name}" is not known', mend=did_you_mean(name, names))
 
 
 @cache

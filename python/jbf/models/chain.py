@@ -60,8 +60,10 @@ def core_refusals(mend: str | Callable[[str], str] = "correct the value") -> Ite
     except InputError:
         raise
     except (ValueError, OverflowError) as error:
-        said = str(error)
-        raise InputError(problem=said, mend=mend if isinstance(mend, str) else mend(said)) from None
+        problem = str(error)
+        raise InputError(
+            problem=problem, mend=mend if isinstance(mend, str) else mend(problem)
+        ) from None
 
 
 def check_rig(rig: Rig, law: str) -> None:
@@ -69,17 +71,17 @@ def check_rig(rig: Rig, law: str) -> None:
     the_rig(rig)
     if not find_law(law).needs_bearing:
         return
-    for section, there in (
+    for section, content in (
         ("bearing", rig.bearing),
         ("lubricant", rig.lubricant),
         ("load", rig.load),
     ):
-        if there is None and rig.drive is not None:
+        if content is None and rig.drive is not None:
             raise InputError(
                 problem=f"the rig is a drive, but the law {law} requires a journal bearing",
                 mend="choose another law: --law coulomb, stribeck or lugre (`jbf.laws()`)",
             )
-        if there is None:
+        if content is None:
             raise InputError(
                 problem=f"the rig has no [{section}]",
                 mend=f"the law {law} requires it: add [{section}]",
@@ -119,7 +121,7 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
     check_applies(law, effects)
     film_clock = find_clock(clock)
     pages = [find_effect(name) for name in in_chain_order(effects)]
-    own = [page for page in pages if isinstance(page, UserEffect)]
+    user_effects = [page for page in pages if isinstance(page, UserEffect)]
     page_of_law = find_law(law)
     user_law = page_of_law.force if isinstance(page_of_law, UserLaw) else None
 
@@ -134,22 +136,24 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
                 max_step_s=MAX_STEP_S,
             )
 
-    core = of_core([page.name for page in pages if page not in own])
-    if not own and user_law is None:
+    core = of_core([page.name for page in pages if page not in user_effects])
+    if not user_effects and user_law is None:
         return DrivenChain(core)
-    held = [] if user_law is None else [p.lower for p in find_law(CARRIER).parameters]
-    first = 0 if user_law is None else len(user_law.parameters) - len(held)
+    carrier_values = [] if user_law is None else [p.lower for p in find_law(CARRIER).parameters]
+    first = 0 if user_law is None else len(user_law.parameters) - len(carrier_values)
     names = core.parameter_names
     instrument = [
         (page.name, [first + names.index(f"{page.name}.{p.name}") for p in page.parameters])
         for page in pages
-        if page.stage == "instrument" and page not in own
+        if page.stage == "instrument" and page not in user_effects
     ]
     carrier = None if user_law is None else of_core([])
     bends = any(name in BENDING for name, _ in instrument)
-    before = [p.name for p in pages if p not in own and p.stage != "instrument"]
+    before = [p.name for p in pages if p not in user_effects and p.stage != "instrument"]
     bare = of_core(before) if bends else None
-    return DrivenChain(UserChain(core, instrument, own, user_law, held, carrier, bare))
+    return DrivenChain(
+        UserChain(core, instrument, user_effects, user_law, carrier_values, carrier, bare)
+    )
 
 
 def estimated_motion(rig: Rig, run: Run) -> EstimatedMotion:
@@ -167,9 +171,9 @@ def sampled_motion(
     is as in :func:`jbf.records.motion.estimated_motion.estimate_motion`.
     """
     run = as_read(run_on(rig, one_run(run)))
-    there = of_motion(run.read)
-    if there is not None:
-        run = run.select(there)
+    sampled = of_motion(run.read)
+    if sampled is not None:
+        run = run.select(sampled)
     motion = estimate_motion(run, rig.radius_m, starts)
     return (run.time_s if motion.clock_s is None else motion.clock_s), motion
 
@@ -205,12 +209,12 @@ def core_motion(
     offset = weight_offset(rig, run, motion.angle_rad)
     if offset is not None:
         columns["weight_offset_rad"] = offset
-    kept = None
+    run_samples = None
     if before is not None:
         count, columns = _with_motion_before(columns, rig, *before)
-        kept = count + np.arange(len(run))
+        run_samples = count + np.arange(len(run))
     with core_refusals("correct the run"):
-        made = _core.Motion(
+        core = _core.Motion(
             np.ascontiguousarray(columns["time_s"]),
             np.ascontiguousarray(columns["velocity"]),
             np.ascontiguousarray(columns["acceleration"]),
@@ -222,8 +226,8 @@ def core_motion(
     # User-defined effects receive the record with the estimated motion, which is also available
     # under the column names of a file.
     columns |= {column: columns[name] for column, name in MOTION_COLUMNS.items()}
-    made.columns = columns
-    return Driven(made, kept)
+    core.columns = columns
+    return Driven(core, run_samples)
 
 
 def _from_rest(run: Run, velocity: Array) -> Array:
@@ -241,15 +245,15 @@ def _with_motion_before(
     step_s = float(np.median(np.diff(time)))
     count = int(duration_s / step_s)
     moving = np.flatnonzero(speed)
-    way = float(np.sign(speed[moving[0]])) if len(moving) else 1.0
-    velocity = way * share * float(np.max(np.abs(speed), initial=0.0))
+    direction = float(np.sign(speed[moving[0]])) if len(moving) else 1.0
+    velocity = direction * share * float(np.max(np.abs(speed), initial=0.0))
     arm = 1.0 if rig.bearing is None else rig.bearing.radius_m
-    back = -step_s * np.arange(count, 0, -1)
+    before_s = -step_s * np.arange(count, 0, -1)
     before = {name: np.full(count, values[0]) for name, values in columns.items()}
-    before["time_s"] = time[0] + back
+    before["time_s"] = time[0] + before_s
     before["velocity"] = np.full(count, velocity)
     before["acceleration"] = np.zeros(count)
-    before["angle_rad"] = columns["angle_rad"][0] + velocity / arm * back
+    before["angle_rad"] = columns["angle_rad"][0] + velocity / arm * before_s
     return count, {name: np.concatenate((before[name], columns[name])) for name in columns}
 
 

@@ -95,27 +95,27 @@ class DelayedChain:
         tau_s = float(values[self.tau])
         # Before the run, the force is assumed to equal that at its start.
         read_s = np.maximum(run.time_s - tau_s, instants_s[0])
-        there = np.unique(np.append(read_s, instants_s[0]))
-        late = run.at(there, np.zeros(len(there)))
-        moved = motion.at(instants_s, there)
-        turns = reversals(there, moved)
-        step = np.diff(there)[turns.interval] if len(turns.at_s) else np.zeros(0)
+        read_instants = np.unique(np.append(read_s, instants_s[0]))
+        late = run.at(read_instants, np.zeros(len(read_instants)))
+        moved = motion.at(instants_s, read_instants)
+        turns = reversals(read_instants, moved)
+        step = np.diff(read_instants)[turns.interval] if len(turns.at_s) else np.zeros(0)
         sides = np.concatenate([turns.at_s - BESIDE * step, turns.at_s + BESIDE * step])
-        whole, driven = with_instants(self.rig, late, moved, sides)
+        all_instants, driven = with_instants(self.rig, late, moved, sides)
         force = self.chain.predict(values[self.kept], [Driven(driven.motion)])[0]
-        found = force[np.searchsorted(whole, read_s)]
+        reading = force[np.searchsorted(all_instants, read_s)]
         if self.drift is not None:
             # The sensor drifts with the time of the record, after the delay.
-            found = found + values[self.drift] * tau_s
-        before, after, over = found, found, np.ones(len(found))
+            reading = reading + values[self.drift] * tau_s
+        before, after, over = reading, reading, np.ones(len(reading))
         if len(turns.at_s):
-            low, high = np.split(np.interp(sides, whole, force), 2)
+            low, high = np.split(np.interp(sides, all_instants, force), 2)
             nearest = _nearest(turns.at_s, read_s)
-            gone = read_s - turns.at_s[nearest]
+            since_s = read_s - turns.at_s[nearest]
             jump = (high - low)[nearest]
-            before = found - np.where(gone > 0.0, jump, 0.0)
+            before = reading - np.where(since_s > 0.0, jump, 0.0)
             after = before + jump
-            over = ndtr(gone / np.maximum(np.hypot(turns.sd_s[nearest], sd_s), 1e-12))
+            over = ndtr(since_s / np.maximum(np.hypot(turns.sd_s[nearest], sd_s), 1e-12))
         return DelayedReading(before, after, over)
 
 

@@ -43,8 +43,8 @@ class DrivenChain:
 
     def predict(self, parameters: Array, driven: Sequence[Driven]) -> list[Array]:
         """Return the friction readings, N, one array per run."""
-        found = self.core.predict(parameters, [d.motion for d in driven])
-        return [d.at_samples(f) for d, f in zip(driven, found, strict=True)]
+        readings = self.core.predict(parameters, [d.motion for d in driven])
+        return [d.at_samples(f) for d, f in zip(driven, readings, strict=True)]
 
     def jacobian(
         self, parameters: Array, driven: Sequence[Driven], which: Sequence[int]

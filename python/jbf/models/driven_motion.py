@@ -77,24 +77,24 @@ def with_instants(
     inside = (new > time[0]) & (new < time[-1]) & ~np.isin(new, time)
     if not inside.any():
         return time, core_motion(rig, run, motion)
-    whole, first = np.unique(np.concatenate([time, new[inside]]), return_index=True)
+    instants, first = np.unique(np.concatenate([time, new[inside]]), return_index=True)
     velocity = np.concatenate([v, speed[inside]])[first]
     if run.load_n is not None:
         # After interpolation the noise of the load would no longer be white.
         run = replace(run, load_n=steady_load(run.load_n))
-    before = np.searchsorted(time, whole, side="right") - 1
-    there = replace(
+    before = np.searchsorted(time, instants, side="right") - 1
+    extended = replace(
         motion,
         velocity=velocity,
-        acceleration=np.interp(whole, time, motion.acceleration),
-        angle_rad=np.interp(whole, time, motion.angle_rad),
+        acceleration=np.interp(instants, time, motion.acceleration),
+        angle_rad=np.interp(instants, time, motion.angle_rad),
         velocity_error_m_s=motion.velocity_error_m_s[before],
         resting=motion.resting[before],
         sign_known=motion.sign_known[before],
     )
-    friction = np.zeros(len(whole)) if run.friction is None else run.friction[before]
-    driven = core_motion(rig, run.at(whole, friction), there)
-    return whole, Driven(driven.motion, np.searchsorted(whole, time))
+    friction = np.zeros(len(instants)) if run.friction is None else run.friction[before]
+    driven = core_motion(rig, run.at(instants, friction), extended)
+    return instants, Driven(driven.motion, np.searchsorted(instants, time))
 
 
 def reversals(time_s: Array, motion: EstimatedMotion) -> Reversals:

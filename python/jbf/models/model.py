@@ -107,14 +107,14 @@ class Model(Shown):
     ) -> None:
         find_law(law)
         chosen = in_chain_order(effects)
-        known = parameters_of(law, chosen)
+        catalogue = parameters_of(law, chosen)
         given = {
-            find_parameter(name, known): _with_error(name, v)
+            find_parameter(name, catalogue): _with_error(name, v)
             for name, v in by_name(parameters, "parameters").items()
         }
         values = {
             name: given.get(name, ParameterValue(p.starts[0] if p.null is None else p.null))
-            for name, p in known.items()
+            for name, p in catalogue.items()
         }
         for name, value in (
             ("rig", rig),

@@ -46,7 +46,7 @@ def _parameter(entry: object, key: str) -> ParameterValue:
 
 
 def _parameters(content: Mapping[str, Any], effects: Collection[str]) -> dict[str, ParameterValue]:
-    found = {}
+    parameters = {}
     for name, entry in content.items():
         # A nested table contains parameters of an effect, even of one missing in the list of
         # effects.
@@ -55,10 +55,10 @@ def _parameters(content: Mapping[str, Any], effects: Collection[str]) -> dict[st
         if effect in effects or inner:
             for short, value in table(entry, f"parameters.{name}").items():
                 full = current_parameter(f"{effect}.{short}")
-                found[full] = _parameter(value, f"parameters.{name}.{short}")
+                parameters[full] = _parameter(value, f"parameters.{name}.{short}")
         else:
-            found[current_parameter(name)] = _parameter(entry, f"parameters.{name}")
-    return found
+            parameters[current_parameter(name)] = _parameter(entry, f"parameters.{name}")
+    return parameters
 
 
 def _from_mapping(content: Mapping[str, Any]) -> ModelFile:
@@ -113,10 +113,10 @@ def _parameters_table(model: ModelFile, units: Mapping[str, str]) -> Table:
         if "." not in name:
             parameters[name] = _inline(value, units.get(name, ""))
     for effect in model.effects:
-        own = {n: v for n, v in model.parameters.items() if n.startswith(f"{effect}.")}
-        if own:
+        of_effect = {n: v for n, v in model.parameters.items() if n.startswith(f"{effect}.")}
+        if of_effect:
             parameters[effect] = tomlkit.table()
-        for name, value in own.items():
+        for name, value in of_effect.items():
             parameters[effect][name.partition(".")[2]] = _inline(value, units.get(name, ""))
     return parameters
 

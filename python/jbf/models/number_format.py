@@ -60,5 +60,5 @@ def step_words(models: Sequence[Sequence[str]], index: int) -> str:
         return f"{BARE} + {', '.join(effects)}" if effects else BARE
     before = models[index - 1]
     new = [e for e in effects if e not in before]
-    gone = [e for e in before if e not in effects]
-    return ", ".join([f"+ {e}" for e in new] + [f"- {e}" for e in gone]) or "refitted"
+    removed = [e for e in before if e not in effects]
+    return ", ".join([f"+ {e}" for e in new] + [f"- {e}" for e in removed]) or "refitted"

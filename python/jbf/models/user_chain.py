@@ -54,20 +54,20 @@ class UserChain:
         self,
         core: _core.Chain,
         instrument: Sequence[tuple[str, Sequence[int]]],
-        own: Sequence[UserEffect],
+        effects: Sequence[UserEffect],
         law: UserEffect | None = None,
-        held: Sequence[float] = (),
+        carrier_values: Sequence[float] = (),
         carrier: _core.Chain | None = None,
         bare: _core.Chain | None = None,
     ) -> None:
         self.bare = bare
         self.core, self.instrument, self.carrier = core, list(instrument), carrier
-        self.held = np.array(held, dtype=np.float64)
+        self.carrier_values = np.array(carrier_values, dtype=np.float64)
         first = 0 if law is None else len(law.parameters)
-        rest = len(core.parameter_names) - len(held)
+        rest = len(core.parameter_names) - len(carrier_values)
         self.of_core = range(first, first + rest)
-        ends = np.cumsum([first + rest, *(len(e.parameters) for e in own)]).tolist()
-        self.own = [*own] if law is None else [law, *own]
+        ends = np.cumsum([first + rest, *(len(e.parameters) for e in effects)]).tolist()
+        self.user_forces = [*effects] if law is None else [law, *effects]
         self.places = [range(a, b) for a, b in pairwise(ends)]
         if law is not None:
             self.places.insert(0, range(first))
@@ -77,9 +77,9 @@ class UserChain:
     def parameter_names(self) -> list[str]:
         """Dotted names of the parameters, in the order of `parameters`."""
         first = [] if self.law is None else [p.name for p in self.law.parameters]
-        effects = self.own if self.law is None else self.own[1:]
+        effects = self.user_forces if self.law is None else self.user_forces[1:]
         theirs = [f"{e.name}.{p.name}" for e in effects for p in e.parameters]
-        return [*first, *self.core.parameter_names[len(self.held) :], *theirs]
+        return [*first, *self.core.parameter_names[len(self.carrier_values) :], *theirs]
 
     def predict(self, parameters: Array, motions: Sequence[_core.Motion]) -> list[Array]:
         """Return the friction readings, N, one array per run."""
@@ -99,30 +99,30 @@ class UserChain:
     ) -> list[tuple[Array, Array]]:
         """Return the readings and their derivatives with respect to the parameters `which`."""
         of_core = [w for w in which if w in self.of_core]
-        shift = len(self.held) - self.of_core.start
+        shift = len(self.carrier_values) - self.of_core.start
         inner = [w + shift for w in of_core]
         rows = self.core.jacobian(self._inner(parameters), motions, inner)
-        found = []
+        results = []
         for (values, slopes), motion in zip(rows, motions, strict=True):
             added, by_instrument = self._added(parameters, motion)
             bent = self._bent(parameters, motion, of_core)
-            whole = np.empty((len(values), len(which)))
+            derivatives = np.empty((len(values), len(which)))
             for k, w in enumerate(which):
                 if w in self.of_core:
-                    whole[:, k] = slopes[:, of_core.index(w)] + by_instrument.get(w, 0.0)
-                    whole[:, k] += bent.get(w, 0.0)
+                    derivatives[:, k] = slopes[:, of_core.index(w)] + by_instrument.get(w, 0.0)
+                    derivatives[:, k] += bent.get(w, 0.0)
                 else:
-                    whole[:, k] = self._slope(parameters, motion, w)
-            found.append((values + added, whole))
-        return found
+                    derivatives[:, k] = self._slope(parameters, motion, w)
+            results.append((values + added, derivatives))
+        return results
 
     def _inner(self, parameters: Array) -> Array:
         part = parameters[self.of_core.start : self.of_core.stop]
-        return np.ascontiguousarray(np.concatenate((self.held, part)))
+        return np.ascontiguousarray(np.concatenate((self.carrier_values, part)))
 
     def _values(self, parameters: Array, number: int) -> list[float]:
-        found: list[float] = parameters[self.places[number]].tolist()
-        return found
+        values: list[float] = parameters[self.places[number]].tolist()
+        return values
 
     def _added(self, parameters: Array, motion: _core.Motion) -> tuple[Array, dict[int, Array]]:
         """Return the contribution of user-defined effects to the reading.
@@ -142,7 +142,7 @@ class UserChain:
         """Return the forces of the user-defined effects before and after the instrument, N."""
         n = len(motion.columns["time_s"])
         before, after = np.zeros(n), np.zeros(n)
-        for i, effect in enumerate(self.own):
+        for i, effect in enumerate(self.user_forces):
             force = effect.force(motion.columns, self._values(parameters, i))
             if effect.stage == "instrument":
                 after += force
@@ -151,12 +151,12 @@ class UserChain:
         if self.law is not None:
             # Subtract the small force of the built-in law, whose parameters are at their bounds.
             assert self.carrier is not None
-            before -= self.carrier.predict(self.held, [motion])[0]
+            before -= self.carrier.predict(self.carrier_values, [motion])[0]
         return before, after
 
     def _slope(self, parameters: Array, motion: _core.Motion, place: int) -> Array:
         number = next(i for i, places in enumerate(self.places) if place in places)
-        effect, first = self.own[number], self.places[number][0]
+        effect, first = self.user_forces[number], self.places[number][0]
         slope = effect.slope(motion.columns, self._values(parameters, number), place - first)
         if effect.stage == "instrument" or not self.instrument:
             return slope
@@ -187,14 +187,14 @@ class UserChain:
         """Return the force of the bearing, N, if the instrument is nonlinear; otherwise zeros."""
         if self.bare is None:
             return np.zeros(len(motion.columns["time_s"]))
-        found: Array = self.bare.predict(self._before_instrument(parameters), [motion])[0]
-        return found
+        force: Array = self.bare.predict(self._before_instrument(parameters), [motion])[0]
+        return force
 
     def _before_instrument(self, parameters: Array) -> Array:
         """Return the parameters of the chain of the core, without those of the instrument."""
         instrument = {place for _, places in self.instrument for place in places}
-        kept = [place for place in self.of_core if place not in instrument]
-        return np.ascontiguousarray(np.concatenate((self.held, parameters[kept])))
+        before = [place for place in self.of_core if place not in instrument]
+        return np.ascontiguousarray(np.concatenate((self.carrier_values, parameters[before])))
 
     def _along(self, parameters: Array, motion: _core.Motion, force: Array, slope: Array) -> Array:
         """Return the directional derivative of the reading for a change of force along `slope`."""
@@ -205,8 +205,8 @@ class UserChain:
         above, below = (
             self._through(parameters, motion, force + sign * step * slope)[0] for sign in (1, -1)
         )
-        found: Array = (above - below) / (2.0 * step)
-        return found
+        derivative: Array = (above - below) / (2.0 * step)
+        return derivative
 
     def _bent(
         self, parameters: Array, motion: _core.Motion, which: Sequence[int]
@@ -218,14 +218,14 @@ class UserChain:
         if self.bare is None:
             return {}
         instrument = {place for _, places in self.instrument for place in places}
-        kept = [place for place in self.of_core if place not in instrument]
-        asked = [w for w in which if w not in instrument]
-        columns = [len(self.held) + kept.index(w) for w in asked]
+        core_places = [place for place in self.of_core if place not in instrument]
+        of_machine = [w for w in which if w not in instrument]
+        columns = [len(self.carrier_values) + core_places.index(w) for w in of_machine]
         before = self._before_instrument(parameters)
         ((borne, slopes),) = self.bare.jacobian(before, [motion], columns)
         added, _ = self._user_forces(parameters, motion)
-        found = {}
-        for k, w in enumerate(asked):
-            there = self._along(parameters, motion, borne + added, slopes[:, k])
-            found[w] = there - self._along(parameters, motion, borne, slopes[:, k])
-        return found
+        changes = {}
+        for k, w in enumerate(of_machine):
+            bent_derivative = self._along(parameters, motion, borne + added, slopes[:, k])
+            changes[w] = bent_derivative - self._along(parameters, motion, borne, slopes[:, k])
+        return changes

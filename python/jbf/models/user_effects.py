@@ -97,10 +97,10 @@ class UserEffect(Effect):
             quotient = self._difference(columns, values, which)
             step = self._complex_step(columns, values, which)
             top = float(np.max(np.abs(quotient), initial=0.0))
-            good = step is not None and float(np.max(np.abs(step - quotient))) <= AGREEMENT * top
+            agrees = step is not None and float(np.max(np.abs(step - quotient))) <= AGREEMENT * top
             if top > 0.0:  # a zero derivative gives no information
-                self.analytic[page.name] = good
-            return quotient if step is None or not good else step
+                self.analytic[page.name] = agrees
+            return quotient if step is None or not agrees else step
         if self.analytic[page.name]:
             step = self._complex_step(columns, values, which)
             if step is not None:
@@ -115,13 +115,13 @@ class UserEffect(Effect):
         moved[which] += 1j * size
         try:
             with np.errstate(all="ignore"):
-                found = np.asarray(self.function(**self._arguments(columns, moved)))
+                force = np.asarray(self.function(**self._arguments(columns, moved)))
         except Exception:  # a function of real numbers may raise any error for complex ones
             return None
-        if found.dtype.kind != "c":
+        if force.dtype.kind != "c":
             return None
-        whole: Array = np.broadcast_to(found.imag / size, np.shape(columns["time_s"])).copy()
-        return whole if np.all(np.isfinite(whole)) else None
+        derivative: Array = np.broadcast_to(force.imag / size, np.shape(columns["time_s"])).copy()
+        return derivative if np.all(np.isfinite(derivative)) else None
 
     def _difference(
         self, columns: Mapping[str, Array], values: Sequence[float], which: int
@@ -163,14 +163,14 @@ class UserEffect(Effect):
                 mend="correct its function",
             ) from error
 
-    def _checked(self, found: Any, n: int, values: Sequence[float]) -> Array:
+    def _checked(self, returned: Any, n: int, values: Sequence[float]) -> Array:
         def wrong(problem: str) -> InputError:
             return InputError(
                 problem=f"the {self.called} {self.name} {problem}",
                 mend="its function must return one finite force (N) per sample",
             )
 
-        array = np.asarray(found)
+        array = np.asarray(returned)
         if array.dtype.kind not in "fiub":
             raise wrong(f"gives {array.dtype}")
         if array.shape not in ((), (n,)):

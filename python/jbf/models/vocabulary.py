@@ -97,10 +97,10 @@ class Vocabulary:
         """
         named = [("law", model.law, self.laws), ("clock", model.clock, self.clocks)]
         named += [("effects", effect, list(self.effects)) for effect in model.effects]
-        for key, word, known in named:
-            if word not in known:
+        for key, word, valid in named:
+            if word not in valid:
                 problem = f"{quoted(word)} is not known"
-                mend = did_you_mean(word, known)
+                mend = did_you_mean(word, valid)
                 if key == "effects":
                     mend += "; register a user-defined one first: --effects-from FILE.py"
                 raise InputError(key=key, problem=problem, mend=mend)

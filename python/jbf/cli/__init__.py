@@ -56,9 +56,9 @@ class Parser(argparse.ArgumentParser):
         self._find_slips(
             [word for word in self._words_before_subcommand(words) if word.startswith("--")]
         )
-        found, rest = super().parse_known_args(args, namespace)
+        parsed, rest = super().parse_known_args(args, namespace)
         self._find_slips(rest)
-        return found, rest
+        return parsed, rest
 
     def _words_before_subcommand(self, words: Sequence[str]) -> Iterator[str]:
         """Yield the words before a subcommand and before `--`."""
@@ -69,13 +69,13 @@ class Parser(argparse.ArgumentParser):
             yield word
 
     def _find_slips(self, rest: Sequence[str]) -> None:
-        known = list(self._option_string_actions)
+        options = list(self._option_string_actions)
         for word in rest:
             option = word.partition("=")[0]
-            if option in known:
+            if option in options:
                 continue
-            longer = [name for name in known if len(option) > 3 and name.startswith(option)]
-            guess = longer[0] if longer else closest(option, known)
+            longer = [name for name in options if len(option) > 3 and name.startswith(option)]
+            guess = longer[0] if longer else closest(option, options)
             if word.startswith("--") and guess is not None:
                 self.error(f"unrecognized arguments: {word}; did you mean {guess}?")
 
@@ -108,11 +108,11 @@ def parser(words: Sequence[str] | None = None) -> Parser:
         dest="command", metavar="COMMAND", required=True, parser_class=Parser
     )
     needed = COMMANDS if words is None else _needed(words)
-    for name, does in COMMANDS.items():
+    for name, description in COMMANDS.items():
         if name in needed:
             import_module(f"jbf.cli.{_MODULES.get(name, name)}").add(commands)
         else:
-            commands.add_parser(name, help=does)
+            commands.add_parser(name, help=description)
     return top
 
 

@@ -23,7 +23,7 @@ Options = TypeVar("Options")
 def command(
     commands: Commands,
     name: str,
-    does: str,
+    description: str,
     options: type[Options],
     run: Callable[[Options], int],
 ) -> Parser:
@@ -31,7 +31,7 @@ def command(
 
     Parameters
     ----------
-    does
+    description
         Help text in one line.
     options
         Dataclass to which the parsed arguments are converted.
@@ -39,7 +39,10 @@ def command(
         Runs the command with these options, and returns the exit code.
     """
     added = commands.add_parser(
-        name, help=does, description=f"{does[0].upper()}{does[1:]}.", allow_abbrev=False
+        name,
+        help=description,
+        description=f"{description[0].upper()}{description[1:]}.",
+        allow_abbrev=False,
     )
     added.epilog = examples(added.prog)
     added.formatter_class = Help
@@ -143,9 +146,9 @@ def add_law(parser: Parser, also: str = "") -> None:
     )
 
 
-def add_law_name(parser: Parser, does: str) -> None:
+def add_law_name(parser: Parser, description: str) -> None:
     """Add `--law` without `--clock`."""
-    parser.add_argument("--law", metavar="NAME", help=does)
+    parser.add_argument("--law", metavar="NAME", help=description)
 
 
 def add_effects_from(parser: Parser) -> None:

@@ -70,8 +70,8 @@ def run(options: CheckOptions) -> int:
     """Run `jbf check` and return its exit code."""
     from jbf.diagnosis.check import check, identity
 
-    wanted = {"--json": options.json, "--resume": options.resume}
-    outputs.check(wanted, outputs.inputs_in(options.model, options.runs, options.effects_from))
+    targets = {"--json": options.json, "--resume": options.resume}
+    outputs.check(targets, outputs.inputs_in(options.model, options.runs, options.effects_from))
     check_jobs(options.jobs)
     jobs = processes(options.jobs, 2 * options.campaigns)
     model = inputs.model(options.model)
@@ -86,7 +86,7 @@ def run(options: CheckOptions) -> int:
                 file.write(json.dumps({"of": name, **answer.to_dict()}) + "\n")
 
     with shown("diagnosing") as report, ProcessPoolExecutor(jobs) as executor:
-        found = check(
+        result = check(
             model,
             runs,
             campaigns=options.campaigns,
@@ -97,8 +97,8 @@ def run(options: CheckOptions) -> int:
             keep=keep,
         )
     if options.json:
-        outputs.write({options.json: json_text(found.to_dict())})
-    outputs.say(found.summary(), {"--json": options.json})
+        outputs.write({options.json: json_text(result.to_dict())})
+    outputs.say(result.summary(), {"--json": options.json})
     return 0
 
 
@@ -114,31 +114,31 @@ def _known(file: Path, name: str) -> Sequence[Answer]:
 
     if not file.exists():
         return []
-    found = []
+    answers = []
     text = read_text(file)
     lines = text.splitlines()
     for row, line in enumerate(lines, 1):
         try:
-            told = json.loads(line)
-            of, answer = told["of"], answer_of(told)
+            content = json.loads(line)
+            campaign, answer = content["of"], answer_of(content)
         except (ValueError, KeyError, TypeError, AttributeError):
             # A last line that was cut off while being written is removed; its result is computed
             # again.
             if row == len(lines):
-                write_text(file, "".join(f"{kept}\n" for kept in lines[:-1]))
+                write_text(file, "".join(f"{complete}\n" for complete in lines[:-1]))
                 break
             raise InputError(
                 file=file, row=row, problem="is not a result of jbf check", mend="name another file"
             ) from None
-        if of != name:
+        if campaign != name:
             raise InputError(
                 file=file,
                 row=row,
                 problem="belongs to another model, other runs or another level",
                 mend="name another file, or remove this one",
             )
-        found.append(answer)
-    if len(found) == len(lines) and lines and not text.endswith("\n"):
+        answers.append(answer)
+    if len(answers) == len(lines) and lines and not text.endswith("\n"):
         # Only the final newline is missing: append it, so that the next result starts a new line.
         write_text(file, text + "\n")
-    return found
+    return answers

@@ -39,15 +39,15 @@ def add(commands: Commands) -> None:
 
 def run(options: CompareOptions) -> int:
     """Run `jbf compare` and return its exit code."""
-    wanted = {"--json": options.json, "--report": options.report}
+    targets = {"--json": options.json, "--report": options.report}
     read = outputs.inputs_in(options.model, options.runs, options.map, options.effects_from)
-    outputs.check(wanted, read)
+    outputs.check(targets, read)
     model = inputs.model(options.model)
     if options.map is None:
         runs = inputs.runs(options.runs, model.rig, first="MODEL")
     else:
         _, runs = inputs.recordings(options.map, options.runs)
-    outputs.check(wanted, [run.path for run in runs if run.path])
+    outputs.check(targets, [run.path for run in runs if run.path])
 
     from jbf.comparison.compare import compare
 
@@ -62,5 +62,5 @@ def run(options: CompareOptions) -> int:
         texts[options.json] = json_text(comparison.to_dict())
     summary = comparison.summary()
     outputs.write(texts)
-    outputs.say(summary, wanted)
+    outputs.say(summary, targets)
     return 0

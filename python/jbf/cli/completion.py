@@ -23,10 +23,10 @@ class Completion(argparse.Action):
 
 def script(parser: argparse.ArgumentParser, shell: str) -> str:
     """Return the completion script, generated from the parser."""
-    known = dict(_commands(parser))
+    words_of_command = dict(_commands(parser))
     if shell == "fish":
-        return _fish(known)
-    bash = _bash(known)
+        return _fish(words_of_command)
+    bash = _bash(words_of_command)
     if shell == "zsh":
         return f"#compdef jbf\nautoload -U +X bashcompinit && bashcompinit\n{bash}"
     return bash
@@ -65,7 +65,7 @@ def _commands(parser: argparse.ArgumentParser, name: str = "") -> Iterator[tuple
         yield from _commands(below, f"{name} {word}".strip())
 
 
-def _bash(known: dict[str, _Words]) -> str:
+def _bash(words_of_command: dict[str, _Words]) -> str:
     lines = [
         "_jbf() {",
         '  local word="${COMP_WORDS[COMP_CWORD]}" before="${COMP_WORDS[COMP_CWORD-1]}"',
@@ -73,15 +73,15 @@ def _bash(known: dict[str, _Words]) -> str:
         "  for ((i = 1; i < COMP_CWORD; i++)); do",
         '    case "$command ${COMP_WORDS[i]}" in',
     ]
-    for name in filter(None, known):
+    for name in filter(None, words_of_command):
         pattern = f'" {name}"' if " " not in name else f'"{name}"'
         lines.append(f'      {pattern}) command="{name}" ;;')
     lines += ["    esac", "  done", '  case "$command $before" in']
-    for name, words in known.items():
+    for name, words in words_of_command.items():
         for option, values in words.values.items():
             lines.append(f'    "{name} {option}") words="{" ".join(values)}" ;;')
     lines += ["  esac", '  if [[ -z $words ]]; then case "$command" in']
-    for name, words in known.items():
+    for name, words in words_of_command.items():
         lines.append(f'    "{name}") words="{" ".join([*words.actions, *words.options])}" ;;')
     return "\n".join(
         [
@@ -97,18 +97,18 @@ def _bash(known: dict[str, _Words]) -> str:
     )
 
 
-def _fish(known: dict[str, _Words]) -> str:
+def _fish(words_of_command: dict[str, _Words]) -> str:
     lines = []
-    for name, words in known.items():
-        seen = [f"__fish_seen_subcommand_from {word}" for word in name.split()]
-        when = "; and ".join(seen) if seen else "__fish_use_subcommand"
+    for name, words in words_of_command.items():
+        conditions = [f"__fish_seen_subcommand_from {word}" for word in name.split()]
+        when = "; and ".join(conditions) if conditions else "__fish_use_subcommand"
         head = f"complete -c jbf -n {shlex.quote(when)}"
         if words.actions:
             lines.append(f"{head}{' -f' * (not name)} -a {shlex.quote(' '.join(words.actions))}")
-        for option, does in words.options.items():
+        for option, description in words.options.items():
             flag = f"-l {option[2:]}" if option.startswith("--") else f"-s {option[1:]}"
             names = words.values.get(option)
             takes = f" -x -a {shlex.quote(' '.join(names))}" if names else ""
-            said = shlex.quote(does.replace("%%", "%"))
-            lines.append(f"{head} {flag}{takes} -d {said}")
+            quoted = shlex.quote(description.replace("%%", "%"))
+            lines.append(f"{head} {flag}{takes} -d {quoted}")
     return "\n".join([*lines, ""])

@@ -66,14 +66,20 @@ def called(started: str) -> str:
     path = Path(started)
     if path.name == "__main__.py":
         return f"{_from_here(Path(sys.executable))} -m jbf"
-    found = shutil.which(path.name)
-    if not path.is_file() or (found is not None and Path(found).samefile(path)):
+    executable = shutil.which(path.name)
+    if not path.is_file() or (executable is not None and Path(executable).samefile(path)):
         return "jbf"
     return _from_here(path)
 
 
 def _from_here(path: Path) -> str:
     """Return the shortest form of a path, relative to the working directory where possible."""
-    here = Path.cwd()
-    whole = Path(os.path.abspath(path))
-    return shlex.quote(str(whole.relative_to(here) if whole.is_relative_to(here) else whole))
+    working_folder = Path.cwd()
+    absolute = Path(os.path.abspath(path))
+    return shlex.quote(
+        str(
+            absolute.relative_to(working_folder)
+            if absolute.is_relative_to(working_folder)
+            else absolute
+        )
+    )

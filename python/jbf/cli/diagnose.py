@@ -114,25 +114,25 @@ def run(options: DiagnoseOptions) -> int:
             problem="is a CSV file where RIG should be",
             mend=f"name a rig file first, or import it: jbf import {options.rig} --folder FOLDER",
         )
-    alone = options.rig is not None and os.path.isdir(options.rig)
-    if options.rig is None or not (options.runs or alone):
+    folder_only = options.rig is not None and os.path.isdir(options.rig)
+    if options.rig is None or not (options.runs or folder_only):
         raise InputError(
             file="jbf diagnose",
             problem="RIG and RUN are missing",
             mend="name the rig file and its runs, or --many FOLDER",
         )
-    wanted = {"--out": options.out, "--json": options.json, "--report": options.report}
-    wanted["--next-run"] = options.next_run
+    targets = {"--out": options.out, "--json": options.json, "--report": options.report}
+    targets["--next-run"] = options.next_run
     read = outputs.inputs_in(options.rig, options.runs, options.effects_from)
-    outputs.check(wanted, read)
+    outputs.check(targets, read)
     law = options.law.law
     if law not in (None, AUTO):
         find_law(law)
     rig, runs = inputs.campaign(options.rig, options.runs, law)
     policy = options.level.policy(rig.quantities)
     limits_of_rig = options.limits.limits(options.next_duration_s, rig.quantities)
-    outputs.check(wanted, [run.path for run in runs if run.path])
-    runs, held = hold_out.split(runs, options.hold_out)
+    outputs.check(targets, [run.path for run in runs if run.path])
+    runs, held_out = hold_out.split(runs, options.hold_out)
 
     from jbf.diagnosis import diagnose
 
@@ -155,17 +155,17 @@ def run(options: DiagnoseOptions) -> int:
     except Stopped as stop:
         raise outputs.keep(stop, options.out) from None
     except Unfinished as end:
-        kept = outputs.keep_unfinished(end, options.out, options.json, options.report)
-        raise kept from None
-    told = hold_out.error_for_json(diagnosis.model, held)
+        unfinished = outputs.keep_unfinished(end, options.out, options.json, options.report)
+        raise unfinished from None
+    held_out_error = hold_out.error_for_json(diagnosis.model, held_out)
     if options.json:
-        texts[options.json] = json_text(diagnosis.to_dict() | told)
+        texts[options.json] = json_text(diagnosis.to_dict() | held_out_error)
     if options.out:
         texts[options.out] = diagnosis.model.to_toml()
     if options.next_run and diagnosis.experiment:
         texts[options.next_run] = diagnosis.experiment.run.to_csv()
     outputs.write(texts)
-    outputs.say(_text(diagnosis, options, hold_out.words(diagnosis.model, told)), wanted)
+    outputs.say(_text(diagnosis, options, hold_out.words(diagnosis.model, held_out_error)), targets)
     return 0
 
 

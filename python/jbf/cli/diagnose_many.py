@@ -58,7 +58,7 @@ def run(options: DiagnoseOptions, folder: str) -> int:
     for name in campaigns:
         outputs.check({"--json": options.json} | _paths(options, name), read)
     with shown("diagnosing") as report, ProcessPoolExecutor(jobs) as executor:
-        found = diagnose_many(
+        results = diagnose_many(
             campaigns,
             executor=executor,
             progress=report,
@@ -68,51 +68,51 @@ def run(options: DiagnoseOptions, folder: str) -> int:
             policy=options.level.policy(),
         )
     texts: dict[str, str] = {}
-    for name, result in found.items():
+    for name, result in results.items():
         texts |= _files(options, name, result)
     if options.json:
-        pages = {name: _page(result) for name, result in found.items()}
+        pages = {name: _page(result) for name, result in results.items()}
         texts[options.json] = json_text(pages)
     outputs.write(texts)
-    outputs.say("\n".join(_table(found)), {"--json": options.json})
+    outputs.say("\n".join(_table(results)), {"--json": options.json})
     return 0
 
 
 def _paths(options: DiagnoseOptions, name: str) -> dict[str, str]:
     """Return the output files of one campaign, by option."""
-    found = {}
+    paths = {}
     if options.out:
-        found["--out"] = str(Path(options.out) / f"{name}.toml")
+        paths["--out"] = str(Path(options.out) / f"{name}.toml")
     if options.report:
-        found["--report"] = str(Path(options.report) / f"{name}.html")
-    return found
+        paths["--report"] = str(Path(options.report) / f"{name}.html")
+    return paths
 
 
 def _files(options: DiagnoseOptions, name: str, result: Diagnosis | JbfError) -> dict[str, str]:
     if isinstance(result, Exception):
         return {}
-    paths, found = _paths(options, name), {}
+    paths, texts = _paths(options, name), {}
     if "--out" in paths:
-        found[paths["--out"]] = result.model.to_toml()
+        texts[paths["--out"]] = result.model.to_toml()
     if "--report" in paths:
         from jbf.reporting.diagnosis_page import diagnosis_page
 
-        found[paths["--report"]] = diagnosis_page(result, options.typed)
-    return found
+        texts[paths["--report"]] = diagnosis_page(result, options.typed)
+    return texts
 
 
 def _page(result: Diagnosis | JbfError) -> dict[str, Any]:
     return {"error": str(result)} if isinstance(result, Exception) else result.to_dict()
 
 
-def _table(found: dict[str, Diagnosis | JbfError]) -> list[str]:
-    done = [r for r in found.values() if not isinstance(r, Exception)]
+def _table(results: dict[str, Diagnosis | JbfError]) -> list[str]:
+    done = [r for r in results.values() if not isinstance(r, Exception)]
     units = {r.model.rig.quantities.force for r in done} or {"N"}
     # If the units of the rigs differ, each number carries its own unit.
     head = f" ({units.pop()})" if len(units) == 1 else ""
     rows = [("campaign", "verdict", "effects", f"held-out RMS{head}", f"noise{head}")]
     failed = []
-    for name, result in found.items():
+    for name, result in results.items():
         if isinstance(result, Exception):
             rows.append((name, "failed", "-", "-", "-"))
             failed.append(f"{name}: {result}")

@@ -36,8 +36,8 @@ def run(options: EffectsOptions) -> int:
     """Run `jbf effects` and return its exit code."""
     from jbf.reporting.catalogue_text import effect_page, effects_page
 
-    wanted = {"--json": options.json}
-    outputs.check(wanted)
+    targets = {"--json": options.json}
+    outputs.check(targets)
     law = None if options.law is None else find_law(options.law).name
     if options.name is None:
         pages = list(effects().values())
@@ -50,11 +50,11 @@ def run(options: EffectsOptions) -> int:
             text += f"\n\nDoes not apply: the law {law} {reason}"
     if options.json:
         outputs.write({options.json: json_text({"effects": list(map(_plain, pages))})})
-    outputs.say(text, wanted)
+    outputs.say(text, targets)
     return 0
 
 
 def _plain(page: Effect) -> dict[str, Any]:
     """Convert a catalogue entry to plain data; the function of a user-defined effect is omitted."""
-    kept = {f.name: getattr(page, f.name) for f in fields(Effect)}
-    return kept | {"parameters": [asdict(p) for p in page.parameters]}
+    content = {f.name: getattr(page, f.name) for f in fields(Effect)}
+    return content | {"parameters": [asdict(p) for p in page.parameters]}

@@ -35,10 +35,10 @@ def add(commands: Commands) -> None:
 
 def run(options: ExportOptions) -> int:
     """Run `jbf export` and return its exit code."""
-    wanted = {"--rust": options.rust, "--c": options.c}
-    if not any(wanted.values()):
+    targets = {"--rust": options.rust, "--c": options.c}
+    if not any(targets.values()):
         raise InputError(problem="no output is given", mend="add --rust FILE.rs or --c FILE.h")
-    outputs.check(wanted, [options.model])
+    outputs.check(targets, [options.model])
     model = inputs.model(options.model)
     name = Path(options.model).name
     texts = {}
@@ -49,5 +49,5 @@ def run(options: ExportOptions) -> int:
     except InputError as error:
         raise error.within(file=options.model) from None
     outputs.write(texts)
-    outputs.say(f"model written to {', '.join(texts)}", wanted)
+    outputs.say(f"model written to {', '.join(texts)}", targets)
     return 0

@@ -82,20 +82,20 @@ def add(commands: Commands) -> None:
 
 def run(options: FitOptions) -> int:
     """Run `jbf fit` and return its exit code."""
-    wanted = {"--out": options.out}
+    targets = {"--out": options.out}
     if not options.runs and not os.path.isdir(options.rig):
         raise InputError(
             file="jbf fit", problem="RUN is missing", mend="name the runs after the rig"
         )
-    outputs.check(wanted, outputs.inputs_in(options.rig, options.runs, options.effects_from))
+    outputs.check(targets, outputs.inputs_in(options.rig, options.runs, options.effects_from))
     effects = in_chain_order(name.strip() for name in options.effects.split(",") if name.strip())
     rig, runs = inputs.campaign(options.rig, options.runs, options.law.law)
     law = inputs.law_of_fit(rig, options.law.law)
     check_applies(law, effects)
     fixed = _values("--fix", options.fix, law, effects)
     start = _values("--start", options.start, law, effects)
-    outputs.check(wanted, [run.path for run in runs if run.path])
-    runs, held = hold_out.split(runs, options.hold_out)
+    outputs.check(targets, [run.path for run in runs if run.path])
+    runs, held_out = hold_out.split(runs, options.hold_out)
 
     from jbf.estimation.fit import fit
 
@@ -121,10 +121,12 @@ def run(options: FitOptions) -> int:
         raise outputs.keep(stop, options.out) from None
     except Unfinished as end:
         raise outputs.keep_unfinished(end, options.out) from None
-    told = hold_out.error_for_json(fitted.model, held)
+    held_out_error = hold_out.error_for_json(fitted.model, held_out)
     if options.out:
         outputs.write({options.out: fitted.model.to_toml()})
-    outputs.say("\n".join([fitted.report(), *hold_out.words(fitted.model, told)]), wanted)
+    outputs.say(
+        "\n".join([fitted.report(), *hold_out.words(fitted.model, held_out_error)]), targets
+    )
     return 0
 
 
@@ -145,15 +147,15 @@ def _values(
     option: str, items: tuple[str, ...], law: str, effects: tuple[str, ...]
 ) -> dict[str, float]:
     """Parse the `NAME=VALUE` items of an option into full names and values."""
-    known = parameters_of(law, effects)
-    found: dict[str, float] = {}
+    parameters = parameters_of(law, effects)
+    values: dict[str, float] = {}
     for item in items:
         name, equals, text = item.partition("=")
         place = f"{option} {item}"
         if not equals:
             raise InputError(file=place, problem="has no value", mend="write NAME=VALUE")
         try:
-            full = find_parameter(name.strip(), known)
+            full = find_parameter(name.strip(), parameters)
         except InputError as error:
             raise error.within(file=place) from None
         try:
@@ -162,14 +164,14 @@ def _values(
             raise InputError(
                 file=place, problem=f"{quoted(text)} is not a number", mend="write NAME=VALUE"
             ) from None
-        if full in found:
+        if full in values:
             raise InputError(file=place, problem=f"{full} is given twice", mend="give it once")
-        page = known[full]
+        page = parameters[full]
         if not (page.lower <= value <= page.upper or value == page.null):
             raise InputError(
                 file=place,
                 problem="is out of range",
                 mend=f"choose a value from {page.lower:g} to {page.upper:g}",
             )
-        found[full] = value
-    return found
+        values[full] = value
+    return values

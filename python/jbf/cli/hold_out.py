@@ -48,7 +48,7 @@ def split(runs: Sequence[Run], patterns: Sequence[str]) -> tuple[list[Run], list
                 problem="matches no run",
                 mend=f"the runs are {listed(run.name for run in runs)}",
             )
-    held = [run for run in runs if any(_fits(run, pattern) for pattern in patterns)]
+    held_out = [run for run in runs if any(_fits(run, pattern) for pattern in patterns)]
     used = [run for run in runs if not any(_fits(run, pattern) for pattern in patterns)]
     if not used:
         raise InputError(
@@ -56,7 +56,7 @@ def split(runs: Sequence[Run], patterns: Sequence[str]) -> tuple[list[Run], list
             problem="matches every run",
             mend="leave some runs for the fit",
         )
-    return used, held
+    return used, held_out
 
 
 def _fits(run: Run, pattern: str) -> bool:
@@ -64,16 +64,16 @@ def _fits(run: Run, pattern: str) -> bool:
     return any(fnmatchcase(name, pattern) for name in names)
 
 
-def error_for_json(model: Model, held: Sequence[Run]) -> dict[str, Any]:
+def error_for_json(model: Model, held_out: Sequence[Run]) -> dict[str, Any]:
     """Return the error of a model on the held-out runs as data for JSON.
 
     Empty without such runs.
     """
-    if not held:
+    if not held_out:
         return {}
     from jbf.comparison.compare import compare
 
-    error = compare(model, held).to_dict()
+    error = compare(model, held_out).to_dict()
     return {"hold_out": {key: error[key] for key in ("rms", "noise_rms", "runs")}}
 
 
@@ -83,13 +83,13 @@ def words(model: Model, error: dict[str, Any]) -> list[str]:
         return []
     from jbf.reporting.words import against_noise
 
-    found = error["hold_out"]
+    held_out = error["hold_out"]
     unit = model.rig.quantities.force
-    ratio = against_noise(found["rms"], found["noise_rms"] or 0.0)
-    runs = ", ".join(f"{run['run']} {run['rms']:.3g}" for run in found["runs"])
+    ratio = against_noise(held_out["rms"], held_out["noise_rms"] or 0.0)
+    runs = ", ".join(f"{run['run']} {run['rms']:.3g}" for run in held_out["runs"])
     return [
         "",
-        f"Held out ({count_of(len(found['runs']), 'run')}, excluded from all fits): RMS "
-        f"{found['rms']:.4g} {unit}, {ratio}",
+        f"Held out ({count_of(len(held_out['runs']), 'run')}, excluded from all fits): RMS "
+        f"{held_out['rms']:.4g} {unit}, {ratio}",
         f"  {shorten(runs, WIDEST, placeholder=' ...')}",
     ]

@@ -131,7 +131,7 @@ def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
 
     try:
         with shown("importing") as report:
-            found = import_files(
+            campaign = import_files(
                 options.files,
                 options.map,
                 out,
@@ -147,8 +147,8 @@ def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
             outputs.complain(line)
         return 2
     if options.plot is not None:
-        _draw(found, options.plot)
-    outputs.say(found.summary(), {})
+        _draw(campaign, options.plot)
+    outputs.say(campaign.summary(), {})
     if out is None:
         outputs.say("\nNothing was written; add --folder FOLDER", {})
     return 0
@@ -171,18 +171,18 @@ def _look(options: ImportOptions) -> int:
     if options.beside and len(options.files) > 1:
         mend = "name one FILE, and the others with --beside"
         raise InputError(file="--beside", problem="requires a single FILE", mend=mend)
-    target, kept = _map_path(file, options.joint, replace=options.force)
+    target, exists = _map_path(file, options.joint, replace=options.force)
     shown_path = file.parent / target.name
-    if not kept:
+    if not exists:
         outputs.check({shown_path.name: str(target)}, options.inputs())
-    if kept and options.beside:
+    if exists and options.beside:
         problem = f"{shown_path.name} exists and may name other files"
         mend = f"replace it with --force, or use it with --map {shown_path}"
         raise InputError(file=shown_path, problem=problem, mend=mend)
-    found = look(file, options.joint, options.beside or ())
-    if not kept:
-        write_text(target, map_text(found, str(shown_path)))
-    outputs.say(guess_report(found, str(shown_path), kept=kept), {})
+    proposal = look(file, options.joint, options.beside or ())
+    if not exists:
+        write_text(target, map_text(proposal, str(shown_path)))
+    outputs.say(guess_report(proposal, str(shown_path), kept=exists), {})
     return 0
 
 
@@ -209,7 +209,7 @@ def _map_path(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bo
     return path, path.exists() and not replace
 
 
-def _draw(found: Import, path: str) -> None:
+def _draw(campaign: Import, path: str) -> None:
     from jbf.reporting.cut_plot import save_cut
 
-    save_cut(found, path)
+    save_cut(campaign, path)

@@ -26,12 +26,12 @@ _imports: list[Import] = []
 """Imports kept until the command ends, because their temporary folders are deleted with them."""
 
 
-def law_for(on: Rig, asked: str | None) -> str:
+def law_for(on: Rig, requested: str | None) -> str:
     """Return the requested law, or the default.
 
     The default is `journal` for a bearing; for a drive the law is selected from the data.
     """
-    return asked or ("journal" if on.drive is None else AUTO)
+    return requested or ("journal" if on.drive is None else AUTO)
 
 
 def law_of_fit(on: Rig, requested: str | None) -> str:
@@ -46,14 +46,14 @@ def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Ri
     recordings.
     """
     if os.path.isdir(rig_or_map):
-        found = rig(str(Path(rig_or_map) / "rig.toml"), law)
-        return found, runs(items or [rig_or_map], found, first="RIG")
+        rig_content = rig(str(Path(rig_or_map) / "rig.toml"), law)
+        return rig_content, runs(items or [rig_or_map], rig_content, first="RIG")
     if is_map(rig_or_map):
         imported = recordings(rig_or_map, items)
         _check(imported[0], law)
         return imported
-    found = rig(rig_or_map, law)
-    return found, runs(items, found, first="RIG")
+    rig_content = rig(rig_or_map, law)
+    return rig_content, runs(items, rig_content, first="RIG")
 
 
 def is_map(path: str) -> bool:
@@ -71,10 +71,10 @@ def recordings(map_path: str, items: Sequence[str]) -> tuple[Rig, list[Run]]:
     from jbf.importing.import_files import import_files
 
     with shown("importing") as report:
-        found = import_files(items, map_path, progress=report)
+        imported = import_files(items, map_path, progress=report)
     # The report reads the ledger in the folder of the runs.
-    _imports.append(found)
-    return found.rig, found.runs
+    _imports.append(imported)
+    return imported.rig, imported.runs
 
 
 def _check(on: Rig, law: str | None) -> None:
@@ -91,8 +91,8 @@ def rig(path: str, law: str | None) -> Rig:
     """
     _refuse_csv(path, "RIG")
     try:
-        found = read_rig(path)
-        _check(found, law)
+        content = read_rig(path)
+        _check(content, law)
     except InputError as error:
         if {"law", "format", "effects"} & _keys(path):
             raise InputError(
@@ -101,7 +101,7 @@ def rig(path: str, law: str | None) -> Rig:
                 mend="name the rig's TOML with [bearing], [lubricant] and [load], or with [drive]",
             ) from None
         raise error.within(file=path) from None
-    return found
+    return content
 
 
 def model(path: str) -> Model:

@@ -27,12 +27,12 @@ def add(group: Group, *, otherwise: str, sharpest: str, longest: str, needed: bo
     needed
         Whether the maximum speed is required.
     """
-    usual = "" if needed else f" (default: {otherwise})"
+    default = "" if needed else f" (default: {otherwise})"
     group.add_argument(
         SPEED,
         metavar="X",
         required=needed,
-        help=f"largest speed, in the unit of the rig or as '12 deg/s'{usual}",
+        help=f"largest speed, in the unit of the rig or as '12 deg/s'{default}",
     )
     group.add_argument(
         SHARPNESS,

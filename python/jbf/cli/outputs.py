@@ -48,16 +48,16 @@ def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[
     InputError
         Names the option and the path; nothing has been written.
     """
-    taken = {real_path(item): "is also an input" for item in inputs}
+    conflicts = {real_path(item): "is also an input" for item in inputs}
     for option, path in outputs.items():
         if path is None:
             continue
         target = Path(path) if path == STDOUT else real_path(path)
-        if target in taken:
+        if target in conflicts:
             raise InputError(
-                file=f"{option} {path}", problem=taken[target], mend="choose another file"
+                file=f"{option} {path}", problem=conflicts[target], mend="choose another file"
             )
-        taken[target] = "is also the file of another option"
+        conflicts[target] = "is also the file of another option"
         if path != STDOUT:
             _check_writable(option, path)
 
@@ -134,15 +134,15 @@ def keep(stop: Stopped, out: str | None) -> Kept:
     out
         Path given with `--out`, if any.
     """
-    found = stop.fit
-    model = " + ".join([found.model.law, *found.model.effects])
-    unit = found.model.rig.quantities.force
-    told = f"interrupted; the best model so far is {model}, RMS {found.rms:.3g} {unit}"
+    fit = stop.fit
+    model = " + ".join([fit.model.law, *fit.model.effects])
+    unit = fit.model.rig.quantities.force
+    text = f"interrupted; the best model so far is {model}, RMS {fit.rms:.3g} {unit}"
     if out is None:
-        say(found.summary(), {})
-        return Kept(f"{told}, not finished")
-    write({out: found.model.to_toml()})
-    return Kept(f"{told}, written to {'standard output' if out == STDOUT else out}, not finished")
+        say(fit.summary(), {})
+        return Kept(f"{text}, not finished")
+    write({out: fit.model.to_toml()})
+    return Kept(f"{text}, written to {'standard output' if out == STDOUT else out}, not finished")
 
 
 def keep_unfinished(
@@ -160,8 +160,8 @@ def keep_unfinished(
     if json is not None:
         from jbf.reporting.json import json_text
 
-        known = {"verdict": None, "unfinished": str(end)}
-        texts[json] = json_text({**known, "fit": None if end.fit is None else end.fit.to_dict()})
+        status = {"verdict": None, "unfinished": str(end)}
+        texts[json] = json_text({**status, "fit": None if end.fit is None else end.fit.to_dict()})
     if end.fit is not None and out is not None:
         texts[out] = end.fit.model.to_toml()
     if end.fit is not None and report is not None:

@@ -80,12 +80,12 @@ def run(options: PlanOptions) -> int:
     """Run `jbf plan` and return its exit code."""
     from jbf.diagnosis.experiment_design.plan import plan
 
-    wanted = {"--json": options.json}
-    outputs.check(wanted, outputs.inputs_in(options.rig, options.effects_from))
+    targets = {"--json": options.json}
+    outputs.check(targets, outputs.inputs_in(options.rig, options.effects_from))
     model = power.model_of(options.rig, options.law)
     quantities = model.rig.quantities
     with shown("planning"):
-        found = plan(
+        result = plan(
             model,
             limits=options.limits.limits(options.run_s, quantities),
             minutes=options.minutes,
@@ -97,9 +97,12 @@ def run(options: PlanOptions) -> int:
     if options.folder:
         folder = Path(options.folder)
         outputs.check_folder("--folder", folder)
-        texts = {str(folder / f"{one.name}.csv"): one.to_csv() for one in found.runs}
+        texts = {
+            str(folder / f"{planned_run.name}.csv"): planned_run.to_csv()
+            for planned_run in result.runs
+        }
     if options.json:
-        texts[options.json] = json_text(found.to_dict())
+        texts[options.json] = json_text(result.to_dict())
     outputs.write(texts)
-    outputs.say(found.summary(), wanted)
+    outputs.say(result.summary(), targets)
     return 0

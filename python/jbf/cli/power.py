@@ -90,17 +90,17 @@ def run(options: PowerOptions) -> int:
     """Run `jbf power` and return its exit code."""
     from jbf.diagnosis.power.planned_runs import planned_power
 
-    wanted = {"--json": options.json}
-    outputs.check(wanted, outputs.inputs_in(options.rig, options.runs, options.effects_from))
+    targets = {"--json": options.json}
+    outputs.check(targets, outputs.inputs_in(options.rig, options.runs, options.effects_from))
     model = model_of(options.rig, options.law)
     noise = noise_of(options.noise, model)
     runs = read_runs(options.runs, model.rig, need_friction=False)
     policy = options.level.policy(model.rig.quantities)
     with shown("computing the power"):
-        found = planned_power(model, runs, noise_rms=noise, policy=policy)
+        result = planned_power(model, runs, noise_rms=noise, policy=policy)
     if options.json:
-        outputs.write({options.json: json_text(found.to_dict())})
-    outputs.say(found.summary(), wanted)
+        outputs.write({options.json: json_text(result.to_dict())})
+    outputs.say(result.summary(), targets)
     return 0
 
 

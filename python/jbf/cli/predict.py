@@ -37,9 +37,9 @@ def add(commands: Commands) -> None:
 
 def run(options: PredictOptions) -> int:
     """Run `jbf predict` and return its exit code."""
-    wanted = {"--out": options.out}
+    targets = {"--out": options.out}
     read = outputs.inputs_in(options.model, options.motion, options.effects_from)
-    outputs.check(wanted, read)
+    outputs.check(targets, read)
     model = inputs.model(options.model)
     motion = inputs.motion(options.motion, model.rig)
     try:
@@ -52,5 +52,5 @@ def run(options: PredictOptions) -> int:
     column = model.rig.quantities.friction_column
     lines = [f"{clock},{column}", *(f"{t!r},{f!r}" for t, f in rows)]
     outputs.write({options.out: "\n".join(lines) + "\n"})
-    outputs.say(f"{len(motion)} samples of predicted friction written to {options.out}", wanted)
+    outputs.say(f"{len(motion)} samples of predicted friction written to {options.out}", targets)
     return 0

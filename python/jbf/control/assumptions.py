@@ -35,20 +35,20 @@ def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[st
         schemes = {"learning": scheme}
         return tables(base.model, base.bench, schemes=schemes, seeds=_SEEDS)
 
-    def elastic(what: str, scheme: Learning) -> Tables:
-        model = _with_elastic(base.model, what)
+    def elastic(place: str, scheme: Learning) -> Tables:
+        model = _with_elastic(base.model, place)
         schemes = {**standard_schemes(model), "learning": scheme}
         del schemes["observed"]
         return tables(model, base.bench, schemes=schemes, seeds=_SEEDS)
 
-    listed = Learning(volts=LISTED_VOLTS)
+    published = Learning(volts=LISTED_VOLTS)
     yield case("scale of the rig, elastic belt")
     yield case("scale 3.5 V", learning(Learning(volts=3.5)))
-    yield case("scale 25.5 V, as listed", learning(listed))
+    yield case("scale 25.5 V, as listed", learning(published))
     yield case("compensator's film on the journal clock", learning(Learning(clock="journal")))
     yield case("k_F 0.02", tables(base.model, base.bench, schemes={"coulomb": Coulomb(gain=0.02)}))
     yield case("elastic contact, no belt", elastic("contact", Learning()))
-    yield case("elastic contact, scale 25.5 V", elastic("contact", listed))
+    yield case("elastic contact, scale 25.5 V", elastic("contact", published))
     yield case("no elasticity", elastic("nothing", Learning()))
     counted = {name: replace(task, skip_s=0.0) for name, task in TASKS.items()}
     schemes = standard_schemes(base.model)
@@ -70,7 +70,7 @@ def on_the_journal_clock(report: Report | None = None) -> float:
     return max(abs(c.ratio - 1.0) for c in cells if c.ratio is not None)
 
 
-def _with_elastic(model: Model, what: str) -> Model:
+def _with_elastic(model: Model, place: str) -> Model:
     values = {n: p.value for n, p in model.parameters.items()}
     u_tr, k0, gamma = (values[n] for n in ("U_tr_m_s", "K0", "gamma"))
-    return thesis_model(elastic=what, U_tr_m_s=u_tr, K0=k0, gamma=gamma)
+    return thesis_model(elastic=place, U_tr_m_s=u_tr, K0=k0, gamma=gamma)

@@ -84,8 +84,8 @@ class Bench:
             "stood_s",
             "inner_steps",
         )
-        own = {name: getattr(self, name) for name in names}
-        return {"model": core_model(model), "drive": self.drive(), **own}
+        constants = {name: getattr(self, name) for name in names}
+        return {"model": core_model(model), "drive": self.drive(), **constants}
 
 
 def _wrong(name: str, value: float, rule: str) -> InputError:
@@ -134,7 +134,7 @@ def core_model(model: Model) -> dict[str, Any]:
         )
     values = [p.value for p in model.parameters.values()]
     names = list(model.parameters)
-    own = [v for n, v in zip(names, values, strict=True) if "." not in n]
+    law_values = [v for n, v in zip(names, values, strict=True) if "." not in n]
     effects = [
         (e, [v for n, v in zip(names, values, strict=True) if n.startswith(f"{e}.")])
         for e in model.effects
@@ -145,7 +145,7 @@ def core_model(model: Model) -> dict[str, Any]:
         "bearing": bearing,
         "load_n": core_load_n(model.rig) or 1.0,
         "clock": model.clock,
-        "parameters": own,
+        "parameters": law_values,
         "effects": effects,
     }
 

@@ -93,16 +93,20 @@ class Outcome:
 def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
     """Yield every case in which the model is wrong."""
     for name, page in effects().items():
-        own = isinstance(page, UserEffect)
-        if own or reason_not_applicable(page, base.law) is not None or name in base.effects:
+        user_defined = isinstance(page, UserEffect)
+        if (
+            user_defined
+            or reason_not_applicable(page, base.law) is not None
+            or name in base.effects
+        ):
             continue
         strong = STRONG.get(name, {})
-        known = {p.name for p in page.parameters}
+        names = {p.name for p in page.parameters}
         values = {
             f"{name}.{p.name}": ParameterValue(strong.get(p.name, p.starts[0]))
             for p in page.parameters
         }
-        assert set(strong) <= known, f"{name} has no {set(strong) - known}"
+        assert set(strong) <= names, f"{name} has no {set(strong) - names}"
         plant = replace(
             base, effects=(*base.effects, name), parameters={**base.parameters, **values}
         )
@@ -129,23 +133,23 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
     yield Case("noise quadrupled", base, with_noise(bench, 4.0))
 
 
-def fit_to_simulated_records(base: Model, seen: Model) -> Model:
-    """Fit the base model to records predicted by `seen`, with 2 % noise."""
+def fit_to_simulated_records(base: Model, true_model: Model) -> Model:
+    """Fit the base model to records predicted by `true_model`, with 2 % noise."""
     rng = np.random.default_rng(1)
     runs = []
     for i, rate in enumerate((0.25, 1.0)):
         time_s = np.arange(0.0, 4.0 * np.pi / rate, 0.02)
         speed = _FIT_SPEED_M_S * np.sin(rate * time_s)
-        way = _FIT_SPEED_M_S / rate * (1.0 - np.cos(rate * time_s))
+        path_m = _FIT_SPEED_M_S / rate * (1.0 - np.cos(rate * time_s))
         bearing = base.rig.bearing
-        angle = None if bearing is None else way / bearing.radius_m
-        clean = Run(f"run {i}", time_s, speed, angle_rad=angle, position_m=way)
-        friction = seen.predict(clean)
+        angle = None if bearing is None else path_m / bearing.radius_m
+        clean = Run(f"run {i}", time_s, speed, angle_rad=angle, position_m=path_m)
+        friction = true_model.predict(clean)
         noise = rng.normal(0.0, 0.02 * float(np.max(np.abs(friction))), len(friction))
         runs.append(replace(clean, friction=friction + noise))
     start = {n: p.value for n, p in base.parameters.items()}
-    found = fit(base.rig, runs, base.effects, law=base.law, clock=base.clock, start=start)
-    return found.model
+    fitted = fit(base.rig, runs, base.effects, law=base.law, clock=base.clock, start=start)
+    return fitted.model
 
 
 def robustness(
@@ -180,10 +184,10 @@ def robustness(
             ratios[row] = errors[1] / errors[0]
         return Outcome(case.name, ratios)
 
-    found = []
+    outcomes = []
     with ThreadPoolExecutor() as pool:
         for i, outcome in enumerate(pool.map(judge, todo)):
-            found.append(outcome)
+            outcomes.append(outcome)
             if report is not None:
                 report("robustness", i + 1, len(todo))
-    return found
+    return outcomes

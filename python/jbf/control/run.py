@@ -268,8 +268,8 @@ def _reference(
 
 
 def _load(model: Model, given: float | npt.ArrayLike | None, n: int) -> Array:
-    own = core_load_n(model.rig) or 1.0
-    load = np.full(n, own) if given is None else np.array(np.broadcast_to(given, n), dtype=float)
+    of_rig = core_load_n(model.rig) or 1.0
+    load = np.full(n, of_rig) if given is None else np.array(np.broadcast_to(given, n), dtype=float)
     if not np.all(np.isfinite(load)):
         raise InputError(problem="a load is not finite", mend="give finite values, N")
     return load

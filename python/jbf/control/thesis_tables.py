@@ -85,9 +85,9 @@ class Tables:
         """Return the cells of one column, in row order."""
         return [cell for (_, column), cell in self.cells.items() if column == name]
 
-    def replaced(self, other: Tables) -> Tables:
-        """Return these tables, with cells replaced by those of `other`."""
-        return replace(other, cells={**self.cells, **other.cells})
+    def replaced(self, replacement: Tables) -> Tables:
+        """Return these tables, with cells replaced by those of `replacement`."""
+        return replace(replacement, cells={**self.cells, **replacement.cells})
 
     def gains(self) -> dict[str, float]:
         """Return the improvement over the thesis's schemes, by row.
@@ -146,8 +146,8 @@ def fit_friction(
             report(f"fitting the bench's friction, evaluation {calls}", 0, 0)
         model, drive = built(logs)
         work = partial(_run_cell, model, NoCompensation(), drive)
-        found = np.array([r.rms for r in _each(work)])
-        return np.asarray(np.log(found / printed))
+        simulated = np.array([r.rms for r in _each(work)])
+        return np.asarray(np.log(simulated / printed))
 
     start = [bench.volts_per_n, FITTED["U_tr_m_s"], FITTED["K0"], FITTED["gamma"]]
     # The cells have noise of order 1e-3: a difference quotient needs a long step.

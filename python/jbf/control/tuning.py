@@ -54,14 +54,14 @@ def _friction_level_n(model: Model) -> float:
     time_s = np.arange(0.0, 11.0, 0.02)
     rate, top_m_s = 0.6, 0.005
     velocity = top_m_s * np.sin(rate * time_s)
-    way = top_m_s / rate * (1.0 - np.cos(rate * time_s))
+    path_m = top_m_s / rate * (1.0 - np.cos(rate * time_s))
     turns = model.rig.bearing is not None or model.rig.quantities.motion == "rotary"
     run = Run(
         "slow motion",
         time_s,
         velocity,
-        angle_rad=way / radius_m if turns else None,
-        position_m=None if turns else way,
+        angle_rad=path_m / radius_m if turns else None,
+        position_m=None if turns else path_m,
     )
     return float(np.max(np.abs(model.predict(run))))
 

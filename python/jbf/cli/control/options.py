@@ -24,8 +24,8 @@ def add_bench(parser: Parser) -> None:
         "limit-v": "largest output voltage, V",
         "noise-times": "noise as a multiple of the standard noise",
     }
-    for name, does in numbers.items():
-        group.add_argument(f"--{name}", metavar="X", type=float, help=does)
+    for name, description in numbers.items():
+        group.add_argument(f"--{name}", metavar="X", type=float, help=description)
     group.add_argument("--seed", metavar="N", type=int, help="random seed of the noise")
 
 
@@ -71,14 +71,14 @@ def add_task(parser: Parser) -> None:
     )
     group.add_argument("--control", choices=("position", "velocity"), help="controlled quantity")
     group.add_argument("--wave", choices=("sine", "triangle", "square"), help="reference signal")
-    for name, does in (
+    for name, description in (
         ("low", "smallest reference, rad or rad/s"),
         ("high", "largest reference, rad or rad/s"),
         ("frequency-rad-s", "angular frequency of the reference, rad/s"),
         ("seconds", "duration of the run, s"),
         ("skip-s", "time at the start that is excluded from the errors, s"),
     ):
-        group.add_argument(f"--{name}", metavar="X", type=float, help=does)
+        group.add_argument(f"--{name}", metavar="X", type=float, help=description)
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,10 @@ class RobustnessOptions:
 
 def add(actions: Commands) -> None:
     """Add `jbf control robustness` to the parser."""
-    does = "test the compensation with a wrong model: missing effects, wrong load, more noise"
-    parser = command(actions, "robustness", does, RobustnessOptions, run)
+    description = (
+        "test the compensation with a wrong model: missing effects, wrong load, more noise"
+    )
+    parser = command(actions, "robustness", description, RobustnessOptions, run)
     parser.add_argument("model", metavar="MODEL", nargs="?", help="model file (default: thesis)")
     add_bench(parser)
     add_json(parser)
@@ -39,17 +41,17 @@ def run(options: RobustnessOptions) -> int:
     from jbf.reporting.control_json import robustness_dict
     from jbf.reporting.control_run_text import robustness_text
 
-    wanted = {"--json": options.json, "--plot": options.plot}
-    outputs.check(wanted, outputs.inputs_in(options.model))
+    targets = {"--json": options.json, "--plot": options.plot}
+    outputs.check(targets, outputs.inputs_in(options.model))
     check_picture(options.plot)
     base = thesis_model(elastic="nothing") if options.model is None else model_of(options.model)
     with shown("testing wrong models") as report:
-        found = robustness(base, options.bench.bench(), report=report)
+        outcomes = robustness(base, options.bench.bench(), report=report)
     if options.json:
-        outputs.write({options.json: json_text(robustness_dict(found))})
+        outputs.write({options.json: json_text(robustness_dict(outcomes))})
     if options.plot:
         from jbf.reporting.control_plots import plot_robustness
 
-        save_picture(plot_robustness(found), options.plot)
-    outputs.say(robustness_text(found), wanted)
+        save_picture(plot_robustness(outcomes), options.plot)
+    outputs.say(robustness_text(outcomes), targets)
     return 0

@@ -36,8 +36,8 @@ class RunOptions:
 
 def add(actions: Commands) -> None:
     """Add `jbf control run` to the parser."""
-    does = "simulate control loops on the bench, and compare compensation schemes"
-    parser = command(actions, "run", does, RunOptions, run)
+    description = "simulate control loops on the bench, and compare compensation schemes"
+    parser = command(actions, "run", description, RunOptions, run)
     parser.add_argument(
         "model", metavar="MODEL", nargs="?", help="friction model of the bench (default: thesis)"
     )
@@ -69,16 +69,16 @@ def run(options: RunOptions) -> int:
     from jbf.control.settings import Settings
     from jbf.reporting.control_run_text import runs_text
 
-    wanted = {"--plot": options.plot, "--csv": options.csv}
+    targets = {"--plot": options.plot, "--csv": options.csv}
     read = outputs.inputs_in(options.model, options.carried, options.settings, options.task.motion)
-    outputs.check(wanted, read)
+    outputs.check(targets, read)
     check_picture(options.plot)
-    asked = options.scheme
-    if asked is None:
-        asked = _DEFAULT
+    scheme_names = options.scheme
+    if scheme_names is None:
+        scheme_names = _DEFAULT
         if options.model and model_of(options.carried or options.model).law != "journal":
-            asked = asked.replace("learning,", "")
-    names = [name.strip() for name in asked.split(",") if name.strip()]
+            scheme_names = scheme_names.replace("learning,", "")
+    names = [name.strip() for name in scheme_names.split(",") if name.strip()]
     if not names:
         raise InputError(problem="--scheme is empty", mend="name a scheme: --scheme observed")
     if options.csv and len(names) != 1:
@@ -112,7 +112,7 @@ def run(options: RunOptions) -> int:
         save_picture(plot_runs(results), options.plot)
     if options.csv:
         outputs.write({options.csv: results[0].to_csv()})
-    outputs.say(runs_text(results), wanted)
+    outputs.say(runs_text(results), targets)
     return 0
 
 

@@ -21,8 +21,10 @@ class TablesOptions:
 
 def add(actions: Commands) -> None:
     """Add `jbf control tables` to the parser."""
-    does = "reproduce Tables 6.1 and 6.2 of the thesis: published, fitted and predicted values"
-    parser = command(actions, "tables", does, TablesOptions, run)
+    description = (
+        "reproduce Tables 6.1 and 6.2 of the thesis: published, fitted and predicted values"
+    )
+    parser = command(actions, "tables", description, TablesOptions, run)
     add_json(parser)
     add_plot(parser)
 
@@ -34,18 +36,18 @@ def run(options: TablesOptions) -> int:
     from jbf.reporting.control_json import tables_dict
     from jbf.reporting.control_tables_text import tables_report
 
-    wanted = {"--json": options.json, "--plot": options.plot}
-    outputs.check(wanted)
+    targets = {"--json": options.json, "--plot": options.plot}
+    outputs.check(targets)
     check_picture(options.plot)
     with shown("fitting the friction of the bench") as report:
         model, bench = fit_friction(report=report)
         both = tables(model, bench, report=report)
-        others = list(assumptions(both, report=report))
+        alternatives = list(assumptions(both, report=report))
     if options.json:
-        outputs.write({options.json: json_text(tables_dict(both, others))})
+        outputs.write({options.json: json_text(tables_dict(both, alternatives))})
     if options.plot:
         from jbf.reporting.control_plots import plot_tables
 
         save_picture(plot_tables(both), options.plot)
-    outputs.say(tables_report(both, others), wanted)
+    outputs.say(tables_report(both, alternatives), targets)
     return 0

@@ -21,8 +21,8 @@ class TuneOptions:
 
 def add(actions: Commands) -> None:
     """Add `jbf control tune` to the parser."""
-    does = "compute the settings of the compensator from a fitted model"
-    parser = command(actions, "tune", does, TuneOptions, run)
+    description = "compute the settings of the compensator from a fitted model"
+    parser = command(actions, "tune", description, TuneOptions, run)
     parser.add_argument("model", metavar="MODEL", help="model file (TOML)")
     parser.add_argument("--toml", metavar="FILE", help="write the settings to this file")
     add_earlier_name(parser, "--out", "--toml")
@@ -33,13 +33,13 @@ def run(options: TuneOptions) -> int:
     """Run `jbf control tune` and return its exit code."""
     from jbf.control import tune
 
-    wanted = {"--toml": options.toml}
-    outputs.check(wanted, outputs.inputs_in(options.model))
+    targets = {"--toml": options.toml}
+    outputs.check(targets, outputs.inputs_in(options.model))
     with shown("tuning"):
         text = tune(model_of(options.model), options.bench.bench()).to_toml()
     if options.toml:
         outputs.write({options.toml: text})
-        outputs.say(f"settings written to {options.toml}", wanted)
+        outputs.say(f"settings written to {options.toml}", targets)
     else:
-        outputs.say(text.rstrip(), wanted)
+        outputs.say(text.rstrip(), targets)
     return 0

@@ -34,14 +34,14 @@ def scheme(name: str, model: Model | None = None, settings: Settings | None = No
         return Observed(thesis_model() if model is None else model, settings)
     if name == "learning":
         return Learning() if model is None else Learning.of(model)
-    plain: dict[str, type[NoCompensation | Coulomb | Repetitive]] = {
+    without_settings: dict[str, type[NoCompensation | Coulomb | Repetitive]] = {
         "none": NoCompensation,
         "coulomb": Coulomb,
         "repetitive": Repetitive,
     }
-    if name not in plain:
+    if name not in without_settings:
         raise InputError(problem=f'scheme "{name}" is not known', mend=did_you_mean(name, SCHEMES))
-    return plain[name]()
+    return without_settings[name]()
 
 
 __all__ = [

@@ -142,7 +142,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         outputs.drop_stdout()
         return _PIPE_CLOSED
     except KeyboardInterrupt as stop:
-        outputs.complain(str(stop) if isinstance(stop, outputs.Kept) else "interrupted")
+        outputs.complain(
+            str(stop) if isinstance(stop, outputs.PartialResultSaved) else "interrupted"
+        )
         return _INTERRUPTED
     except InputError as error:
         return _refuse(error)

@@ -78,7 +78,7 @@ def run(options: CheckOptions) -> int:
     policy = options.level.policy(model.rig.quantities)
     runs = read_runs(options.runs, model.rig)
     name = identity(model, runs, policy)
-    done = [] if options.resume is None else _known(Path(options.resume), name)
+    done = [] if options.resume is None else _stored_answers(Path(options.resume), name)
 
     def keep(answer: Answer) -> None:
         if options.resume is not None:
@@ -102,7 +102,7 @@ def run(options: CheckOptions) -> int:
     return 0
 
 
-def _known(file: Path, name: str) -> Sequence[Answer]:
+def _stored_answers(file: Path, name: str) -> Sequence[Answer]:
     """Read the results that a file already contains.
 
     Raises

@@ -65,14 +65,14 @@ def called(started: str) -> str:
     """
     path = Path(started)
     if path.name == "__main__.py":
-        return f"{_from_here(Path(sys.executable))} -m jbf"
+        return f"{_shortest_path(Path(sys.executable))} -m jbf"
     executable = shutil.which(path.name)
     if not path.is_file() or (executable is not None and Path(executable).samefile(path)):
         return "jbf"
-    return _from_here(path)
+    return _shortest_path(path)
 
 
-def _from_here(path: Path) -> str:
+def _shortest_path(path: Path) -> str:
     """Return the shortest form of a path, relative to the working directory where possible."""
     working_folder = Path.cwd()
     absolute = Path(os.path.abspath(path))

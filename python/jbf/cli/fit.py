@@ -116,7 +116,7 @@ def run(options: FitOptions) -> int:
                 fixed=fixed,
             )
             if repeats is not None:
-                fitted = _repeated(fitted, runs, repeats, report)
+                fitted = _bootstrapped(fitted, runs, repeats, report)
     except Stopped as stop:
         raise outputs.keep(stop, options.out) from None
     except Unfinished as end:
@@ -130,7 +130,7 @@ def run(options: FitOptions) -> int:
     return 0
 
 
-def _repeated(fitted: Fit, runs: list[Run], repeats: int, report: Report) -> Fit:
+def _bootstrapped(fitted: Fit, runs: list[Run], repeats: int, report: Report) -> Fit:
     """Return the fit with bootstrap standard errors.
 
     Raise `Stopped` with the fit if interrupted.

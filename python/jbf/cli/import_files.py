@@ -94,7 +94,7 @@ def run(options: ImportOptions) -> int:
             mend="the map names the columns of a joint",
         )
     if options.map is None and options.folder is None:
-        return _look(options)
+        return _inspect(options)
     if options.joint == EVERY:
         return _each_joint(options)
     return _import(options, options.joint, options.folder)
@@ -154,7 +154,7 @@ def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
     return 0
 
 
-def _look(options: ImportOptions) -> int:
+def _inspect(options: ImportOptions) -> int:
     """Inspect a file, print the guess, and write a map to edit."""
     from jbf.importing.import_files import look
     from jbf.importing.map_text import map_text

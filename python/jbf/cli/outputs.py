@@ -122,11 +122,11 @@ def check_folder(argument: str, path: Path) -> None:
     _check_writable(argument, str(path / "report.html"))
 
 
-class Kept(KeyboardInterrupt):
+class PartialResultSaved(KeyboardInterrupt):
     """Interrupt after which the best result so far was written; `str` describes it."""
 
 
-def keep(stop: Stopped, out: str | None) -> Kept:
+def keep(stop: Stopped, out: str | None) -> PartialResultSaved:
     """Write the best model so far to the path of the complete one, and describe it.
 
     Parameters
@@ -140,9 +140,11 @@ def keep(stop: Stopped, out: str | None) -> Kept:
     text = f"interrupted; the best model so far is {model}, RMS {fit.rms:.3g} {unit}"
     if out is None:
         say(fit.summary(), {})
-        return Kept(f"{text}, not finished")
+        return PartialResultSaved(f"{text}, not finished")
     write({out: fit.model.to_toml()})
-    return Kept(f"{text}, written to {'standard output' if out == STDOUT else out}, not finished")
+    return PartialResultSaved(
+        f"{text}, written to {'standard output' if out == STDOUT else out}, not finished"
+    )
 
 
 def keep_unfinished(
@@ -183,13 +185,13 @@ def write(texts: Mapping[str, str]) -> None:
             raise InputError(
                 file="standard output", problem="is closed", mend="name a file in place of -"
             )
-        _put(texts[STDOUT], data=True)
+        _print(texts[STDOUT], data=True)
 
 
 def say(text: str, outputs: Mapping[str, str | None]) -> None:
     """Print a message, unless an output uses standard output or standard output is closed."""
     if STDOUT not in outputs.values() and sys.stdout is not None:
-        _put(printable(text) + "\n")
+        _print(printable(text) + "\n")
 
 
 def complain(text: object) -> None:
@@ -200,7 +202,7 @@ def complain(text: object) -> None:
 
 def flush() -> None:
     """Flush standard output; raises an InputError if that fails, for example on a full disk."""
-    _put("")
+    _print("")
 
 
 def drop_stdout() -> None:
@@ -211,7 +213,7 @@ def drop_stdout() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
-def _put(text: str, *, data: bool = False) -> None:
+def _print(text: str, *, data: bool = False) -> None:
     if sys.stdout is None:
         return
     try:

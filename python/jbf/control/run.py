@@ -211,7 +211,7 @@ def run(
         "jump_at": _NEVER if jump is None else round(jump[0] / bench.dt_s),
         "jump_counts": 0 if jump is None else jump[1],
     }
-    with core_refusals(_mend):
+    with core_refusals(_remedy):
         arrays: dict[str, Any] = _core.control_run(
             bench.core(truth),
             core_loop(task, assumed_bench, chosen.guard(assumed_bench) if guard is None else guard),
@@ -226,7 +226,7 @@ def run(
     return Result(task, chosen.name, time_s, value, **arrays)
 
 
-def _mend(problem: str) -> str:
+def _remedy(problem: str) -> str:
     """Return the remedy for an input that the core's loop rejects."""
     if problem.startswith("top_speed_rad_s"):
         return "decrease counts_per_rad, or limit_v and input_rad_s2_v, or use a wider counter"

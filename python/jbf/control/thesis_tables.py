@@ -111,7 +111,7 @@ class Tables:
         return sum(abs(math.log(r)) <= math.log(factor) for r in ratios)
 
 
-def _each(work: Callable[[Task], Result], tasks: Mapping[str, Task] = TASKS) -> list[Result]:
+def _run_rows(work: Callable[[Task], Result], tasks: Mapping[str, Task] = TASKS) -> list[Result]:
     """Run `work` on all rows, on all cores; the core releases the interpreter lock."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(work, tasks.values()))
@@ -146,7 +146,7 @@ def fit_friction(
             report(f"fitting the bench's friction, evaluation {calls}", 0, 0)
         model, drive = built(logs)
         work = partial(_run_cell, model, NoCompensation(), drive)
-        simulated = np.array([r.rms for r in _each(work)])
+        simulated = np.array([r.rms for r in _run_rows(work)])
         return np.asarray(np.log(simulated / printed))
 
     start = [bench.volts_per_n, FITTED["U_tr_m_s"], FITTED["K0"], FITTED["gamma"]]
@@ -192,7 +192,7 @@ def tables(
     cells = {}
     for i, (column, scheme) in enumerate(columns.items()):
         drives = [replace(bench, seed=seed) for seed in range(1, seeds + 1)]
-        runs = [_each(partial(_run_cell, model, scheme, drive), tasks) for drive in drives]
+        runs = [_run_rows(partial(_run_cell, model, scheme, drive), tasks) for drive in drives]
         if report is not None:
             report("the tables", i + 1, len(columns))
         for row, *results in zip(tasks, *runs, strict=True):

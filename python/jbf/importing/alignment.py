@@ -25,7 +25,7 @@ from jbf.importing.expression import Node, parse_expression, references
 from jbf.importing.file_clock import FileClock
 from jbf.importing.formats.table import Table, Values
 from jbf.importing.mapping import Map
-from jbf.importing.names import column_names, column_units, located
+from jbf.importing.names import column_names, column_units, columns_by_name
 from jbf.importing.side_by_side import SideBySide, stem_of
 from jbf.importing.spool import Stream
 from jbf.units.unit import ONE
@@ -222,7 +222,7 @@ def _signals(
         problem = f"{text!r} is not a pair of signals"
         raise InputError(file=mapping.path, key=key, problem=problem, mend=mend)
     tables = tables_of(source, mapping.options)
-    names, places = column_names(tables), located(tables)
+    names, places = column_names(tables), columns_by_name(tables)
     all_columns = [f"{table.name}/{column.name}" for table in tables for column in table.columns]
     channel_of_file: dict[Path, Channel] = {}
     for side in sides.groups():
@@ -251,7 +251,9 @@ def _clock_of_table(
         if channel.table.name == table.name:
             return channel.clock
     tables = tables_of(source, mapping.options)
-    return clock_of(SIGNAL_COLUMN, table, tables, mapping, column_names(tables), located(tables))
+    return clock_of(
+        SIGNAL_COLUMN, table, tables, mapping, column_names(tables), columns_by_name(tables)
+    )
 
 
 def _date_ns(
@@ -269,7 +271,7 @@ def _date_ns(
     if channel.clock == RATE:
         return _nanoseconds(table.start)
     tables = tables_of(source, mapping.options)
-    names, units, places = column_names(tables), column_units(tables), located(tables)
+    names, units, places = column_names(tables), column_units(tables), columns_by_name(tables)
     node = parse_expression(channel.clock, names)
     used = [reference.column for reference in references(node)]
     blocks = source.blocks(table, [places[name][1] for name in used])

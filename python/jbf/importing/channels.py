@@ -9,7 +9,7 @@ from jbf.errors import InputError
 from jbf.importing.expression import Node, parse_expression, references
 from jbf.importing.formats.table import Options, Source, Table
 from jbf.importing.mapping import Map
-from jbf.importing.names import column_names, located
+from jbf.importing.names import column_names, columns_by_name
 from jbf.importing.side_by_side import SideBySide
 from jbf.importing.targets import wanted_unit
 from jbf.units.unit import ONE, Unit
@@ -46,7 +46,7 @@ def channels_of(source: Source, mapping: Map) -> list[Channel]:
     tables = tables_of(source, mapping.options)
     names = column_names(tables)
     all_columns = [column.name for table in tables for column in table.columns]
-    places = located(tables)
+    places = columns_by_name(tables)
     expressions = {key: text for key, text in mapping.columns.items() if key != "time_s"}
     if mapping.cut.by and mapping.cut.column is not None:
         expressions[CUT_COLUMN] = mapping.cut.column

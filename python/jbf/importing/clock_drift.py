@@ -105,7 +105,7 @@ def refine(main: Stream, other: Stream, coarse: Offset) -> ClockFit:
     InputError
         If the records are correlated only in their slow changes, which may be due to chance.
     """
-    return _Problem(main, other, coarse).solved()
+    return _Problem(main, other, coarse).solve()
 
 
 class _Problem:
@@ -139,19 +139,19 @@ class _Problem:
         for low, high in pairwise(edges.tolist()):
             half = 0.5 * min(high - low, longest)
             middle = 0.5 * (low + high)
-            rows = _between(slow, middle - half, middle + half)
+            rows = _rows_between(slow, middle - half, middle + half)
             reach = half + self.reach_s + 2.0 * self.step
-            around = _between(fast, middle + to_fast - reach, middle + to_fast + reach)
+            around = _rows_between(fast, middle + to_fast - reach, middle + to_fast + reach)
             if len(rows) > 1 and len(around) > 4:
                 smooth = _smoothed(around[:, 1], width)
                 slope = np.gradient(smooth, around[:, 0])
                 windows.append(_Window(rows[:, 0], rows[:, 1], around[:, 0], smooth, slope))
         return windows
 
-    def solved(self) -> ClockFit:
+    def solve(self) -> ClockFit:
         """Return the estimate of the clock."""
         start = self._start()
-        solution = self._descended(start, with_drift=True)
+        solution = self._minimise(start, with_drift=True)
         drift, error, clusters = solution[1], *self._drift_error(solution)
         significant = (
             clusters >= LEAST_WINDOWS
@@ -159,7 +159,7 @@ class _Problem:
             and abs(drift) * (self.last_s - self.first_s) > SMALLEST * self.step
         )
         if not significant:
-            solution = self._descended((start[0], 0.0), with_drift=False)
+            solution = self._minimise((start[0], 0.0), with_drift=False)
         offset = self._centred(*solution)
         within = self._correlation_within_windows(offset, solution[1])
         if abs(within) < WITHIN:
@@ -251,7 +251,7 @@ class _Problem:
             columns.append(gain * by_drift)
         return slow - slow.mean() - gain * centred, np.column_stack(columns)
 
-    def _descended(self, start: tuple[float, float], *, with_drift: bool) -> tuple[float, float]:
+    def _minimise(self, start: tuple[float, float], *, with_drift: bool) -> tuple[float, float]:
         """Minimise by Gauss-Newton iterations and return the best point visited."""
         best = point = start
         smallest = 1.0 - self._correlation(*start) ** 2
@@ -353,7 +353,7 @@ class _Problem:
         return float(self.step / np.sqrt(12.0 * max(windows, 1.0)))
 
 
-def _between(stream: Stream, first_s: float, last_s: float) -> Array:
+def _rows_between(stream: Stream, first_s: float, last_s: float) -> Array:
     """Return the rows between two instants that have a value."""
     rows = stream.read(*stream.rows_between(0, first_s, last_s))
     return rows[np.isfinite(rows[:, 1])]

@@ -184,7 +184,7 @@ def split_unit(text: str) -> tuple[str, str]:
     return (shown, "") if stem_and_unit is None else (shown, stem_and_unit[1].text)
 
 
-def understood(text: str, unit: str = "") -> Header:
+def parse_header(text: str, unit: str = "") -> Header:
     """Analyse a header.
 
     Parameters
@@ -208,11 +208,15 @@ def understood(text: str, unit: str = "") -> Header:
     kinds += [(word, _ALSO[word]) for word in lower_words if word in _ALSO]
     if "cell" in lower_words or "zelle" in lower_words:
         kinds = [("loadcell", "force")]
-    kinds += [(w, k) for w in lower_words if w not in _BY_WORD and (k := _within(w)) is not None]
+    kinds += [
+        (w, k)
+        for w in lower_words
+        if w not in _BY_WORD and (k := _quantity_of_last_part(w)) is not None
+    ]
     return Header(
         name=name,
         unit=unit,
-        kind=_decided(kinds, parse_unit(unit)),
+        kind=_choose_quantity(kinds, parse_unit(unit)),
         sure=any(len(word) > _SHORT for word, _ in kinds),
         motor=any(word in _MOTOR or word.startswith("motor") for word in words),
         setpoint=any(_is_setpoint(word) for word in words) and not _ACTUAL.intersection(words),
@@ -246,10 +250,10 @@ def _is_setpoint(word: str) -> bool:
 
 def _is_label(word: str) -> bool:
     has_meaning = word in _BY_WORD or word in _MOTOR or _is_setpoint(word) or word in _ACTUAL
-    return not has_meaning and word not in _GENERIC and _within(word) is None
+    return not has_meaning and word not in _GENERIC and _quantity_of_last_part(word) is None
 
 
-def _within(word: str) -> str | None:
+def _quantity_of_last_part(word: str) -> str | None:
     """Return the quantity of a compound by its known last part: Spindeldrehzahl, Hydraulikdruck."""
     for length in range(len(word) - 1, 3, -1):
         kind = _BY_WORD.get(word[-length:])
@@ -258,7 +262,7 @@ def _within(word: str) -> str | None:
     return None
 
 
-def _decided(kinds: list[tuple[str, str]], unit: Unit | None) -> str | None:
+def _choose_quantity(kinds: list[tuple[str, str]], unit: Unit | None) -> str | None:
     """Choose the quantity among those of several words.
 
     A quantity that the unit fits comes first, then long words before short ones. A load takes

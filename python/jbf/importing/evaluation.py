@@ -110,7 +110,7 @@ def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str])
     _no_zero(left.unit)
     _no_zero(right.unit)
     if node.sign in "*/":
-        _not_twice(node, left, right)
+        _refuse_double_conversion(node, left, right)
         return _product(node.sign, left, right)
     return _sum(node.sign, left, right)
 
@@ -199,7 +199,7 @@ def _root(inner: Quantity) -> Value:
     return root
 
 
-def _not_twice(node: Binary, left: Quantity, right: Quantity) -> None:
+def _refuse_double_conversion(node: Binary, left: Quantity, right: Quantity) -> None:
     """Raise an error if a bare factor would repeat the conversion of a unit."""
     for this, other, power in ((left, right, 1), (right, left, 1 if node.sign == "*" else 0)):
         if not (other.loose and isinstance(other.value, float) and power):

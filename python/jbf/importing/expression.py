@@ -144,7 +144,7 @@ class _Parser:
         minus = False
         while True:
             # A name may begin with a sign and then takes precedence.
-            if self._name_here() is None and (sign := self._one_of("+-")):
+            if self._longest_name() is None and (sign := self._one_of("+-")):
                 minus ^= sign == "-"
                 continue
             item = self._item()
@@ -156,7 +156,7 @@ class _Parser:
             raise self._wrong("ends where a column or a number is expected")
         if self.text[self.at] == "`":
             return self._in_back_quotes()
-        name = self._name_here()
+        name = self._longest_name()
         number = _NUMBER.match(self.text, self.at)
         if name is not None and (number is None or len(name) > len(number[0])):
             self.at += len(name)
@@ -189,7 +189,7 @@ class _Parser:
             raise self._wrong("a bracket is not closed")
         return inside
 
-    def _name_here(self) -> str | None:
+    def _longest_name(self) -> str | None:
         """Return the longest name at this position that does not end within a word."""
         self._skip()
         rest = self.text[self.at :]

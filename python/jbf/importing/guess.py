@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.importing.columns import KINDS, Header, understood
+from jbf.importing.columns import KINDS, Header, parse_header
 from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.registry import format_of
 from jbf.importing.formats.table import Column, Source, Table, Values
@@ -65,7 +65,7 @@ class Candidate:
         name = written(self.called or self.column.name)
         if self.question is not None:
             return f"{name} [{OPEN}]"
-        in_name = understood(self.column.name).unit
+        in_name = parse_header(self.column.name).unit
         unit = "" if in_name or self.column.kind == "instant" else self.column.unit
         return f"{name} [{unit}]" if unit else name
 
@@ -120,22 +120,24 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         own_clock = several and table.clock is not None
         time, open_ = (None, []) if own_clock else guess_time(table, head)
         if time is not None and several:
-            time = replace(time, expression=_qualified(time.expression, table, occurrences))
+            time = replace(time, expression=_qualify_names(time.expression, table, occurrences))
         chosen = {} if time is None else {time.key: time}
         for key in dict.fromkeys(c.key for c in candidates):
             rivals = [c for c in candidates if c.key == key]
-            if key in ("temperature_c", "pressure_pa") and not _one(rivals, key):
+            if key in ("temperature_c", "pressure_pa") and not _is_unambiguous(rivals, key):
                 # Columns that no model requires are left out without a question.
                 ignored |= {c.column.name: f"several columns may be {key}" for c in rivals}
                 continue
-            entry, rest, open_questions = _chosen(key, rivals)
+            entry, rest, open_questions = _choose(key, rivals)
             chosen[key] = entry
             ignored |= dict.fromkeys(rest, f"another column is used for {key}")
             file = made_in.get(key, file_of(source, table))
             if key in FRICTION or file == file_of(source, table):
                 questions += open_questions
         if not several or len(chosen) > (0 if time is None else 1):
-            questions += open_ if file_of(source, table) == source.path else _placed(open_, table)
+            questions += (
+                open_ if file_of(source, table) == source.path else _with_table(open_, table)
+            )
             for key, entry in chosen.items():
                 if key not in entries:
                     entries[key] = entry
@@ -159,7 +161,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     for key in redundant_motor_columns(entries):
         ignored[column_of(entries.pop(key))] = "redundant: a force and a position are recorded"
     lone_motion = all(c.kind != "number" or _is_used(c, entries) for t in tables for c in t.columns)
-    questions += _missing(entries, source, lone_motion)
+    questions += _missing_questions(entries, source, lone_motion)
     questions += force_as_torque(entries, ignored)
     sections, about_rig = guess_rig(set(entries), lone_motion)
     questions += about_rig
@@ -199,12 +201,12 @@ def _joints(tables: Sequence[Table]) -> list[str]:
     return both if len(both) > 1 else []
 
 
-def _placed(questions: list[Question], table: Table) -> list[Question]:
+def _with_table(questions: list[Question], table: Table) -> list[Question]:
     """Add the name of the table to the place of each question."""
     return [replace(question, place=f"{table.name}/{question.place}") for question in questions]
 
 
-def _qualified(expression: str, table: Table, occurrences: Counter[str]) -> str:
+def _qualify_names(expression: str, table: Table, occurrences: Counter[str]) -> str:
     """Add the table name to the columns of a time expression whose names occur in other tables."""
     for column in table.columns:
         if occurrences[column.name] > 1:
@@ -227,18 +229,18 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
     if column.kind != "number":
         return None
     if column.name in KNOWN:
-        header = understood(column.name)
+        header = parse_header(column.name)
         if column.unit and not _fits(column.unit, column.name):
             question = (
                 f"its unit {column.unit} contradicts its name ({wanted_unit(column.name).text})"
             )
             return Candidate(column.name, column, header, False, "by name", question)
         return Candidate(column.name, column, header, True, "name of a jbf column")
-    header = understood(column.name, column.unit)
+    header = parse_header(column.name, column.unit)
     if header.kind is None and not header.setpoint:
         # `force/value`: the name of the group applies, unless another column has its quantity.
-        by_group = understood(f"{table.name} {column.name}", column.unit)
-        if by_group.kind not in {understood(c.name, c.unit).kind for c in table.columns}:
+        by_group = parse_header(f"{table.name} {column.name}", column.unit)
+        if by_group.kind not in {parse_header(c.name, c.unit).kind for c in table.columns}:
             header = by_group
     if header.setpoint or header.modelled or header.kind in NEVER or is_doubtful_time(header):
         return None
@@ -322,19 +324,19 @@ def _key(kind: str, header: Header) -> str:
     return names[kind]
 
 
-def _one(rivals: list[Candidate], key: str) -> bool:
+def _is_unambiguous(rivals: list[Candidate], key: str) -> bool:
     """Return whether the choice among the candidates is unambiguous."""
     exact = [c for c in rivals if c.column.name == key]
     return len(exact) == 1 or (len(rivals) == 1 and rivals[0].sure)
 
 
-def _chosen(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
+def _choose(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
     """Return the column for `key`, the rejected columns and the open questions."""
     sure = [c for c in rivals if c.sure]
     named = [c for c in rivals if c.why != "by unit"]
     if named and len(named) < len(rivals):
         # A candidate identified by its name takes precedence over those identified by unit only.
-        entry, rest, open_questions = _chosen(key, named)
+        entry, rest, open_questions = _choose(key, named)
         return entry, [*rest, *(c.called for c in rivals if c not in named)], open_questions
     exact = [c for c in rivals if c.column.name == key]
     if exact or len(sure) == 1 or len(rivals) == 1:
@@ -354,7 +356,9 @@ def _is_used(column: Column, entries: Mapping[str, Entry]) -> bool:
     return any(written(column.name) in entry.expression for entry in entries.values())
 
 
-def _missing(entries: Mapping[str, Entry], source: Source, lone_motion: bool) -> list[Question]:
+def _missing_questions(
+    entries: Mapping[str, Entry], source: Source, lone_motion: bool
+) -> list[Question]:
     """Return questions for a missing friction or motion; a motion alone is a coast-down."""
     names = [c.name for t in source.tables for c in t.columns]
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
@@ -391,7 +395,7 @@ def _unused_columns(
             or (time is not None and written(column.name) in time.expression)
         ):
             continue
-        header = understood(column.name, column.unit)
+        header = parse_header(column.name, column.unit)
         if column.kind == "word":
             why = "words"
         elif header.setpoint:

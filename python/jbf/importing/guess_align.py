@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from jbf.errors import InputError
 from jbf.importing.alignment import QUESTION
 from jbf.importing.channels import channels_of
-from jbf.importing.columns import understood
+from jbf.importing.columns import parse_header
 from jbf.importing.expression import OPEN
 from jbf.importing.formats.table import Column, Table
 from jbf.importing.guessed import Guess, Question
@@ -37,14 +37,14 @@ def with_alignment(guess: Guess, source: SideBySide) -> Guess:
         if not _is_used(guess, source, file):
             notes[stem] = "not used"
             continue
-        note = _tried(guess, source, file, {})
+        note = _try_alignment(guess, source, file, {})
         if isinstance(note, str):
             notes[stem] = note
             continue
-        shared = _shared(source, file)
+        shared = _shared_columns(source, file)
         if len(shared) == 1:
             align[stem] = shared[0]
-            note = _tried(guess, source, file, {stem: shared[0]})
+            note = _try_alignment(guess, source, file, {stem: shared[0]})
             if not isinstance(note, InputError):
                 notes[stem] = note or "the only common column"
                 continue
@@ -60,27 +60,27 @@ def with_alignment(guess: Guess, source: SideBySide) -> Guess:
 def _is_used(guess: Guess, source: SideBySide, file: Path) -> bool:
     """Return whether columns of the file are used, as far as this is decided."""
     try:
-        channels = channels_of(source, _decided(guess))
+        channels = channels_of(source, _without_open_columns(guess))
     except InputError:
         return True
     return any(source.file_of(channel.table) == file for channel in channels)
 
 
-def _decided(guess: Guess) -> Map:
+def _without_open_columns(guess: Guess) -> Map:
     """Return the map without the columns whose value is still to be specified."""
     mapping = guess.map()
     columns = {key: text for key, text in mapping.columns.items() if text != OPEN}
     return replace(mapping, columns=columns)
 
 
-def _tried(
+def _try_alignment(
     guess: Guess, source: SideBySide, file: Path, align: Mapping[str, str | float]
 ) -> str | InputError | None:
     """Try an alignment and describe it.
 
     Return the error if it fails, and None if a time is still open.
     """
-    mapping = replace(_decided(guess), align=align)
+    mapping = replace(_without_open_columns(guess), align=align)
     try:
         every = channels_of(source, mapping)
         channels = [c for c in every if source.file_of(c.table) in (source.path, file)]
@@ -95,7 +95,7 @@ def _tried(
     return f"{alignment.brief}: correlation {abs(alignment.correlation or 0.0):.3f}"
 
 
-def _shared(source: SideBySide, file: Path) -> list[str]:
+def _shared_columns(source: SideBySide, file: Path) -> list[str]:
     """Return pairs of equally named columns of the main file and another file, as in the map."""
     by_name: tuple[dict[str, str], dict[str, str]] = ({}, {})
     for table in source.tables:
@@ -104,7 +104,7 @@ def _shared(source: SideBySide, file: Path) -> list[str]:
             place = by_name[path == file]
             for column in table.columns:
                 if _may_be_common(column, table):
-                    name = understood(column.name).name.lower()
+                    name = parse_header(column.name).name.lower()
                     place.setdefault(name, f"`{table.name}/{column.name}`")
     return [f"{by_name[0][name]} ~ {by_name[1][name]}" for name in by_name[0] if name in by_name[1]]
 
@@ -112,5 +112,5 @@ def _shared(source: SideBySide, file: Path) -> list[str]:
 def _may_be_common(column: Column, table: Table) -> bool:
     if column.kind != "number" or column.name == table.clock:
         return False
-    header = understood(column.name, column.unit)
+    header = parse_header(column.name, column.unit)
     return header.kind not in _NEVER and column.name != "time_s"

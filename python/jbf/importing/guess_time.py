@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from jbf.importing.columns import Header, understood
+from jbf.importing.columns import Header, parse_header
 from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.messages import NANOSECONDS, SECONDS
 from jbf.importing.formats.table import Column, Table, Values
@@ -122,7 +122,7 @@ def time_by_motion(
         certain = [entries[key].sure for key in pair]
         if any(certain) != all(certain):
             continue
-        assumed = {key: _in_its_unit(entries[key]) for key in pair}
+        assumed = {key: _with_column_unit(entries[key]) for key in pair}
         for unit in ("s", "ms", "us", "min"):
             text = time.expression.replace(OPEN, unit)
             tried = replace(
@@ -134,7 +134,7 @@ def time_by_motion(
     return fitting.popitem()[1] if len(fitting) == 1 else None
 
 
-def _in_its_unit(entry: Entry) -> Entry:
+def _with_column_unit(entry: Entry) -> Entry:
     """Return an entry with an open unit replaced by that of its run column."""
     unit = wanted_unit(entry.key).text
     return replace(entry, expression=entry.expression.replace(f"[{OPEN}]", f"[{unit}]"))
@@ -148,7 +148,7 @@ def is_doubtful_time(header: Header) -> bool:
 def _is_time(column: Column) -> bool:
     if column.kind != "number":
         return False
-    header = understood(column.name, column.unit)
+    header = parse_header(column.name, column.unit)
     unit = parse_unit(header.unit)
     if header.setpoint:
         return False
@@ -160,14 +160,14 @@ def _is_time(column: Column) -> bool:
 
 
 def _time_unit(column: Column) -> bool:
-    unit = parse_unit(understood(column.name, column.unit).unit)
+    unit = parse_unit(parse_header(column.name, column.unit).unit)
     return unit is not None and unit.dimensions == TIME
 
 
 def _of_number(column: Column, step: float | None = None) -> Found:
-    header = understood(column.name, column.unit)
+    header = parse_header(column.name, column.unit)
     if _time_unit(column):
-        in_name = understood(column.name).unit
+        in_name = parse_header(column.name).unit
         text = written(column.name) + ("" if in_name else f" [{column.unit}]")
         unit = parse_unit(header.unit)
         if step is not None and unit is not None and step * unit.in_si < SHORTEST_S:
@@ -195,7 +195,7 @@ def _since_1970(column: Column, values: Values) -> Entry | None:
     """Return an entry for a number without a unit if it counts from 1970 in exactly one unit."""
     times = np.asarray(values, dtype=np.float64)
     times = times[np.isfinite(times)]
-    if understood(column.name, column.unit).unit or not times.size:
+    if parse_header(column.name, column.unit).unit or not times.size:
         return None
     for unit, size in (("s", 1.0), ("ms", 1e3), ("us", 1e6), ("ns", 1e9)):
         if _FROM_S * size < times.min() and times.max() < _TO_S * size:

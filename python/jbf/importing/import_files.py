@@ -66,7 +66,7 @@ def look(path: PathLike, joint: str | None = None, beside: Sequence[PathLike] = 
     >>> guess.sure, [entry.key for entry in guess.entries][0]
     (True, 'time_s')
     """
-    with open_recording(path, _further(beside)) as source:
+    with open_recording(path, _readable_paths(beside)) as source:
         proposal = guess(source, joint)
         return with_alignment(proposal, source) if isinstance(source, SideBySide) else proposal
 
@@ -134,9 +134,9 @@ def import_files(
     if joint is not None and map is not None:
         mend = "omit one of them: the map names the columns"
         raise InputError(problem="both a joint and a map are given", mend=mend)
-    mapping, text = _map(map, paths, joint, _further(beside or ()))
+    mapping, text = _map(map, paths, joint, _readable_paths(beside or ()))
     if beside is not None:
-        mapping = replace(mapping, beside=_further(beside))
+        mapping = replace(mapping, beside=_readable_paths(beside))
     _check_further_files(paths, mapping)
     rig = mapping.check()
     check_rig_columns(rig, mapping)
@@ -219,7 +219,7 @@ def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
     return paths
 
 
-def _further(files: Sequence[PathLike]) -> tuple[Path, ...]:
+def _readable_paths(files: Sequence[PathLike]) -> tuple[Path, ...]:
     """Return the paths of further files, each of which is readable."""
     given = [files] if isinstance(files, str | os.PathLike) else files
     return tuple(_paths(given)) if given else ()
@@ -234,7 +234,7 @@ def _check_further_files(paths: Sequence[Path], mapping: Map) -> None:
     if mapping.align and not mapping.beside:
         mend = 'name the further files: beside = ["force.csv"] under [file]'
         raise InputError(file=mapping.path, key="align", problem="contains no files", mend=mend)
-    _further(mapping.beside)
+    _readable_paths(mapping.beside)
 
 
 def _map(

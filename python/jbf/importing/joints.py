@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from jbf.errors import InputError
-from jbf.importing.columns import understood
+from jbf.importing.columns import parse_header
 from jbf.importing.formats.table import Table
 
 JOINT_UNITS: tuple[tuple[set[str], dict[str, str]], ...] = (
@@ -52,6 +52,6 @@ def with_units_of_joint_states(table: Table) -> Table:
     columns = []
     for column in table.columns:
         matching = [unit for word, unit in units.items() if word in words[column.name]]
-        bare = len(matching) == 1 and not understood(column.name).unit
+        bare = len(matching) == 1 and not parse_header(column.name).unit
         columns.append(replace(column, unit=matching[0]) if bare else column)
     return replace(table, columns=tuple(columns))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import tomlkit
 
-from jbf.importing.columns import understood
+from jbf.importing.columns import parse_header
 from jbf.importing.guess_rig import assumed_machine
 from jbf.importing.guessed import Guess
 from jbf.text_files import real_path
@@ -130,7 +130,7 @@ def _cut(guess: Guess) -> str:
     """Return the section for cutting, with a column of the file that is suitable for it."""
     for table in guess.tables:
         for column in table.columns:
-            header = understood(column.name, column.unit)
+            header = parse_header(column.name, column.unit)
             if header.kind == "run" or header.setpoint:
                 method = "run" if header.kind == "run" else "set_point"
                 return f"{_CUT.format(way=method)}# column = {_quoted(f'`{column.name}`')}\n"

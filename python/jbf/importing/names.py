@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from jbf.importing.columns import understood
+from jbf.importing.columns import parse_header
 from jbf.importing.formats.table import Table
 
 
@@ -25,7 +25,7 @@ def column_names(tables: Sequence[Table]) -> dict[str, str]:
             column_of_name[f"{table.name}/{column.name}"] = qualified(
                 table, column.name, occurrences
             )
-            name = understood(column.name).name
+            name = parse_header(column.name).name
             for short in (name, *([f"{table.name}/{name}"] if table.name else [])):
                 bare[short] += 1
                 shorter[short] = qualified(table, column.name, occurrences)
@@ -40,7 +40,7 @@ def qualified(table: Table, name: str, occurrences: Counter[str]) -> str:
     return name if occurrences[name] == 1 else f"{table.name}/{name}"
 
 
-def located(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
+def columns_by_name(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
     """Return the table and its column for each name that `column_names` returns."""
     occurrences = Counter(column.name for table in tables for column in table.columns)
     return {
@@ -53,10 +53,10 @@ def located(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
 def column_units(tables: Sequence[Table]) -> dict[str, str]:
     """Return the unit that the file states for each column."""
     units = {}
-    for name, (table, column_name) in located(tables).items():
+    for name, (table, column_name) in columns_by_name(tables).items():
         column = table.column(column_name)
         if column.kind == "instant":
             units[name] = "s"
         else:
-            units[name] = column.unit or understood(column.name).unit
+            units[name] = column.unit or parse_header(column.name).unit
     return units

@@ -28,7 +28,7 @@ from jbf.importing.expression import Reference, parse_expression, references
 from jbf.importing.file_clock import FileClock
 from jbf.importing.formats.table import Source, Values
 from jbf.importing.mapping import Map
-from jbf.importing.names import column_names, column_units, located
+from jbf.importing.names import column_names, column_units, columns_by_name
 from jbf.importing.side_by_side import SideBySide, file_of, stem_of
 from jbf.importing.spool import Dropped, Recording, Stream
 from jbf.importing.time_line import TimeLine
@@ -137,7 +137,7 @@ def _spool(
     table, clock = channels[0].table, channels[0].clock
     options, keep = mapping.options, mapping.cut.keep
     tables = tables_of(source, options)
-    names, units, places = column_names(tables), column_units(tables), located(tables)
+    names, units, places = column_names(tables), column_units(tables), columns_by_name(tables)
     rate = 1.0 if options.steady else options.rate_hz or table.rate_hz
     time_node = None if clock == RATE else parse_expression(clock, names)
     nodes = [c.node for c in channels] + ([] if time_node is None else [time_node])
@@ -181,7 +181,7 @@ def _spool(
     if stream.needed:
         incomplete = sum(int((~stream.complete(block)).sum()) for block in stream.blocks())
         dropped.append(Dropped(incomplete, "a value is missing"))
-    recording.dropped += [replace(d, file=_further(path, recording)) for d in dropped]
+    recording.dropped += [replace(d, file=_further_name(path, recording)) for d in dropped]
     stream.source = path
     recording.notes += unwrapped(stream)
     recording.streams.append(stream)
@@ -191,7 +191,7 @@ def _spool(
         key = stream.columns[at]
         recording.notes.append(f"{key} contains no value and is not imported")
     recording.channels += [
-        _described(c, stream, units, rate, recording)
+        _describe(c, stream, units, rate, recording)
         for at, c in enumerate(channels, 1)
         if at not in stream.empty and c.key != KEPT_COLUMN
     ]
@@ -282,7 +282,7 @@ def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> 
             )
 
 
-def _described(
+def _describe(
     channel: Channel,
     stream: Stream,
     units: Mapping[str, str],
@@ -299,7 +299,7 @@ def _described(
     clock = f"{rate:g} Hz, stated" if channel.clock == RATE else channel.clock.replace("`", "")
     if recording.steady:
         clock = STEADY
-    further = _further(stream.source, recording)
+    further = _further_name(stream.source, recording)
     return {
         "channel": channel.key,
         **({"file": further} if further else {}),
@@ -314,7 +314,7 @@ def _described(
     }
 
 
-def _further(file: Path | None, recording: Recording) -> str | None:
+def _further_name(file: Path | None, recording: Recording) -> str | None:
     """Return the name of a file, or None for the main file."""
     return None if file is None or file == recording.path else file.name
 

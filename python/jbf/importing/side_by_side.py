@@ -32,7 +32,7 @@ class SideBySide(Source):
         self._origins: dict[str, tuple[Source, Table]] = {}
         self._reading = sources[0]
         tables = []
-        chosen = _chosen(sources, options.table)
+        chosen = _select_tables(sources, options.table)
         for source, source_tables in zip(sources, chosen, strict=True):
             stem = stem_of(source.path)
             for table in source_tables:
@@ -116,7 +116,7 @@ def open_recording(
         return SideBySide(sources, stack.pop_all(), options)
 
 
-def _chosen(sources: Sequence[Source], name: str | None) -> list[tuple[Table, ...]]:
+def _select_tables(sources: Sequence[Source], name: str | None) -> list[tuple[Table, ...]]:
     """Return the tables of each file: those of a given name if it has any, else all."""
     if name is None:
         return [source.tables for source in sources]

@@ -84,7 +84,10 @@ class UserChain:
     def predict(self, parameters: Array, motions: Sequence[_core.Motion]) -> list[Array]:
         """Return the friction readings, N, one array per run."""
         inner = self.core.predict(self._inner(parameters), motions)
-        return [f + self._added(parameters, m)[0] for f, m in zip(inner, motions, strict=True)]
+        return [
+            f + self._user_contribution(parameters, m)[0]
+            for f, m in zip(inner, motions, strict=True)
+        ]
 
     def film_rate_1_s(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
         """Return the largest rate of the film of the law, 1/s."""
@@ -104,8 +107,8 @@ class UserChain:
         rows = self.core.jacobian(self._inner(parameters), motions, inner)
         results = []
         for (values, slopes), motion in zip(rows, motions, strict=True):
-            added, by_instrument = self._added(parameters, motion)
-            bent = self._bent(parameters, motion, of_core)
+            added, by_instrument = self._user_contribution(parameters, motion)
+            bent = self._derivative_changes(parameters, motion, of_core)
             derivatives = np.empty((len(values), len(which)))
             for k, w in enumerate(which):
                 if w in self.of_core:
@@ -124,7 +127,9 @@ class UserChain:
         values: list[float] = parameters[self.places[number]].tolist()
         return values
 
-    def _added(self, parameters: Array, motion: _core.Motion) -> tuple[Array, dict[int, Array]]:
+    def _user_contribution(
+        self, parameters: Array, motion: _core.Motion
+    ) -> tuple[Array, dict[int, Array]]:
         """Return the contribution of user-defined effects to the reading.
 
         Its derivatives with respect to the instrument parameters are returned too, by index.
@@ -164,26 +169,28 @@ class UserChain:
             loaded, empty = self._read(parameters, motion, slope)
             return loaded[0] - empty[0]
         added, _ = self._user_forces(parameters, motion)
-        return self._along(parameters, motion, self._borne(parameters, motion) + added, slope)
+        return self._directional_derivative(
+            parameters, motion, self._bearing_force(parameters, motion) + added, slope
+        )
 
     def _read(self, parameters: Array, motion: _core.Motion, force: Array) -> tuple[Read, Read]:
         """Return the instrument readings of the bearing force with and without an additional force.
 
         The bearing force is set to zero if the instrument is linear.
         """
-        borne = self._borne(parameters, motion)
+        borne = self._bearing_force(parameters, motion)
         return (
-            self._through(parameters, motion, borne + force),
-            self._through(parameters, motion, borne),
+            self._instrument_reading(parameters, motion, borne + force),
+            self._instrument_reading(parameters, motion, borne),
         )
 
-    def _through(self, parameters: Array, motion: _core.Motion, force: Array) -> Read:
+    def _instrument_reading(self, parameters: Array, motion: _core.Motion, force: Array) -> Read:
         """Return the reading of a force, and its derivatives by the instrument parameters."""
         effects = [(name, parameters[list(places)].tolist()) for name, places in self.instrument]
         time = np.ascontiguousarray(motion.columns["time_s"])
         return _core.read_force(effects, time, np.ascontiguousarray(force))
 
-    def _borne(self, parameters: Array, motion: _core.Motion) -> Array:
+    def _bearing_force(self, parameters: Array, motion: _core.Motion) -> Array:
         """Return the force of the bearing, N, if the instrument is nonlinear; otherwise zeros."""
         if self.bare is None:
             return np.zeros(len(motion.columns["time_s"]))
@@ -196,19 +203,22 @@ class UserChain:
         before = [place for place in self.of_core if place not in instrument]
         return np.ascontiguousarray(np.concatenate((self.carrier_values, parameters[before])))
 
-    def _along(self, parameters: Array, motion: _core.Motion, force: Array, slope: Array) -> Array:
+    def _directional_derivative(
+        self, parameters: Array, motion: _core.Motion, force: Array, slope: Array
+    ) -> Array:
         """Return the directional derivative of the reading for a change of force along `slope`."""
         largest = float(np.max(np.abs(slope)))
         if largest == 0.0:
             return slope
         step = SMALL * max(float(np.max(np.abs(force))), 1e-9) / largest
         above, below = (
-            self._through(parameters, motion, force + sign * step * slope)[0] for sign in (1, -1)
+            self._instrument_reading(parameters, motion, force + sign * step * slope)[0]
+            for sign in (1, -1)
         )
         derivative: Array = (above - below) / (2.0 * step)
         return derivative
 
-    def _bent(
+    def _derivative_changes(
         self, parameters: Array, motion: _core.Motion, which: Sequence[int]
     ) -> dict[int, Array]:
         """Return the change of derivatives by core parameters due to user-defined forces.
@@ -226,6 +236,10 @@ class UserChain:
         added, _ = self._user_forces(parameters, motion)
         changes = {}
         for k, w in enumerate(of_machine):
-            bent_derivative = self._along(parameters, motion, borne + added, slopes[:, k])
-            changes[w] = bent_derivative - self._along(parameters, motion, borne, slopes[:, k])
+            bent_derivative = self._directional_derivative(
+                parameters, motion, borne + added, slopes[:, k]
+            )
+            changes[w] = bent_derivative - self._directional_derivative(
+                parameters, motion, borne, slopes[:, k]
+            )
         return changes

@@ -14,7 +14,7 @@ _TITLES = {"none": "no compensation", "learning": "dynamic model, learned", "cou
 _FAR = 2.0
 
 
-def _three(value: float | None) -> str:
+def _three_digits(value: float | None) -> str:
     return "-" if value is None else number(value, 3)
 
 
@@ -44,19 +44,19 @@ def tables_text(tables: Tables) -> str:
     rows.append(head)
     for row in {key[0]: None for key in tables.cells}:
         cells = [
-            f"{_three(c.rms)} / {_three(c.printed_rms)} = {_ratio(c)}"
+            f"{_three_digits(c.rms)} / {_three_digits(c.printed_rms)} = {_ratio(c)}"
             for c in (tables[row, column] for column in COLUMNS)
         ]
-        rows.append((row, *cells, *(_three(tables[row, c].rms) for c in extra)))
+        rows.append((row, *cells, *(_three_digits(tables[row, c].rms) for c in extra)))
     lines = ["RMS error, rad or rad/s: bench / thesis = ratio", ""]
     lines += columns(rows, "<" * len(head))
     rows = [head]
     for row in {key[0]: None for key in tables.cells}:
         cells = [
-            f"{_three(c.peak)} / {_three(c.printed_peak)}"
+            f"{_three_digits(c.peak)} / {_three_digits(c.printed_peak)}"
             for c in (tables[row, column] for column in COLUMNS)
         ]
-        rows.append((row, *cells, *(_three(tables[row, c].peak) for c in extra)))
+        rows.append((row, *cells, *(_three_digits(tables[row, c].peak) for c in extra)))
     lines += ["", "Peak error, rad or rad/s: bench / thesis", ""]
     lines += columns(rows, "<" * len(head))
     return "\n".join(lines)
@@ -102,7 +102,9 @@ def better_text(tables: Tables) -> str:
     gains = tables.gains()
     rows: list[tuple[str, ...]] = [("", "dynamic model", "Coulomb", "observed", "improvement")]
     for row, gain in gains.items():
-        cells = (_three(tables[row, c].true_rms) for c in ("learning", "coulomb", "observed"))
+        cells = (
+            _three_digits(tables[row, c].true_rms) for c in ("learning", "coulomb", "observed")
+        )
         rows.append((row, *cells, f"{gain:.1f}"))
     return "\n".join(
         [

@@ -78,7 +78,7 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         rest=rest,
         next_experiment=diagnosis.next_experiment,
         ledger_picture=_ledger(diagnosis),
-        before_picture=_before(diagnosis),
+        before_picture=_plot_before_and_after(diagnosis),
         measurement=measurement(before, diagnosis.steps[0].noise_rms),
         held_out=held_out_sentence(diagnosis),
         extrapolations=extrapolation_sentences(diagnosis),
@@ -86,11 +86,12 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
         failures=failure_cards(diagnosis),
         residual_structure=remainder_cards(diagnosis),
         residual_picture=svg([residual_map(after)], "Residual of the final model in all runs"),
-        last_picture=_last(diagnosis),
+        last_picture=_plot_final_residual(diagnosis),
         taken_out=listed(non_friction_effects(after)),
         friction_picture=_friction(diagnosis),
         map_picture=svg(
-            [friction_map(after, ax=_wide(4.2))], "Samples of all runs over speed and friction"
+            [friction_map(after, ax=_full_width_axes(4.2))],
+            "Samples of all runs over speed and friction",
         ),
         ledger=ledger_rows(diagnosis),
         laws=law_rows(diagnosis),
@@ -173,7 +174,7 @@ def _rounds(diagnosis: Diagnosis) -> list[Round]:
             continue
         rows = zip(step.trials, trial_rows(step), strict=True)
         named = any(t.evidence > 0.0 for t in step.trials)
-        ax = _wide(ranking_height(step)) if named else None
+        ax = _full_width_axes(ranking_height(step)) if named else None
         rounds.append(
             Round(
                 " + ".join([BARE, *step.effects]),
@@ -185,17 +186,17 @@ def _rounds(diagnosis: Diagnosis) -> list[Round]:
     return rounds
 
 
-def _wide(height: float) -> Axes:
+def _full_width_axes(height: float) -> Axes:
     """Create axes of a full-width figure."""
     return one_axes(None, (WIDTH, height))
 
 
 def _ledger(diagnosis: Diagnosis) -> Markup:
-    ax = _wide(1.25 + 0.3 * len(diagnosis.steps))
+    ax = _full_width_axes(1.25 + 0.3 * len(diagnosis.steps))
     return svg([ledger(diagnosis, ax=ax)], "Error of each step, fit and held out, and the noise")
 
 
-def _before(diagnosis: Diagnosis) -> Markup | str:
+def _plot_before_and_after(diagnosis: Diagnosis) -> Markup | str:
     """Plot the base law and the final model.
 
     Left: the run in which they differ most. Right: the residual along the axis of the worst
@@ -215,7 +216,7 @@ def _before(diagnosis: Diagnosis) -> Markup | str:
     return svg([left, right], "Base law and final model, in one run and along the worst axis")
 
 
-def _last(diagnosis: Diagnosis) -> Markup:
+def _plot_final_residual(diagnosis: Diagnosis) -> Markup:
     """Plot the residual of the final model in time and along its worst axis.
 
     The time plot shows the run with the largest error.
@@ -244,7 +245,7 @@ def _friction(diagnosis: Diagnosis) -> Markup:
 def _power(diagnosis: Diagnosis) -> Markup | str:
     try:
         return svg(
-            [power(diagnosis, ax=_wide(3.6))],
+            [power(diagnosis, ax=_full_width_axes(3.6))],
             "Detection probability over the strength of each effect",
         )
     except InputError:

@@ -32,17 +32,17 @@ def summary_of(effect: Effect, terms: Quantities) -> str:
         "and the load",
         "cogging": f"{terms.noun} of the motor that is periodic in the position, also at rest",
     }
-    return descriptions.get(effect.name) or _here(effect.summary, terms)
+    return descriptions.get(effect.name) or _in_terms_of(effect.summary, terms)
 
 
 def limits_of(effect: Effect, terms: Quantities) -> str:
     """Describe the limits of an effect, worded for the kind of machine."""
     if terms.motion == "bearing":
         return effect.limits
-    return _here(effect.limits, terms)
+    return _in_terms_of(effect.limits, terms)
 
 
-def _here(words: str, terms: Quantities) -> str:
+def _in_terms_of(words: str, terms: Quantities) -> str:
     """Replace the terms of a bearing rig in a catalogue text by those of the machine."""
     for of_bearing, of_machine in (
         ("the journal", "the load"),

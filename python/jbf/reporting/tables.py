@@ -118,7 +118,7 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
         runs: dict[str, list[str]] = {}
         for f in of_kind:
             runs.setdefault(f.words, []).append(f.run)
-        descriptions = [f"{words}, in {_named(those)}" for words, those in runs.items()]
+        descriptions = [f"{words}, in {_listed_runs(those)}" for words, those in runs.items()]
         rest = sum(map(len, list(runs.values())[MOST_RUNS_NAMED:]))
         if rest:
             descriptions = [
@@ -182,7 +182,7 @@ def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
     ]
 
 
-def _named(runs: list[str]) -> str:
+def _listed_runs(runs: list[str]) -> str:
     """List runs by name; of a long list only the first few."""
     if len(runs) <= MOST_RUNS_NAMED:
         return ", ".join(runs)

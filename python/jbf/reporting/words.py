@@ -156,7 +156,7 @@ def law_sentence(diagnosis: Diagnosis) -> str:
     )
 
 
-def _weighed(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
+def _with_weights(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
     """Format effects that tie, each with its posterior weight."""
     weights = diagnosis.weights.get(tied[0], {})
     return [f"{e} ({100.0 * weights[e]:.0f} %)" if e in weights else e for e in tied]
@@ -187,10 +187,10 @@ def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
         held_out = "runs" if len(diagnosis.before.campaign.prepared) > 1 else "parts of the run"
         return f"Nothing is missing: {law} predicts held-out {held_out} within {final_error}."
     if diagnosis.verdict == "missing":
-        return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}."
+        return f"Missing: {added}. With {_pronoun(diagnosis.effects)}, {fall}."
     if diagnosis.verdict == "ambiguous":
         ties = "; ".join(
-            f"{listed(_weighed(diagnosis, (effect, *alternatives)), 'or')}"
+            f"{listed(_with_weights(diagnosis, (effect, *alternatives)), 'or')}"
             for effect, alternatives in diagnosis.alternatives.items()
             if alternatives and effect in diagnosis.effects
         )
@@ -200,7 +200,7 @@ def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
         )
     structure = f"{_STRUCTURE}{_worst(diagnosis.residual_structure, place)}."
     if diagnosis.effects:
-        return f"Missing: {added}. With {_it(diagnosis.effects)}, {fall}. {structure}"
+        return f"Missing: {added}. With {_pronoun(diagnosis.effects)}, {fall}. {structure}"
     return f"{structure} The held-out error is {final_error}."
 
 
@@ -224,7 +224,7 @@ def _confounders_sentence(names: tuple[str, ...]) -> str:
     )
 
 
-def _it(effects: tuple[str, ...]) -> str:
+def _pronoun(effects: tuple[str, ...]) -> str:
     return "it" if len(effects) == 1 else "them"
 
 

@@ -128,7 +128,7 @@ def of_diagnosis(diagnosis: Diagnosis) -> Answer:
     }  # fmt: skip
 
 
-def kept_records(comparison: Comparison, folder: Path) -> Answer:
+def write_records(comparison: Comparison, folder: Path) -> Answer:
     """Write time, speed, friction, prediction and the flag of counted samples, one file per run."""
     folder.mkdir(parents=True, exist_ok=True)
     rows = zip(

@@ -24,7 +24,7 @@ from jbf.workbench.map_form import (
     file_columns,
     form_of,
     quantities,
-    unplaced,
+    without_path,
 )
 
 SI_OF = {
@@ -90,7 +90,7 @@ def try_map(
                 import_files(paths, _map_file(scratch, text), cut_file=cut, beside=additional)
             )
     except InputError as error:
-        answer["problem"] = str(unplaced(error))
+        answer["problem"] = str(without_path(error))
     return answer
 
 
@@ -107,7 +107,7 @@ def import_runs(folder: Folder, names: Sequence[str], text: str, into: str) -> d
                 paths, _map_file(scratch, text), out, cut_file=cut, beside=additional
             )
         except InputError as error:
-            raise unplaced(error) from None
+            raise without_path(error) from None
         answer = _content_of(campaign)
     runs = [folder.name(out / f"{piece.name}.csv") for piece in campaign.pieces if piece.keep]
     return {**answer, "rig": folder.name(out / "rig.toml"), "files": runs}

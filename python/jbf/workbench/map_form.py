@@ -280,10 +280,10 @@ def _map_of(text: str) -> Map:
         try:
             return read_map(path)
         except InputError as error:
-            raise unplaced(error) from None
+            raise without_path(error) from None
 
 
-def unplaced(error: InputError) -> InputError:
+def without_path(error: InputError) -> InputError:
     """Return the error without the path of the temporary map file."""
     fields = error._fields()
     if str(fields.get("file") or "").endswith("map.toml"):

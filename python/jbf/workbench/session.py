@@ -134,13 +134,13 @@ class Session:
             numbers: list[int] = []
 
             def part(answer: Any) -> None:
-                numbers.append(self._added(answer, parent, "", law, place))
+                numbers.append(self._add_model(answer, parent, "", law, place))
 
             def ended(ending: Ending, answer: Any) -> None:
                 if numbers:
-                    self._ranked(ending, answer, numbers[0])
+                    self._add_ranking(ending, answer, numbers[0])
                 else:
-                    self._ended(ending, answer, parent, words, law, place)
+                    self._finish(ending, answer, parent, words, law, place)
 
             self.message = {}
             self.jobs.start(words, order, ended, part)
@@ -180,7 +180,7 @@ class Session:
         self._places += 1
         return Path(self._kept.name) / str(self._places)
 
-    def _added(self, answer: Any, parent: int | None, how: str, law: str, place: Path) -> int:
+    def _add_model(self, answer: Any, parent: int | None, how: str, law: str, place: Path) -> int:
         """Add a model to the tree.
 
         `law` is the requested law, `how` the prefix of the model's label.
@@ -190,7 +190,7 @@ class Session:
             content = {**answer, "asked_law": law, "records": place.name}
             return self.models.add(parent, f"{how}{named}", content)
 
-    def _ranked(self, ending: Ending, answer: Any, number: int) -> None:
+    def _add_ranking(self, ending: Ending, answer: Any, number: int) -> None:
         """Add the ranking of the candidates to a model that was added after its fit."""
         node = self.models.node(number)
         unit = self.on_bench().rig.quantities.force
@@ -206,14 +206,14 @@ class Session:
         else:
             self.say("error", f"{node['words']}: {answer}")
 
-    def _ended(
+    def _finish(
         self, ending: Ending, answer: Any, parent: int | None, words: str, law: str, place: Path
     ) -> None:
         if ending == "done":
-            self._added(answer, parent, "diagnosed: ", law, place)
+            self._add_model(answer, parent, "diagnosed: ", law, place)
             self.say("done", f"{words}: done")
         elif ending == "stopped" and answer:
-            self._added({**answer, "trials": []}, parent, "stopped at: ", law, place)
+            self._add_model({**answer, "trials": []}, parent, "stopped at: ", law, place)
             self.say("done", f"{words}: cancelled; the best model so far is kept, unfinished")
         elif ending == "stopped":
             self.say("done", f"{words}: cancelled before a model was found")

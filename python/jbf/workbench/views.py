@@ -85,7 +85,7 @@ def masks_of(
     contains smallest and largest speed and force, with None for an open end.
     """
     if "mark" in selection:
-        return _marked(session, number, int(selection["mark"]), runs)
+        return _mask_of_bins(session, number, int(selection["mark"]), runs)
     only = selection.get("run")
     masks = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}
     if "box" in selection:
@@ -102,7 +102,7 @@ def masks_of(
     return masks
 
 
-def _marked(
+def _mask_of_bins(
     session: Session, number: int | None, place: int, runs: Mapping[str, RunSeries]
 ) -> dict[str, Mask]:
     node = session.models.node(number)

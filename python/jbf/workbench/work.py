@@ -28,12 +28,12 @@ from jbf.records.run import Run
 from jbf.reporting.diagnosis_page import diagnosis_page
 from jbf.workbench.answers import (
     Answer,
-    kept_records,
     of_diagnosis,
     of_fit,
     of_model,
     of_power,
     of_step,
+    write_records,
 )
 
 Kind = Literal["round", "diagnose", "compare"]
@@ -83,7 +83,7 @@ def main(connection: Connection, order: Order) -> None:
 
     try:
         with _interrupted_by(connection):
-            last: tuple[str, Answer | str] = ("done", carried_out(order, progress, part))
+            last: tuple[str, Answer | str] = ("done", execute(order, progress, part))
     except Stopped as stop:
         last = ("stopped", best_so_far(stop.fit, order))
     except KeyboardInterrupt:
@@ -128,15 +128,15 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
 def best_so_far(fit: Fit, order: Order) -> Answer:
     """Return the result of a stopped fit."""
     compared = compare(fit.model, order.runs)
-    return {**of_model(compared), **of_fit(fit), **kept_records(compared, order.folder)}
+    return {**of_model(compared), **of_fit(fit), **write_records(compared, order.folder)}
 
 
-def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
+def execute(order: Order, progress: Any = None, part: Any = None) -> Answer:
     """Return the result of an order; for a round, only the content that `part` has not received."""
     if order.kind == "compare":
         assert order.model is not None
         compared = compare(Model.load(order.model), order.runs)
-        return {**of_model(compared), **kept_records(compared, order.folder)}
+        return {**of_model(compared), **write_records(compared, order.folder)}
     if order.kind == "round":
 
         def fitted_as(fit: Fit, comparison: Comparison) -> None:
@@ -145,7 +145,7 @@ def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
                     {
                         **of_model(comparison),
                         **of_fit(fit),
-                        **kept_records(comparison, order.folder),
+                        **write_records(comparison, order.folder),
                     }
                 )
 
@@ -164,7 +164,7 @@ def carried_out(order: Order, progress: Any = None, part: Any = None) -> Answer:
         **of_model(diagnosis.after),
         **of_fit(diagnosis.fit),
         **of_step(diagnosis.steps[-1]),
-        **kept_records(diagnosis.after, order.folder),
+        **write_records(diagnosis.after, order.folder),
         "power": of_power(diagnosis.power, diagnosis.model),
         "diagnosis": of_diagnosis(diagnosis),
         "report": diagnosis_page(diagnosis),

@@ -1,7 +1,7 @@
 """Inference of unit and quantity from the column headers of instruments."""
 
 import pytest
-from jbf.importing.columns import understood
+from jbf.importing.columns import parse_header
 
 UNITS = {
     "time": {
@@ -40,7 +40,7 @@ UNITS = {
 @pytest.mark.parametrize("kind", UNITS)
 def test_unit_and_quantity_are_read_from_a_header(kind: str | None) -> None:
     for header, unit in UNITS[kind].items():
-        result = understood(header)
+        result = parse_header(header)
         assert (result.unit, result.kind) == (unit, kind), header
 
 
@@ -55,21 +55,21 @@ def test_unit_and_quantity_are_read_from_a_header(kind: str | None) -> None:
     ],
 )
 def test_header_is_recognised_as_set_point_or_measurement(setpoint: str, measurement: str) -> None:
-    assert understood(setpoint).setpoint
-    assert not understood(measurement).setpoint
+    assert parse_header(setpoint).setpoint
+    assert not parse_header(measurement).setpoint
 
 
 def test_headers_f_and_t_are_read_as_force_and_time_whatever_their_unit() -> None:
-    assert understood("F_N [N]").kind == "force"
-    assert understood("T [°C]").kind == "time"  # rejected later because of its unit
+    assert parse_header("F_N [N]").kind == "force"
+    assert parse_header("T [°C]").kind == "time"  # rejected later because of its unit
 
 
 def test_speed_of_a_motor_is_distinguished_from_other_speeds_by_its_header() -> None:
-    assert understood("Motor Speed [rpm]").motor
-    assert not understood("Speed [rpm]").motor
+    assert parse_header("Motor Speed [rpm]").motor
+    assert not parse_header("Speed [rpm]").motor
 
 
 def test_header_unit_is_read_from_brackets_or_an_argument_not_from_a_suffix() -> None:
-    assert understood("Speed_m [rpm]").unit == "rpm"
-    assert understood("position[0]").unit == ""
-    assert understood("Kraft", "kN").unit == "kN"
+    assert parse_header("Speed_m [rpm]").unit == "rpm"
+    assert parse_header("position[0]").unit == ""
+    assert parse_header("Kraft", "kN").unit == "kN"

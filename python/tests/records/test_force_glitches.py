@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import Rig, Run, fit
-from jbf.records.findings.ends import loose_ends
+from jbf.records.findings.ends import end_outliers
 from jbf.records.findings.examine import examine
 from jbf.records.findings.glitches import find_glitches, glitches
 from known_motions import Array, places, white
@@ -78,22 +78,22 @@ def test_up_to_three_deviating_samples_at_a_record_end_are_outliers(count: int, 
     values[part] += 60.0
     # Four samples are a step change, not an outlier.
     expected[part] = count <= 3
-    np.testing.assert_array_equal(loose_ends(TIME_S[:1000], values, 1), expected)
+    np.testing.assert_array_equal(end_outliers(TIME_S[:1000], values, 1), expected)
 
 
 def test_end_sample_is_an_outlier_beyond_four_times_the_largest_change() -> None:
     for jump, found in ((3.99, False), (-3.99, False), (4.01, True), (-4.01, True)):
         values = np.arange(200) % 2.0
         values[0] = values[1] + jump
-        assert loose_ends(TIME_S[:200], values, 1)[0] == found, jump
+        assert end_outliers(TIME_S[:200], values, 1)[0] == found, jump
 
 
 def test_outlier_at_the_end_of_a_parabola_is_detected_if_sampling_is_uneven() -> None:
     time_s = np.cumsum(np.random.default_rng(3).uniform(0.5, 1.5, 200)) * 0.01
     path = 3.0 + 20.0 * time_s - 4.0 * time_s**2 + white(200, 4, 1e-4)
-    assert not loose_ends(time_s, path, 3).any()
+    assert not end_outliers(time_s, path, 3).any()
     path[-1] += 0.02
-    assert places(loose_ends(time_s, path, 3)) == [199]
+    assert places(end_outliers(time_s, path, 3)) == [199]
 
 
 def noisy_speed() -> Any:

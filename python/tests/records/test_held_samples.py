@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import Run
-from jbf.records.findings.held_samples import find_held, held
+from jbf.records.findings.held_samples import find_held, held_mask
 from jbf.records.findings.slow_channel import find_repeated
 from known_motions import Array, places, quantised, reading_instants, reversing_force, white
 
@@ -26,14 +26,14 @@ def repeating(values: Any, first: int, count: int) -> Array:
 
 def test_five_equal_readings_in_noisy_data_are_held_samples_except_the_first() -> None:
     for count, expected in ((4, []), (5, [301, 302, 303, 304]), (9, list(range(301, 309)))):
-        assert places(held(repeating(NOISY_SINE, 300, count))) == expected
+        assert places(held_mask(repeating(NOISY_SINE, 300, count))) == expected
 
 
 def test_equal_readings_are_held_samples_if_their_probability_is_below_1e_minus_6() -> None:
     """Half of the readings repeat: k equal ones have the probability 2000 / 2^(k-1) < 1e-6."""
     pairs = np.repeat(NOISE, np.where(np.arange(SAMPLES) % 2, 1, 2))[:SAMPLES]
-    assert places(held(repeating(pairs, 302, 30))) == []
-    assert places(held(repeating(pairs, 302, 31))) == list(range(303, 333))
+    assert places(held_mask(repeating(pairs, 302, 30))) == []
+    assert places(held_mask(repeating(pairs, 302, 31))) == list(range(303, 333))
 
 
 def test_minimum_length_of_held_samples_follows_from_noise_and_quantisation() -> None:
@@ -43,16 +43,16 @@ def test_minimum_length_of_held_samples_follows_from_noise_and_quantisation() ->
     noise = np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0)
     p = erf(0.5 / np.sqrt(noise**2 - 1.0 / 12.0) / np.sqrt(2.0))
     longest = np.log(1e-6 / SAMPLES) / np.log(p)
-    assert not held(repeating(values, 300, int(longest) - 1)).any()
-    assert held(repeating(values, 300, int(longest) + 2)).any()
+    assert not held_mask(repeating(values, 300, int(longest) - 1)).any()
+    assert held_mask(repeating(values, 300, int(longest) + 2)).any()
 
 
 @pytest.mark.parametrize("over_noise", [1.5, 3.5, 6.0])
 def test_equal_readings_of_a_coarsely_quantised_force_are_not_held(over_noise: float) -> None:
     force = quantised(reversing_force(TIME_S, 5), over_noise * 0.3)
     assert np.mean(np.diff(force) == 0.0) > 0.2
-    assert not held(force).any()
-    assert not held(1e-6 * force).any()
+    assert not held_mask(force).any()
+    assert not held_mask(1e-6 * force).any()
 
 
 def test_held_samples_finding_has_the_longest_otherwise_unexplained_stretch() -> None:
@@ -70,7 +70,7 @@ def test_held_samples_finding_has_the_longest_otherwise_unexplained_stretch() ->
 
 def test_saturated_command_is_usable_but_constant_samples_of_a_noisy_force_are_held() -> None:
     command = np.clip(12.0 * np.sin(3.0 * TIME_S), -8.0, 8.0)
-    assert held(command).any()
+    assert held_mask(command).any()
     motion = 0.1 + 0.0 * TIME_S
     assert (
         find_held(Run.from_arrays(TIME_S, motion, command), np.zeros(SAMPLES, dtype=bool))[0] == []

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import Run
-from jbf.records.motion.compared import compared
 from jbf.records.motion.derived_speed import derived_speed
 from jbf.records.motion.estimated_motion import estimate_motion
 from jbf.records.motion.speed_delay import filtered_speed
 from jbf.records.motion.speed_zero import speed_zero
+from jbf.records.motion.window_comparisons import window_comparisons
 from known_motions import STEP_S, TIME_S, Array, integrated, path_of, quantised, speed_of, white
 
 PATH_M, SPEED_M_S = path_of(TIME_S), speed_of(TIME_S)
@@ -42,7 +42,7 @@ def estimated_delay(speed: Array) -> tuple[float, float]:
     """Delay and standard error, s: regression of windowed speeds on speed and acceleration of the
     path, jackknife over twelve parts, of the window with the smallest error."""
     estimates = []
-    for window in compared(TIME_S, PATH_M, speed):
+    for window in window_comparisons(TIME_S, PATH_M, speed):
         design = np.stack([window.by_path, window.acceleration], axis=1)
         part = np.arange(len(design)) * 12 // len(design)
         delays = []

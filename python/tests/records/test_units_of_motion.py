@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf import Run
-from jbf.records.motion.compared import HALF_WIDTHS, compared
 from jbf.records.motion.estimated_motion import estimate_motion
 from jbf.records.motion.position import Position, recorded_position
 from jbf.records.motion.ratio import factor_between, metres_per_unit, slope_near
 from jbf.records.motion.units import wrong_unit
+from jbf.records.motion.window_comparisons import HALF_WIDTHS, window_comparisons
 from jbf.records.quantities import LINEAR, OF_BEARING, ROTARY, Quantities
 from known_motions import TIME_S, path_of, quantised, speed_of, white
 
@@ -20,7 +20,7 @@ TURN = 2.0 * np.pi
 def test_windows_of_a_parabolic_path_have_its_mean_speed_and_acceleration() -> None:
     time_s: Any = 0.1 * np.arange(200)
     path = 0.5 * 3.0 * time_s**2
-    windows = compared(time_s, path, 6.0 * time_s)
+    windows = window_comparisons(time_s, path, 6.0 * time_s)
     for half, window in zip(HALF_WIDTHS, windows, strict=True):
         inner = time_s[2 * half : -2 * half]
         np.testing.assert_allclose(window.by_path, 3.0 * inner)
@@ -31,14 +31,14 @@ def test_windows_of_a_parabolic_path_have_its_mean_speed_and_acceleration() -> N
 
 def test_windows_of_path_and_speed_that_contain_a_gap_are_omitted() -> None:
     time_s: Any = np.concatenate((0.1 * np.arange(100), 50.0 + 0.1 * np.arange(100)))
-    windows = compared(time_s, time_s, np.ones(200))
+    windows = window_comparisons(time_s, time_s, np.ones(200))
     assert [len(w.by_path) for w in windows] == [200 - 16, 200 - 32, 200 - 64]
 
 
 def test_number_of_window_widths_follows_from_the_length_of_the_record() -> None:
     for samples, widths in ((67, 0), (68, 1), (75, 1), (76, 2), (92, 3)):
         clock: Any = 0.1 * np.arange(samples)
-        assert len(list(compared(clock, clock, np.ones(samples)))) == widths
+        assert len(list(window_comparisons(clock, clock, np.ones(samples)))) == widths
 
 
 @pytest.mark.parametrize("factor", [1.25, -1.0, 57.3, 1e-3, 0.75])

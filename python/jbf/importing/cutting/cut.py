@@ -91,8 +91,8 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
         segment_cuts = sorted(
             (c for c in cuts if c.segment == segment), key=lambda c: (c.first_s, c.last_s)
         )
-        pieces += _between(recording, segment, segment_cuts)
-    return _named(recording, [_judged(recording, piece, settings) for piece in pieces])
+        pieces += _pieces_between(recording, segment, segment_cuts)
+    return _name_runs(recording, [_mark_unusable(recording, piece, settings) for piece in pieces])
 
 
 def ends(recording: Recording, segment: int) -> tuple[float, float]:
@@ -102,7 +102,7 @@ def ends(recording: Recording, segment: int) -> tuple[float, float]:
     return first, max(stream.at(b - 1) for stream, (_, b) in rows)
 
 
-def _between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Piece]:
+def _pieces_between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Piece]:
     """Return the pieces between cuts, and the spans that the cuts remove as omitted pieces."""
     first_s, last_s = ends(recording, segment)
     pieces: list[Piece] = []
@@ -113,7 +113,7 @@ def _between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Pi
             continue
         if c.last_s > begin:
             pieces.append(Piece("", file, segment, begin, c.last_s))
-        if c.first_s > max(c.last_s, begin) and _within(recording, segment, c):
+        if c.first_s > max(c.last_s, begin) and _contains_rows(recording, segment, c):
             out = Piece("", file, segment, max(c.last_s, begin), c.first_s, False, c.why)
             pieces.append(out)
         begin = max(begin, c.first_s)
@@ -122,7 +122,7 @@ def _between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Pi
     return pieces
 
 
-def _within(recording: Recording, segment: int, c: Cut) -> bool:
+def _contains_rows(recording: Recording, segment: int, c: Cut) -> bool:
     """Return whether there are rows between the two instants of a cut."""
     for stream in recording.streams:
         first, end = stream.rows_between(segment, c.last_s, c.first_s)
@@ -131,7 +131,7 @@ def _within(recording: Recording, segment: int, c: Cut) -> bool:
     return False
 
 
-def _judged(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
+def _mark_unusable(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
     """Mark a piece as left out if it cannot be a run, with the reason."""
     if not piece.keep:
         return piece
@@ -175,7 +175,7 @@ def _kept(recording: Recording, piece: Piece) -> bool:
     return bool(len(finite) and finite[-1] == 1.0)
 
 
-def _named(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:
+def _name_runs(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:
     """Name the runs after their file, with a number if there are several."""
     runs = [piece for piece in pieces if piece.keep]
     digits = len(str(len(runs)))

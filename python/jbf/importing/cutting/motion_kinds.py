@@ -41,7 +41,7 @@ def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut
                 if len(part) >= per // 2:
                     kinds.append(_kind(part, threshold, noise))
                     begins.append(begin + at)
-        for at, kind in _held(_to_and_fro(kinds)):
+        for at, kind in _lasting_kinds(_to_and_fro(kinds)):
             row = begins[at]
             if row > first:
                 stream = motion.stream
@@ -71,7 +71,7 @@ def _to_and_fro(kinds: list[str]) -> list[str]:
     return classified
 
 
-def _held(kinds: list[str]) -> list[tuple[int, str]]:
+def _lasting_kinds(kinds: list[str]) -> list[tuple[int, str]]:
     """Return the start and name of each lasting kind that differs from the previous one."""
     lasting: list[tuple[int, str]] = []
     last = None

@@ -145,7 +145,7 @@ def sniff(
             likeliest.delimiter, likeliest.decimal, _thousands(cells, likeliest.decimal)
         )
     if decimal is None and likeliest.delimiter != ",":
-        question = _doubt(cells)
+        question = _ambiguity(cells)
         likeliest = Dialect(likeliest.delimiter, likeliest.decimal, likeliest.thousands, question)
     return likeliest
 
@@ -182,7 +182,7 @@ def _thousands(cells: list[str], decimal: str) -> str:
     return ""
 
 
-def _doubt(cells: list[str]) -> str | None:
+def _ambiguity(cells: list[str]) -> str | None:
     """Return a question if each single comma precedes three digits: thousands or decimals."""
     matches = [m for cell in cells if (m := _PARTS.fullmatch(cell)) is not None]
     commas = [m for m in matches if m[2] == ","]

@@ -91,12 +91,12 @@ def _tables(
     elif isinstance(content, list) and content and all(isinstance(r, Mapping) for r in content):
         recordings = [{} if _is_row(record) else _columns(record) for record in content]
         if all(recordings) and len({tuple(columns) for columns in recordings}) == 1:
-            yield name, _one_after_the_other(recordings), rate_hz
+            yield name, _concatenated(recordings), rate_hz
         elif any(recordings):
             for at, record in enumerate(content):
                 yield from _tables(record, f"{name}[{at}]", rate_hz)
         else:
-            columns = _of_records(content)
+            columns = _columns_of_records(content)
             if columns and len(content) >= FEWEST:
                 yield name, columns, rate_hz
 
@@ -124,7 +124,7 @@ def _is_row(record: Mapping[str, Any]) -> bool:
     return max(map(len, arrays), default=0) <= LONGEST and any(True for _ in leaves_of(scalars))
 
 
-def _one_after_the_other(recordings: Sequence[Columns]) -> Columns:
+def _concatenated(recordings: Sequence[Columns]) -> Columns:
     joined: Columns = {
         key: np.concatenate([columns[key] for columns in recordings]) for key in recordings[0]
     }
@@ -136,7 +136,7 @@ def _one_after_the_other(recordings: Sequence[Columns]) -> Columns:
     return joined
 
 
-def _of_records(records: Sequence[Any]) -> Columns:
+def _columns_of_records(records: Sequence[Any]) -> Columns:
     """Return the columns of records; NaN where a record lacks a value."""
     rows = [dict(leaves_of(record)) for record in records]
     keys = dict.fromkeys(key for row in rows for key in row)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from jbf.errors import InputError
-from jbf.importing.columns import split_unit, understood
+from jbf.importing.columns import parse_header, split_unit
 from jbf.importing.formats.dates import is_instant
 from jbf.importing.formats.dialect import is_empty
 from jbf.importing.formats.table import unique
@@ -140,7 +140,7 @@ def lay_out(
     if groups and len({n for n in named if n}) < sum(map(bool, named)):
         named = tuple(
             f"{group} {name}".strip()
-            for group, name in zip(_carried(groups[-1], width), named, strict=True)
+            for group, name in zip(_repeat_group_names(groups[-1], width), named, strict=True)
         )
     cleaned = tuple(_bare_unit(cell) for cell in _padded(unit_cells, width))
     return Layout(tuple(unique(named)), cleaned, number, rate, parts=parts)
@@ -151,7 +151,7 @@ def _side_by_side(names: Sequence[str]) -> tuple[Part, ...]:
     clocks = [at for at, name in enumerate(names) if name == names[0]]
     ends = [*clocks[1:], len(names)]
     separated = all(end - at > 1 for at, end in zip(clocks, ends, strict=True))
-    if len(clocks) < 2 or not separated or understood(names[0]).kind != "time":
+    if len(clocks) < 2 or not separated or parse_header(names[0]).kind != "time":
         return ()
     return tuple(Part(tuple(range(at, end)), at) for at, end in zip(clocks, ends, strict=True))
 
@@ -243,7 +243,7 @@ def _is_units(cells: list[str]) -> bool:
     full = [_bare_unit(cell) for cell in cells if cell]
     unit_count = sum(parse_unit(cell) is not None for cell in full)
     # `s` is a unit and a name; whole words that name a quantity do not occur in a row of units.
-    named = sum(understood(cell).kind is not None and len(cell) > 2 for cell in full)
+    named = sum(parse_header(cell).kind is not None and len(cell) > 2 for cell in full)
     return bool(full) and unit_count > 0.5 * len(full) and named < unit_count
 
 
@@ -275,7 +275,7 @@ def _padded(cells: Sequence[str], width: int) -> tuple[str, ...]:
     return tuple([*cells, *[""] * width][:width])
 
 
-def _carried(cells: Sequence[str], width: int) -> list[str]:
+def _repeat_group_names(cells: Sequence[str], width: int) -> list[str]:
     """Repeat the name of a group, which is written only above its first column."""
     repeated: list[str] = []
     for cell in _padded(cells, width):

@@ -24,7 +24,7 @@ TIMES = 4.0
 LEAST_SAMPLES = 60
 
 
-def loose_ends(time: Array, values: Array, neighbours: int) -> Mask:
+def end_outliers(time: Array, values: Array, neighbours: int) -> Mask:
     """Detect outliers among the first and last samples.
 
     Parameters
@@ -35,12 +35,12 @@ def loose_ends(time: Array, values: Array, neighbours: int) -> Mask:
     mask = np.zeros(len(values), dtype=bool)
     if len(values) < max(LEAST_SAMPLES, 2 * MOST + 2 * neighbours):
         return mask
-    mask[: _loose(time, values, neighbours)] = True
-    mask[len(values) - _loose(time[::-1], values[::-1], neighbours) :] = True
+    mask[: _count_outliers(time, values, neighbours)] = True
+    mask[len(values) - _count_outliers(time[::-1], values[::-1], neighbours) :] = True
     return mask
 
 
-def _loose(time: Array, values: Array, neighbours: int) -> int:
+def _count_outliers(time: Array, values: Array, neighbours: int) -> int:
     """Count the outliers at the beginning."""
     n = len(values) - neighbours
     t = np.stack([time[k : n + k] - time[:n] for k in range(1, neighbours + 1)])

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.counts import count_of
-from jbf.records.findings.ends import ends_finding, loose_ends
+from jbf.records.findings.ends import end_outliers, ends_finding
 from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
 
@@ -68,8 +68,8 @@ def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
     """
     assert run.friction is not None
     mask = glitches(run.friction) & ~_breakaway(velocity)
-    loose = _loose_ends(run, velocity, mask)
-    off = run.friction - _next_to(run, mask | loose)
+    loose = _end_outliers(run, velocity, mask)
+    off = run.friction - _interpolated_force(run, mask | loose)
     unit = run.quantities.force
     ends = ends_finding("friction_n", "force", run.name, loose, off, unit, "excluded")
     more = [] if ends is None else [ends]
@@ -85,15 +85,15 @@ def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
     return [single, *more], mask | loose
 
 
-def _loose_ends(run: Run, velocity: Array, mask: Mask) -> Mask:
+def _end_outliers(run: Run, velocity: Array, mask: Mask) -> Mask:
     """Detect further outliers at the ends of the record, except at reversals and starts."""
     assert run.friction is not None
     loose, valid = np.zeros(len(mask), dtype=bool), ~mask
-    loose[valid] = loose_ends(run.time_s[valid], run.friction[valid], 1)
+    loose[valid] = end_outliers(run.time_s[valid], run.friction[valid], 1)
     return loose & ~_breakaway(velocity)
 
 
-def _next_to(run: Run, mask: Mask) -> Array:
+def _interpolated_force(run: Run, mask: Mask) -> Array:
     """Interpolate the force across the masked outliers."""
     assert run.friction is not None
     interpolated: Array = np.interp(run.time_s, run.time_s[~mask], run.friction[~mask])

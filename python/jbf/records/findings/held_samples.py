@@ -23,7 +23,7 @@ CHANCE = 1e-6
 """Probability that a record contains a sequence of equal readings of this length by chance."""
 
 
-def held(values: Array) -> Mask:
+def held_mask(values: Array) -> Mask:
     """Mask of readings equal to the previous one, in sequences that are improbable by chance."""
     n = len(values)
     same = np.concatenate(([False], np.diff(values) == 0.0))
@@ -66,7 +66,7 @@ def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
     """
     assert run.friction is not None
     force = run.friction
-    mask = held(force) & ~explained
+    mask = held_mask(force) & ~explained
     if mask.any() and is_without_noise(force[~mask]):
         # A command at its limit is the true output of the drive, not a recording artefact.
         read = force[~explained]

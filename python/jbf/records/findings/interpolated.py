@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.digits import last_digit, resolution
-from jbf.records.findings.polygon import polygon, polygon_rms, sharpened
+from jbf.records.findings.polygon import polygon, polygon_rms, refined
 from jbf.records.findings.steps import step_of
 
 Array = npt.NDArray[np.float64]
@@ -110,7 +110,7 @@ def find_native(time: Array, values: Array) -> Native | None:
         if noise == 0.0 or np.ptp(t) > 1.2 * WINDOW * step:
             continue
         for candidate in _coarse_search(t, y, step, noise):
-            period, phase = sharpened(t, y, *candidate)
+            period, phase = refined(t, y, *candidate)
             if polygon(t, y, period, phase)[0] < _exact(values, noise):
                 native = _extended_polygon(time, values, first, WINDOW, period, phase, noise)
                 if native is not None:
@@ -125,7 +125,7 @@ def find_native_of(time: Array, values: Array, period_s: float) -> Native | None
     noise = _noise(values, max(ROUNDING * float(np.ptp(values)), 4.0 * last_digit(values)))
     if noise == 0.0:
         return None
-    fits = [sharpened(time, values, period_s, p * period_s, near=True) for p in PHASES.tolist()]
+    fits = [refined(time, values, period_s, p * period_s, near=True) for p in PHASES.tolist()]
     best = min(fits, key=lambda fit: polygon(time, values, *fit)[0])
     return _fit_polygon(time, values, *best, noise)
 
@@ -184,7 +184,7 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
     for residual, period, phase in np.stack([each, periods, phases])[:, best].T.tolist():
         if residual > LIKELY_SHORT * noise:
             break
-        period, phase = sharpened(t, y, period, phase)
+        period, phase = refined(t, y, period, phase)
         if polygon(t, y, period, phase)[0] < _exact(values, min(noise, median_residual)):
             native = _extended_polygon(time, values, first, LONGER, period, phase, noise)
             if native is not None:
@@ -248,11 +248,11 @@ def _extended_polygon(
         begin = max(min(first - length // 2, n - length), 0)
         phase += origin - time[begin]
         part = slice(begin, begin + length)
-        period, phase = sharpened(time[part], values[part], period, phase)
+        period, phase = refined(time[part], values[part], period, phase)
     period, phase = _longest(time, values, period, phase, noise)
     if _fit_polygon(time, values, period, phase, noise) is None:
         return None
-    period, phase = sharpened(time, values, period, phase, near=True)
+    period, phase = refined(time, values, period, phase, near=True)
     return _fit_polygon(time, values, period, phase, noise)
 
 
@@ -269,7 +269,7 @@ def _longest(
             residual, _, _ = polygon(time, values, *longer)
             if residual < NEARLY * noise:
                 # Refine again, since the error of the shorter period is multiplied as well.
-                longer = sharpened(time, values, *longer, near=True)
+                longer = refined(time, values, *longer, near=True)
                 residual, _, _ = polygon(time, values, *longer)
             if residual < _exact(values, noise):
                 return _longest(time, values, *longer, noise)

@@ -85,7 +85,7 @@ def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Ar
     return residual, corners, first
 
 
-def sharpened(
+def refined(
     time: Array, values: Array, period: float, phase: float, *, near: bool = False
 ) -> tuple[float, float]:
     """Refine period and phase near the given ones, to a fraction of the initial range.

@@ -92,7 +92,7 @@ def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
     look = begins[near : near + LEAST_ROWS] - begins[near]
     grid = np.exp(np.arange(np.log(SHORTEST), np.log(LONGEST), FINE / look[-1]))
     for period in grid[_spread(look, grid) < WITHIN + FINE][::-1].tolist():
-        count = _followed(begins, near, period)
+        count = _extended_ticks(begins, near, period)
         if count is not None:
             return count
     return None
@@ -107,7 +107,7 @@ def _spread(begins: Array, periods: Array) -> Array:
     return widest
 
 
-def _followed(begins: Array, near: int, period: float) -> npt.NDArray[np.intp] | None:
+def _extended_ticks(begins: Array, near: int, period: float) -> npt.NDArray[np.intp] | None:
     """Tick numbers of all sequences, extended outwards from a few; None if the phase drifts."""
     low, high = near, near + LEAST_ROWS
     while True:

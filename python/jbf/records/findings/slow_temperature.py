@@ -30,14 +30,14 @@ def recorded_temperature(run: Run) -> Array | None:
     """
     if run.temperature_c is None:
         return None
-    return _steady(run.time_s, run.temperature_c)[0]
+    return _smoothed_temperature(run.time_s, run.temperature_c)[0]
 
 
 def find_slow_temperature(run: Run) -> list[Finding]:
     """Report the corrections of the recorded temperature."""
     if run.temperature_c is None:
         return []
-    _, held_s, noise_k = _steady(run.time_s, run.temperature_c)
+    _, held_s, noise_k = _smoothed_temperature(run.time_s, run.temperature_c)
     findings = []
     if held_s > 0.0:
         words = f"the temperature is constant for {held_s:.2g} s between readings"
@@ -54,7 +54,7 @@ def find_slow_temperature(run: Run) -> list[Finding]:
     return findings
 
 
-def _steady(time: Array, celsius: Array) -> tuple[Array, float, float]:
+def _smoothed_temperature(time: Array, celsius: Array) -> tuple[Array, float, float]:
     """Temperature of the body, C; hold time of its readings, s; their noise, K.
 
     The latter two are zero if no correction was made.

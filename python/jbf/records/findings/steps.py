@@ -38,7 +38,7 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
     """
     if len(values) < FEWEST_LEVELS:
         return 0.0
-    levels = _near_levels(values) if drawn else np.unique(values)
+    levels = _group_levels(values) if drawn else np.unique(values)
     if len(levels) < FEWEST_LEVELS or len(levels) > MOST_LEVELS * len(values):
         return 0.0
     gaps = np.diff(levels)
@@ -49,7 +49,7 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
     return step if is_multiple.mean() > ALL else 0.0
 
 
-def _near_levels(values: Array) -> Array:
+def _group_levels(values: Array) -> Array:
     """Return the levels of values close to them, ascending: the middle value of each group."""
     ordered = np.sort(values)
     near = CRUMB * float(np.ptp(ordered)) / (MOST_LEVELS * len(ordered))

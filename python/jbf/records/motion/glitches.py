@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.counts import count_of
-from jbf.records.findings.ends import ends_finding, loose_ends
+from jbf.records.findings.ends import end_outliers, ends_finding
 from jbf.records.findings.finding import Finding
 from jbf.records.lagrange import weights_at_zero
 from jbf.records.motion.position import Position
@@ -48,13 +48,13 @@ def mend_position(name: str, time: Array, position: Position) -> tuple[Position,
     while mask.sum() <= RARE * len(path):
         # Of two adjacent outliers, the second is detected once the first is excluded.
         valid = np.flatnonzero(~mask)
-        more = valid[_off(time[valid], path[valid], threshold)]
+        more = valid[_path_outliers(time[valid], path[valid], threshold)]
         if not len(more):
             break
         mask[more] = True
     if not 0 < mask.sum() <= RARE * len(path):
         return position, None
-    mended = _between(time, path, mask)
+    mended = _interpolated(time, path, mask)
     size = float(np.max(np.abs(path - mended))) / position.arm_m
     words = _words("position", time, mask, f"{size:.3g} {position.unit}")
     finding = Finding("glitches", position.column, name, size, position.unit, ASIDE, words)
@@ -68,22 +68,24 @@ def mend_speed(
     n = len(speed)
     if n < LEAST_SAMPLES:
         return speed, None
-    before, after = _both_sides(np.diff(speed))
-    typical = _around(np.abs(np.diff(speed)))
+    before, after = _differences(np.diff(speed))
+    typical = _local_median(np.abs(np.diff(speed)))
     off = _smaller_difference(before, after)
     off[off <= CHANGES * np.maximum(typical[:-1], typical[1:])] = 0.0
-    bend = _around(np.abs(before + after)) / 0.6745 / np.sqrt(6.0)
+    bend = _local_median(np.abs(before + after)) / 0.6745 / np.sqrt(6.0)
     off[off <= FAR * bend] = 0.0
     mask = np.concatenate(([False], off != 0.0, [False]))
     # In a record without noise, every corner would exceed the threshold.
     if np.median(np.abs(before + after)) == 0.0:
         return speed, None
     if path is not None and mask.any():
-        mended = _between(time, speed, mask)
-        mask &= _missed(time, path, speed) > 2.0 * _missed(time, path, mended)
+        mended = _interpolated(time, speed, mask)
+        mask &= _displacement_error(time, path, speed) > 2.0 * _displacement_error(
+            time, path, mended
+        )
     if not 0 < mask.sum() <= (RARE_ALONE if path is None else RARE) * n:
         return speed, None
-    mended = _between(time, speed, mask)
+    mended = _interpolated(time, speed, mask)
     size = float(np.max(np.abs(speed - mended)))
     words = _words("speed", time, mask, f"{size:.3g} {unit}")
     return mended, Finding("glitches", "velocity_m_s", name, size, unit, ASIDE, words)
@@ -94,8 +96,8 @@ def mend_path_ends(
 ) -> tuple[Position, Mask, list[Finding]]:
     """Extrapolate the path across outliers at its ends; also return their mask and the findings."""
     path = position.path_m
-    mask = loose_ends(time, path, 3)
-    mended = _between(time, path, mask)
+    mask = end_outliers(time, path, 3)
+    mended = _interpolated(time, path, mask)
     off = (path - mended) / position.arm_m
     finding = ends_finding(position.column, "position", name, mask, off, position.unit, ASIDE)
     return (position.along(mended) if finding else position), mask, [finding] if finding else []
@@ -108,17 +110,19 @@ def mend_speed_ends(
 
     Also returns their mask and the findings.
     """
-    mask = loose_ends(time, speed, 1)
-    mended = _between(time, speed, mask)
+    mask = end_outliers(time, speed, 1)
+    mended = _interpolated(time, speed, mask)
     if path is not None and mask.any():
-        missed = _missed(time, path, speed) > 2.0 * _missed(time, path, mended)
+        missed = _displacement_error(time, path, speed) > 2.0 * _displacement_error(
+            time, path, mended
+        )
         if not missed[mask].all():
             mask[:], mended = False, speed
     finding = ends_finding("velocity_m_s", "speed", name, mask, speed - mended, unit, ASIDE)
     return mended, mask, [finding] if finding else []
 
 
-def _off(time: Array, path: Array, threshold: float) -> Mask:
+def _path_outliers(time: Array, path: Array, threshold: float) -> Mask:
     """Mask of the samples that deviate from a cubic through two adjacent samples on either side."""
     n = len(path)
     mask = np.zeros(n, dtype=bool)
@@ -129,7 +133,7 @@ def _off(time: Array, path: Array, threshold: float) -> Mask:
     weights = weights_at_zero(t)
     off = -np.sum(weights * y, axis=0)
     size = np.abs(off)
-    outlying = size > np.maximum(FAR * _around(size) / 0.6745, threshold)
+    outlying = size > np.maximum(FAR * _local_median(size) / 0.6745, threshold)
     # An outlier causes opposite deviations at the adjacent samples, by its weight in their cubics.
     for neighbour, weight in (
         (np.pad(off, (1, 0))[:-1], np.pad(weights[2], (1, 0))[:-1]),
@@ -142,7 +146,7 @@ def _off(time: Array, path: Array, threshold: float) -> Mask:
     return mask
 
 
-def _both_sides(change: Array) -> tuple[Array, Array]:
+def _differences(change: Array) -> tuple[Array, Array]:
     """Difference of each inner sample from the previous one, and from the next one."""
     return change[:-1], -change[1:]
 
@@ -167,7 +171,7 @@ def _median(values: Array, window: int) -> Array:
     return median
 
 
-def _around(sizes: Array) -> Array:
+def _local_median(sizes: Array) -> Array:
     """Local median size: the largest median of the centred, preceding and following windows.
 
     Next to a rest, half of the centred window has no noise.
@@ -178,14 +182,14 @@ def _around(sizes: Array) -> Array:
     return largest
 
 
-def _missed(time: Array, path: Array, speed: Array) -> Array:
+def _displacement_error(time: Array, path: Array, speed: Array) -> Array:
     """Displacement by which path and speed disagree on both sides of each sample, m."""
     gap = np.abs(np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * np.diff(time))
     both: Array = np.pad(gap, (1, 0)) + np.pad(gap, (0, 1))
     return both
 
 
-def _between(time: Array, values: Array, mask: Mask) -> Array:
+def _interpolated(time: Array, values: Array, mask: Mask) -> Array:
     """Replace masked samples by a cubic through the two valid ones on either side."""
     mended: Array = values.copy()
     valid = np.flatnonzero(~mask)

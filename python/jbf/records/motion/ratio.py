@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from jbf.records.motion.compared import WIDE, Compared, compared
+from jbf.records.motion.window_comparisons import WIDE, Compared, window_comparisons
 
 Array = npt.NDArray[np.float64]
 
@@ -26,7 +26,7 @@ def factor_between(time: Array, path: Array, speed: Array) -> float | None:
 
     None if they agree, or if their ratio is not constant.
     """
-    for c in compared(time, path, speed, WIDE):
+    for c in window_comparisons(time, path, speed, WIDE):
         ratio, spread = _middle(c)
         if spread < STEADY * abs(ratio) and abs(ratio - 1.0) > max(OFF, SPREADS * spread):
             return ratio
@@ -38,7 +38,7 @@ def metres_per_unit(time: Array, path: Array, speed: Array) -> float | None:
 
     None if the ratio is not constant or is negative.
     """
-    for c in compared(time, path, speed, WIDE):
+    for c in window_comparisons(time, path, speed, WIDE):
         ratio, spread = _middle(c)
         if spread < STEADY * ratio:
             exact = slope_near(time, path, speed, ratio)
@@ -48,7 +48,7 @@ def metres_per_unit(time: Array, path: Array, speed: Array) -> float | None:
 
 def slope_near(time: Array, path: Array, speed: Array, near: float) -> float:
     """Ratio by least squares, over the windows whose ratio is close to a first estimate."""
-    for c in compared(time, path, speed, WIDE):
+    for c in window_comparisons(time, path, speed, WIDE):
         ratio, _ = _middle(c)
         if abs(ratio / near - 1.0) < OFF:
             close = np.abs(c.by_path - near * c.by_speed) < OFF * np.abs(c.by_path) + c.count

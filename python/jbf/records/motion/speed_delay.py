@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
-from jbf.records.motion.compared import Compared, compared
+from jbf.records.motion.window_comparisons import Compared, window_comparisons
 
 Array = npt.NDArray[np.float64]
 
@@ -30,7 +30,7 @@ STRETCHES = 12
 def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
     """Return a finding if the speed lags the path by more than the smoother corrects."""
     sharpest = min(
-        (_lateness(c) for c in compared(time, path, speed)),
+        (_speed_delay(c) for c in window_comparisons(time, path, speed)),
         key=lambda candidate: candidate[1],
         default=(0.0, np.inf),
     )
@@ -45,7 +45,7 @@ def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding
     return Finding("filtered_speed", "velocity_m_s", name, late_s, "s", done, words)
 
 
-def _lateness(c: Compared) -> tuple[float, float]:
+def _speed_delay(c: Compared) -> tuple[float, float]:
     """Estimate the delay of the speed and its standard error, s.
 
     The speed is regressed on the speed and acceleration of the path; the error is by the jackknife

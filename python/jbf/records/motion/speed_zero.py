@@ -47,7 +47,7 @@ def speed_zero(
     finding : Finding or None
         The finding, if the speed was corrected.
     """
-    still = _still(path, step)
+    still = _rest_mask(path, step)
     if step <= 0.0 or still.sum() < LEAST:
         return speed, 0.0, None
     at_rest = speed[still]
@@ -63,7 +63,7 @@ def speed_zero(
     return speed - zero, step_of(speed), finding
 
 
-def _still(path: Array, step: float) -> Mask:
+def _rest_mask(path: Array, step: float) -> Mask:
     """Mask of the samples at standstill.
 
     These are in a window of `STILL_SAMPLES` samples over which the path varies by at most

@@ -58,7 +58,7 @@ class Compared:
     count: float
 
 
-def compared(
+def window_comparisons(
     time: Array, path: Array, speed: Array, half_widths: tuple[int, ...] = HALF_WIDTHS
 ) -> Iterator[Compared]:
     """Yield path and speed over windows of several widths, in ascending order of width."""

@@ -34,19 +34,21 @@ class Policy:
 
     false_alarm_rate: float = documented(
         0.01,
-        "share of campaigns without a missing effect in which noise may name one",
+        "family-wise type I error: share of campaigns without a missing effect in which noise "
+        "leads to a named effect",
         "one in a hundred; the user's choice",
     )
     artefact_margin: float = documented(
         22.0,
-        "gain that an effect needs in addition to that of noise, for recording artefacts that no "
-        "finding reports",
+        "gain that an effect needs in addition to the noise threshold, because of recording "
+        "artefacts that no finding reports",
         "simulated recordings without effects (benches/recorded); zero for a clean recording",
     )
     min_effect_share: float = documented(
         0.03,
         "share of the residual's RMS by which an effect must change the friction to be named",
-        "no practical significance below it; with enough samples every model is wrong by as much",
+        "practical significance; with enough samples any small lack of fit is statistically "
+        "significant",
     )
     min_effect: float = documented(
         0.0,

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from jbf.comparison.patterns import LEAST_SHARE, SIGNIFICANCE
 from jbf.estimation.settings import documented
 
-FIVE_SIGMA = "1 in 2 million of Gaussian noise"
+FIVE_SIGMA = "1 in 2 million for Gaussian noise"
 ONE_IN_TEN_THOUSAND = "1 campaign in 10,000"
-SET_BEFORE = "set before any campaign was seen"
+SET_BEFORE = "fixed before any campaign was examined"
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,9 @@ class Patterns:
         LEAST_SHARE, "share of the mean square that a pattern must explain", "as in a comparison"
     )
     min_sigma: float = documented(
-        SIGNIFICANCE, "standard deviations above chance, at least", "as in a comparison"
+        SIGNIFICANCE,
+        "minimum excess over the value expected by chance, in standard deviations",
+        "as in a comparison",
     )
 
 
@@ -31,10 +33,12 @@ class Tones:
     chance: float = documented(
         1e-7, "probability of a spectral line by chance, over all lines of a run", SET_BEFORE
     )
-    min_share: float = documented(0.008, "share of the mean square of a tone", SET_BEFORE)
-    min_samples: int = documented(64, "number of samples from which a run is tested", "convention")
+    min_share: float = documented(0.008, "minimum share of the mean square in a tone", SET_BEFORE)
+    min_samples: int = documented(
+        64, "minimum number of samples for a run to be tested", "convention"
+    )
     min_periods: float = documented(
-        8.0, "number of periods within a run, at least", "slower structure is a pattern over time"
+        8.0, "minimum number of periods within a run", "slower structure is a pattern over time"
     )
 
 
@@ -46,28 +50,28 @@ class Ripples:
     """
 
     min_periods: float = documented(
-        8.0, "number of periods within the travel, at least", "longer waves are patterns"
+        8.0, "minimum number of periods within the travel", "longer waves are patterns"
     )
     min_bins: float = documented(
-        4.0, "number of travel bins within a pitch, at least", "twice the limit of sampling"
+        4.0, "minimum number of travel bins within a pitch", "twice the limit of sampling"
     )
-    min_runs: int = documented(3, "number of runs that show the ripple, at least", "convention")
+    min_runs: int = documented(3, "minimum number of runs that show the ripple", "convention")
     max_common_share: float = documented(
         0.5,
-        "share of the ripple's power that one common phase explains, at most",
+        "maximum share of the ripple's power that one common phase explains",
         "above it an effect describes the ripple",
     )
     weaker_runs: float = documented(
         2.0 / 3.0,
-        "share of the runs, the weakest, that must show it as well",
+        "share of the runs, those with the weakest ripple, that must also show it",
         "a tone has this pitch in a few runs only",
     )
     weaker_chance: float = documented(
-        1e-3, "probability by chance of the ripple in these runs", "1 in 1000"
+        1e-3, "probability of the ripple in these runs by chance", "1 in 1000"
     )
     max_tone_share: float = documented(
         0.8,
-        "share of the ripple's square from which a frequency explains it as well",
+        "share of the ripple's mean square above which a fixed frequency explains it equally well",
         "at half a line width from its centre a line loses a fifth of its power",
     )
 
@@ -76,16 +80,16 @@ class Ripples:
 class Replicates:
     """Residual structure that repeats with the motion."""
 
-    min_sigma: float = documented(5.0, "standard errors of the correlation, at least", FIVE_SIGMA)
+    min_sigma: float = documented(5.0, "minimum correlation, in standard errors", FIVE_SIGMA)
     min_share: float = documented(
-        0.03, "share of the mean square that repeats, at least", "simulated campaigns"
+        0.03, "minimum share of the mean square that repeats", "simulated campaigns"
     )
     min_pairs: int = documented(
-        100, "number of pairs of replicates from which a run is tested", "convention"
+        100, "minimum number of pairs of replicates for a run to be tested", "convention"
     )
     memory_lags: tuple[float, ...] = documented(
         (0.5, 0.6, 0.7, 0.8, 0.9),
-        "lags, in periods, at which a correlation is the memory of the noise",
+        "lags, in periods, at which a correlation is attributed to the noise",
         "a repeating error has both signs between half a period and a whole one",
     )
 
@@ -95,10 +99,10 @@ class Bursts:
     """Residual structure at isolated instants."""
 
     min_sigma: float = documented(
-        5.0, "standard deviations from which an innovation is large", FIVE_SIGMA
+        5.0, "standard deviations beyond which an innovation is large", FIVE_SIGMA
     )
     min_share: float = documented(
-        0.008, "share of the mean square of large innovations, at least", "simulated campaigns"
+        0.008, "minimum share of the mean square in large innovations", "simulated campaigns"
     )
     chance: float = documented(
         1e-4, "probability of neighbours of the same sign by chance", ONE_IN_TEN_THOUSAND
@@ -112,10 +116,10 @@ class Bursts:
 class Constancy:
     """Constancy of the parameters over the runs."""
 
-    chance: float = documented(1e-8, "probability of the disagreement by chance", SET_BEFORE)
+    chance: float = documented(1e-8, "significance level of the disagreement", SET_BEFORE)
     min_ratio: float = documented(
         2.5,
-        "ratio of the chi-square to its degrees of freedom, at least",
+        "minimum ratio of chi-square to its degrees of freedom",
         "simulated campaigns: a noise model is never exact",
     )
     min_sensitivity: float = documented(
@@ -134,8 +138,8 @@ class Strokes:
     """
 
     min_strokes: int = documented(
-        3, "number of strokes from which a run is tested", "two degrees of freedom"
+        3, "minimum number of strokes for a run to be tested", "two degrees of freedom"
     )
     min_samples: int = documented(
-        8, "number of samples from which half a stroke is tested", "convention"
+        8, "minimum number of samples for half a stroke to be tested", "convention"
     )

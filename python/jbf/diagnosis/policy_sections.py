@@ -19,40 +19,43 @@ class Selection:
 
     max_effects: int = documented(
         5,
-        "number of effects after which no more are added",
-        "convention: a record that needs more has another structure",
+        "maximum number of effects in a model",
+        "convention: data that need more effects have a structure outside the catalogue",
     )
     max_rms_ratio: float = documented(
         1.25,
-        "ratio of the leader's RMS to the smallest RMS of all candidates with evidence, at most",
-        "a wrong model's smooth error passes for coloured noise, and evidence against it is small",
+        "maximum ratio of the leader's RMS to the smallest RMS of all candidates with evidence",
+        "the smooth error of a wrong model resembles coloured noise, and the evidence against it "
+        "is small",
     )
     min_weight: float = documented(
         0.018,
-        "posterior weight from which an effect is tied with another one; an effect with less is "
-        "replaced",
-        "odds of 55 : 1 (Kass & Raftery 1995: strong); less than one parameter costs",
+        "minimum posterior weight of an effect that is tied with another one; below it the effect "
+        "is replaced",
+        "odds of 55 : 1 (Kass & Raftery 1995: strong); less than the penalty of one parameter",
     )
     weak_evidence: float = documented(
         60.0,
-        "evidence up to which held-out runs must confirm a share of the gain, and above which a "
-        "candidate that fits but does not predict is residual structure",
-        "chosen on simulated campaigns; noise does not reach it",
+        "evidence up to which held-out runs must confirm a share of the gain; above it, a "
+        "candidate that fits but does not predict counts as residual structure",
+        "chosen on simulated campaigns; noise alone does not exceed it",
     )
     max_refused_rms_ratio: float = documented(
-        0.99, "ratio of RMS values below which such a candidate fits better", "convention"
+        0.99,
+        "ratio of RMS values below which such a candidate counts as fitting better",
+        "convention",
     )
     confounder_ratio: float = documented(
         20.0,
-        "ratio of an effect's gain to the runs' disagreement on its parameters from which it is "
-        "named although structure remains",
-        "chosen on simulated campaigns with effects that are in no catalogue",
+        "minimum ratio of an effect's gain to the disagreement of the runs on its parameters for "
+        "the effect to be named although residual structure remains",
+        "chosen on simulated campaigns with effects outside the catalogue",
     )
     min_estimate_sigma: float = documented(
         2.0,
-        "standard errors by which a parameter of an effect must differ from its null for the "
+        "minimum difference of a parameter from its null value, in standard errors, for its "
         "effect to be named",
-        "a 95 % confidence interval that excludes the null",
+        "a 95 % confidence interval that excludes the null value",
     )
 
     @property
@@ -67,26 +70,26 @@ class HeldOut:
 
     min_gain_share: float = documented(
         0.5,
-        "share of a candidate's gain by which it must increase the log predictive density of "
-        "held-out runs, where its evidence is weak",
-        "in a linear model (Z - 1) / (Z + 1) of a gain Z + 1 remains",
+        "minimum increase of the log predictive density of held-out runs, as a share of the "
+        "candidate's gain, where its evidence is weak",
+        "in a linear model the expected share is (Z - 1) / (Z + 1) for a gain Z + 1",
     )
     min_better_share: float = documented(
         0.66,
-        "share of the held-out runs that a candidate with strong evidence must predict better, "
-        "where it predicts all of them together worse",
-        "two of three: a run that alone determines a parameter is predicted without it",
+        "minimum share of the held-out runs that a candidate with strong evidence must predict "
+        "better, where its error over all of them is larger",
+        "two of three: if only one run determines a parameter, that run is predicted without it",
     )
     max_rms_ratio: float = documented(
         1.25,
-        "ratio of the held-out RMS with a candidate to that without it, at most",
+        "maximum ratio of the held-out RMS with a candidate to that without it",
         "a run that is predicted far worse contradicts the candidate",
     )
     no_worse_ratio: float = documented(
         1.03,
-        "ratio of held-out RMS values up to which a term predicts no worse, and from which a law "
-        "predicts better",
-        "fits of one model to two halves of a recording differ by as much",
+        "ratio of held-out RMS values up to which a term counts as predicting equally well, and "
+        "above which a law counts as predicting better",
+        "typical difference between fits of one model to the two halves of a recording",
     )
 
 
@@ -96,49 +99,53 @@ class Search:
 
     min_score_share: float = documented(
         0.3,
-        "share of the threshold of one parameter that a score test must predict for a fit",
-        "a step from the null rarely falls short of the fit by more",
+        "minimum gain that a score test must predict for a candidate to be fitted, as a share of "
+        "the threshold for one parameter",
+        "one step from the null rarely underestimates the gain of the fit by more",
     )
     min_swap_share: float = documented(
         0.05,
-        "share of an effect's gain that the score test of another must predict for an exchange",
-        "an effect that fits as well predicts far more from its null",
+        "minimum gain that the score test of another effect must predict for an exchange, as a "
+        "share of the present effect's gain",
+        "the score test of an effect that fits equally well predicts far more",
     )
     rank_margin: float = documented(
         60.0,
-        "gain behind the leader's share up to which a candidate converges, and a fresh start of "
-        "many peaks is followed",
-        "chosen for speed; never seen to change a verdict",
+        "gain below the leader's share up to which a candidate is fitted to convergence, and a "
+        "new start of a multimodal likelihood is continued",
+        "chosen for speed; no change of a verdict was observed",
     )
     rank_fraction: float = documented(
         0.6,
-        "share of the leader's evidence that a candidate needs to converge",
-        "chosen for speed; never seen to change a verdict",
+        "share of the leader's evidence that a candidate needs to be fitted to convergence",
+        "chosen for speed; no change of a verdict was observed",
     )
     linear_gain_factor: float = documented(
         2.0,
-        "multiple of the gain that the linear model predicts after three steps that a candidate "
-        "may reach; it is not followed where this is less than the leader's share",
-        "the largest ratio in fits with effects of every kind was 1.5",
+        "assumed maximum ratio of a candidate's gain to the gain that the linear model predicts "
+        "after three steps; a candidate that cannot reach the leader's share is not continued",
+        "the largest observed ratio, in fits with effects of every kind, was 1.5",
     )
     step_gain_factor: float = documented(
         5.0,
-        "multiple of the gain of its next step that a candidate may still gain",
+        "assumed maximum ratio of a candidate's remaining gain to the gain of its next step",
         "chosen on fits with a ringing drive",
     )
     min_peaks_fraction: float = documented(
         0.5,
-        "share of the leader's evidence from which an effect with many peaks is also searched at "
-        "the others",
+        "minimum share of the leader's evidence for an effect with a multimodal likelihood to be "
+        "searched at its other maxima",
         "chosen for speed",
     )
     leaders: int = documented(
-        3, "number of candidates with the largest gains that may lead", "chosen for speed"
+        3,
+        "number of candidates with the largest gains among which the leader is selected",
+        "chosen for speed",
     )
     paired: int = documented(
         4,
-        "number of candidates with the smallest error, and of those with the largest scores next "
-        "to the best two, of which pairs are fitted where no single one is accepted",
+        "number of candidates with the smallest error, and of those with the largest scores in "
+        "addition to the best two, of which pairs are fitted if no single candidate is accepted",
         "chosen for speed",
     )
 
@@ -148,18 +155,20 @@ class Terms:
     """Terms of the observation model."""
 
     chance: float = documented(
-        1e-4, "probability of a false term, shared among the kinds", ONE_IN_TEN_THOUSAND
+        1e-4,
+        "probability of a false term per campaign, divided among the kinds",
+        ONE_IN_TEN_THOUSAND,
     )
     kinds: int = documented(
         10,
-        "number of kinds of terms that share this probability",
+        "number of kinds of terms among which this probability is divided",
         "offset, drift, gain and oil by run, delay by run, clock drift, quantiser, variance by "
         "force and by run, heavy tails",
     )
     max_updates: int = documented(
         12,
-        "number of times that a term is added or estimated again",
-        "ten kinds; delays are estimated again next to a better model",
+        "maximum number of times that a term is added or re-estimated",
+        "ten kinds; delays are re-estimated with a better model",
     )
 
 
@@ -168,14 +177,16 @@ class Delays:
     """Significance of delays by run and of a clock drift."""
 
     max_searches: int = documented(
-        3, "number of searches for the delays of the runs", "a second search is more precise"
+        3,
+        "maximum number of searches for the delays of the runs",
+        "a second search is more precise",
     )
     hint_chance: float = documented(
         0.05, "significance level below which a clock drift is fitted", "1 in 20"
     )
     drift_square_factor: float = documented(
         0.5,
-        "factor on Wald's statistic of a clock drift",
+        "factor on the Wald statistic of a clock drift",
         "the residual of a wrong model is not white",
     )
 
@@ -186,12 +197,12 @@ class Quantisation:
 
     min_bias_change: float = documented(
         0.01,
-        "change of the bias, RMS in steps, from which it is removed again",
-        "a tenth of its size next to little noise",
+        "change of the bias, RMS in steps, above which the correction is repeated",
+        "a tenth of the bias at a low noise level",
     )
     unbiased_noise: float = documented(
         0.8,
-        "standard deviation of the noise, in steps, from which readings are unbiased",
+        "standard deviation of the noise, in steps, above which readings count as unbiased",
         "the bias is below 1e-5 steps",
     )
 
@@ -202,34 +213,35 @@ class NoiseVariance:
 
     min_ratio: float = documented(
         1.25,
-        "ratio of noise levels, between forces or runs, from which samples are weighted by it",
-        "below it the weights gain less than 5 % of the variance of a parameter",
+        "minimum ratio of noise levels, between forces or runs, for samples to be weighted",
+        "below it, weights reduce the variance of a parameter by less than 5 %",
     )
     force_bins: int = documented(
         6, "number of bins of the force in which a noise level is estimated", "convention"
     )
     min_samples: int = documented(
-        200, "number of samples from which a noise level is estimated", "an error of 13 %"
+        200, "minimum number of samples for an estimate of a noise level", "an error of 13 %"
     )
     min_tail_ratio: float = documented(
         6.0,
-        "ratio of the number of innovations in the tails to that of Gaussian noise from which "
-        "they have less weight",
-        "least squares lose a twentieth of their precision there",
+        "minimum ratio of the number of innovations in the tails to that of Gaussian noise for "
+        "them to be downweighted",
+        "least squares lose 5 % of their precision there",
     )
     tail_sigma: float = documented(
-        4.0, "standard deviations from which an innovation is in the tails", "6 in 100,000"
+        4.0, "standard deviations beyond which an innovation is in the tails", "6 in 100,000"
     )
     min_tails: float = documented(
-        5.0, "number of innovations in the tails, at least", "no single outliers"
+        5.0, "minimum number of innovations in the tails", "more than single outliers"
     )
     huber_sigma: float = documented(
-        2.5, "standard deviations from which an innovation has less weight", "Huber (1964)"
+        2.5, "standard deviations beyond which an innovation is downweighted", "Huber (1964)"
     )
     max_step_ratio: float = documented(
         2.0,
-        "ratio of a converter's step to the residual's RMS from which no tails are estimated",
-        "the tails are then quantisation errors: more than half of the standard deviation",
+        "ratio of a converter's step to the residual's RMS above which heavy tails are not "
+        "estimated",
+        "quantisation errors are then more than half of the standard deviation",
     )
 
 
@@ -245,14 +257,14 @@ class Motion:
     )
     max_effect_share: float = documented(
         0.03,
-        "the same for all other effects",
+        "this share for all other effects",
         "twice the largest share that such an effect explained in simulated servo drives without "
         "hidden effects (seeds 4007 to 4036)",
     )
     min_noise_ratio: float = documented(
         1.1,
-        "ratio by which the noise next to the errors of the motion must decrease for these to be "
-        "estimated again",
+        "minimum ratio by which the noise in addition to the errors of the motion must decrease "
+        "for these errors to be re-estimated",
         "a tenth of the noise",
     )
 
@@ -263,12 +275,13 @@ class Limitations:
 
     min_reverse_share: float = documented(
         0.01,
-        "share of the samples in the rarer direction below which the motion has one direction",
-        "no level can be estimated from fewer",
+        "share of the samples in the rarer direction below which the motion counts as "
+        "unidirectional",
+        "fewer samples do not determine a friction level",
     )
     min_speed_ratio: float = documented(
         1.5,
-        "ratio of the 95 % and 5 % quantiles of the speed below which it hardly changes",
+        "ratio of the 95 % and 5 % quantiles of the speed below which the speed counts as constant",
         "a line through such speeds has an intercept with three times its error",
     )
     wide_speed_ratio: float = documented(
@@ -293,7 +306,7 @@ class Laws:
         "1 in 40 by chance",
     )
     same_ratio: float = documented(
-        1.005, "ratio of held-out errors up to which two laws are the same", "0.5 %"
+        1.005, "ratio of held-out errors up to which two laws count as equivalent", "0.5 %"
     )
     sections: int = documented(
         40,
@@ -317,6 +330,6 @@ class Experiments:
     )
     strengths: tuple[float, ...] = documented(
         (0.6, 1.0, 1.5),
-        "multiples of the usual strength of an effect, equally likely",
+        "multiples of the typical strength of an effect, equally likely",
         "convention",
     )

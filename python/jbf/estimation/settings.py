@@ -22,13 +22,13 @@ class NoiseSettings:
 
     longest_memory_s: float = documented(
         0.6,
-        "longest correlation time, s, that is noise and not residual structure",
+        "longest correlation time, s, that counts as noise and not as residual structure",
         "convention: filters of instruments are faster, strokes are slower",
     )
     min_gain: float = documented(
         20.0,
-        "gain in twice the log likelihood from which the noise is coloured",
-        "two parameters; the error of a wrong model must not be taken for noise",
+        "minimum gain in twice the log likelihood for a model of coloured noise",
+        "two parameters; lack of fit must not be absorbed as noise",
     )
     max_gain_factor: float = documented(
         4.0,
@@ -37,34 +37,34 @@ class NoiseSettings:
     )
     max_rms_ratio: float = documented(
         1.02,
-        "ratio of the RMS of a fit with coloured noise, or with errors of the motion, to that of "
-        "the plain fit up to which it is accepted",
-        "close to one for noise; the error of a wrong model would be absorbed above it",
+        "maximum ratio of the RMS of a fit with coloured noise, or with errors of the motion, to "
+        "that of the ordinary fit",
+        "close to one for noise; above it, lack of fit would be absorbed",
     )
     clip_sigma: float = documented(
         3.5,
         "standard deviations at which the contribution of a sample to a robust gain is clipped",
-        "1 in 2000 of Gaussian noise",
+        "1 in 2000 for Gaussian noise",
     )
     min_floor_samples: int = documented(
         300,
-        "number of samples at rest or repeated from which they give the total noise",
+        "minimum number of samples, at rest or repeated, for an estimate of the total noise",
         "relative standard error of 4 %",
     )
-    min_rest_samples: int = documented(60, "samples from which a rest gives noise", "convention")
+    min_rest_samples: int = documented(60, "minimum number of samples of a rest", "convention")
     min_repeated_samples: int = documented(
         100,
-        "number of repeated samples of a run from which their noise is used",
+        "minimum number of repeated samples of a run for an estimate of the noise",
         "four blocks of 25",
     )
     min_floor_ratio: float = documented(
         1.04,
-        "ratio of the total noise to the white noise from which the total noise is the floor",
+        "minimum ratio of total to white noise for the total noise to be the noise floor",
         "coloured noise gives few independent samples: a clear excess is required",
     )
     max_floor_ratio: float = documented(
         3.0,
-        "ratio of the total noise to the white noise above which it is no noise of the instrument",
+        "ratio of total to white noise above which the total noise is not instrument noise",
         "convention: such a difference is friction",
     )
 
@@ -77,11 +77,11 @@ class VarianceSettings:
         3.0, "length of the windows, s", "five times the longest correlation time of a noise model"
     )
     min_windows: int = documented(
-        8, "number of windows of a run below which they are shortened", "convention"
+        8, "minimum number of windows of a run; for fewer, the windows are shortened", "convention"
     )
     min_runs: int = documented(
         3,
-        "number of runs from which the scatter between runs is estimated",
+        "minimum number of runs for an estimate of the scatter between runs",
         "two degrees of freedom",
     )
     chance: float = documented(
@@ -96,10 +96,10 @@ class BlockSettings:
     """Blocks of the residual whose signs are reversed to calibrate the threshold."""
 
     min_length_s: float = documented(
-        1.0, "length of a block, s, at least", "longer than the longest correlation time of noise"
+        1.0, "minimum length of a block, s", "longer than the longest correlation time of noise"
     )
     min_memories: float = documented(
-        4.0, "length of a block, in correlation times of the residual, at least", "independence"
+        4.0, "minimum length of a block, in correlation times of the residual", "independence"
     )
 
 
@@ -108,11 +108,11 @@ class ConditionSettings:
     """Operating conditions that the runs must cover for an effect to be a candidate."""
 
     min_load_difference: float = documented(
-        0.05, "relative difference from which loads differ", "convention"
+        0.05, "minimum relative difference for two loads to count as different", "convention"
     )
     min_temperature_difference_k: float = documented(
         2.0,
-        "difference, K, from which temperatures differ",
+        "minimum difference, K, for two temperatures to count as different",
         "changes an oil's viscosity by a tenth; a thermometer is not at the contact",
     )
     max_motion_share: float = documented(
@@ -123,8 +123,8 @@ class ConditionSettings:
     )
     min_pitch_periods: float = documented(
         4.0,
-        "periods within the travel from which a wave over it has a pitch",
-        "a longer wave is a variation along the stroke, which has its own effect",
+        "minimum number of periods within the travel for a wave to have a pitch",
+        "a longer wave is a variation along the stroke, which is another effect",
     )
 
 
@@ -135,15 +135,15 @@ class FilmSettings:
     max_steps: float = documented(
         200.0,
         "steps of a film per sampling interval above which a law is not evaluated",
-        "the film has forgotten its state at the previous sample two hundred times over",
+        "the film is then independent of its state at the previous sample",
     )
     any_steps: float = documented(
-        1e5, "total number of steps that is evaluated in any case", "some milliseconds"
+        1e5, "total number of steps up to which a law is always evaluated", "some milliseconds"
     )
     gap_steps: float = documented(
         4.5,
-        "sampling intervals from which on a step is a gap, after which a film's state is unknown",
-        "a longer step hides more of a motion than a straight line follows",
+        "minimum gap, in sampling intervals, after which the state of a film is unknown",
+        "linear interpolation of the motion over a longer step is inaccurate",
     )
     max_speed_ratio: float = documented(
         5.0,
@@ -168,7 +168,7 @@ class TransientSettings:
     )
     max_share_contact: float = documented(
         0.75,
-        "the same for a contact",
+        "share of a run above which nothing is excluded for a contact",
         "a run may be a single stroke, half of which deflects the contact",
     )
     max_share_backlash: float = documented(
@@ -197,11 +197,11 @@ class TransientSettings:
     )
     min_new_share: float = documented(
         1e-3,
-        "share of the samples that must be excluded in addition for a model to be fitted again",
+        "minimum share of additionally excluded samples for a model to be refitted",
         "one in a thousand; fewer hardly change a fit",
     )
     min_reported_ratio: float = documented(
-        2.0, "ratio to the usual residual from which an excluded start is reported", "convention"
+        2.0, "minimum ratio of a reported start to the typical residual", "convention"
     )
 
 
@@ -240,10 +240,10 @@ class DelaySettings:
         "convention: larger delays are not searched",
     )
     drift_parts: int = documented(
-        3, "parts of a run from whose delays a growth is estimated", "a line has two parameters"
+        3, "parts of a run from whose delays a drift is estimated", "a line has two parameters"
     )
     min_part_samples: int = documented(
-        60, "number of samples of a part from which its delay is estimated", "convention"
+        60, "minimum number of samples of a part for an estimate of its delay", "convention"
     )
     max_edge_likelihood: float = documented(
         0.01,
@@ -261,7 +261,7 @@ class DelaySettings:
     reserve_s: float = documented(
         20e-3,
         "delay, s, that is not corrected while the common delay is fitted; at least one sample",
-        "no force may be early in that fit",
+        "the force must not lead the motion in that fit",
     )
 
 
@@ -271,7 +271,7 @@ class QuantisationSettings:
 
     remaining_bias: float = documented(
         0.3,
-        "share of the corrected bias below which a mean residual is no structure",
+        "share of the corrected bias below which a mean residual does not count as structure",
         "the noise and the force that determine the bias are estimates",
     )
 
@@ -292,14 +292,14 @@ class HeldOutSettings:
     )
     extrapolation_margin: float = documented(
         0.1,
-        "share of the largest value of all runs within which a value is no extrapolation",
+        "share of the largest value of all runs within which nothing is extrapolated",
         "convention",
     )
     extrapolation_share: float = documented(
-        0.05, "share of a run's samples that must be beyond all others", "no single samples"
+        0.05, "share of a run's samples that must be beyond all others", "more than single samples"
     )
-    min_units: int = documented(6, "number of units from which they are paired", "convention")
-    min_unit_samples: int = documented(16, "samples from which a stroke is a unit", "convention")
+    min_units: int = documented(6, "minimum number of units for a paired comparison", "convention")
+    min_unit_samples: int = documented(16, "minimum number of samples of a stroke", "convention")
 
 
 @dataclass(frozen=True)
@@ -319,7 +319,7 @@ class MotionSettings:
     )
     min_delay_share: float = documented(
         1e-3,
-        "mean share below which a delay of the force is no error of the clocks",
+        "mean share below which a delay of the force is not attributed to the clocks",
         "the motion is exact: the model lacks an effect",
     )
     scale_prior: float = documented(
@@ -329,13 +329,13 @@ class MotionSettings:
     )
     huber_sigma: float = documented(
         2.5,
-        "standard errors by noise and motion beyond which a residual has less weight",
+        "standard errors, from noise and motion, beyond which a residual is downweighted",
         "Huber (1964)",
     )
     min_delay_sigma: float = documented(
         5.0,
-        "standard errors from which a delay of the force in all runs is corrected",
-        "1 in 2 million of Gaussian noise",
+        "minimum delay of the force in all runs, in standard errors, for it to be corrected",
+        "1 in 2 million for Gaussian noise",
     )
     max_delay_samples: float = documented(
         2.0, "sampling intervals up to which such a delay is plausible", "convention"
@@ -352,7 +352,7 @@ class MotionSettings:
     )
     roughness_factor: float = documented(
         30.0,
-        "factor on the noise intensity whose change of the parameters is a systematic error",
+        "factor on the noise intensity; the change of the parameters is a systematic error",
         "convention: about one and a half decades",
     )
 
@@ -362,17 +362,17 @@ class PeriodSettings:
     """Detection of motions that repeat, whose records are replicates."""
 
     min_samples: int = documented(
-        100, "number of samples of a run that is tested for a period", "convention"
+        100, "minimum number of samples for a run to be tested for a period", "convention"
     )
     min_correlation: float = documented(
         0.9,
-        "autocorrelation of the speed at a period, at least",
-        "convention: the same motion again",
+        "minimum autocorrelation of the speed at a period",
+        "convention: the motion is repeated",
     )
     max_difference: float = documented(
         0.02,
         "standard deviation of the difference between periods, relative to that of the speed",
-        "a repeated motion; a similar one is no replicate",
+        "repeated motions; merely similar motions are not replicates",
     )
 
 

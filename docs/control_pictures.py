@@ -65,9 +65,9 @@ def settled() -> Figure:
     lines = {row: [] for row in control.TASKS if row != "velocity square"}
     for k in belts:
         soft = control.thesis_model(**{"drive_compliance.k": float(k)})
-        found = tables(soft, bench, schemes={"coulomb": Coulomb()}, seeds=SEEDS)
+        result = tables(soft, bench, schemes={"coulomb": Coulomb()}, seeds=SEEDS)
         for row, ratios in lines.items():
-            ratios.append(found[row, "coulomb"].ratio or np.nan)
+            ratios.append(result[row, "coulomb"].ratio or np.nan)
     _ratios(right, belts, lines, "stiffness of the belt, N m/rad")
     right.axvline(40.0, color="black", linestyle=":", linewidth=1.0)
     right.set_title("Coulomb observer")

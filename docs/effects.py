@@ -156,13 +156,13 @@ def motion_of(effect: Effect, speed_times: float = 1.0, load_times: float = 1.0)
 def models_of(effect: Effect) -> tuple[jbf.Model, jbf.Model]:
     """Return the models without an effect and with it."""
     what = shown(effect)
-    own = {f"{effect.name}.{name}": value for name, value in what.values.items()}
+    of_effect = {f"{effect.name}.{name}": value for name, value in what.values.items()}
     law, values = ("journal", LAW) if "journal" not in effect.refused else ("coulomb", IN_NEWTONS)
     others = _others(what)
     values = {**values, **what.beside}
     return (
         jbf.Model(RIG, law, effects=others, parameters=values),
-        jbf.Model(RIG, law, effects=[*others, effect.name], parameters=values | own),
+        jbf.Model(RIG, law, effects=[*others, effect.name], parameters=values | of_effect),
     )
 
 
@@ -276,8 +276,8 @@ def page(effect: Effect) -> str:
 
 
 def _unit(units: Mapping[str, str], name: str) -> str:
-    found = [unit for full, unit in units.items() if full == name or full.startswith(f"{name}_")]
-    return "" if not found or found[0] == "-" else found[0]
+    matching = [unit for full, unit in units.items() if full == name or full.startswith(f"{name}_")]
+    return "" if not matching or matching[0] == "-" else matching[0]
 
 
 def _row(p: Parameter) -> str:
@@ -339,15 +339,15 @@ def main() -> int:
         "names", nargs="*", metavar="NAME", help="pictures of these; all by default"
     )
     parser.add_argument("--check", action="store_true", help="write nothing")
-    asked = parser.parse_args()
-    if asked.check:
+    options = parser.parse_args()
+    if options.check:
         wrong = stale()
         print("\n".join(f"stale: {name}" for name in wrong) or "all pages are in step")
         return 1 if wrong else 0
     FOLDER.mkdir(exist_ok=True)
     for path, text in texts().items():
         path.write_text(text, encoding="utf-8")
-    for name in asked.names or catalogue():
+    for name in options.names or catalogue():
         draw(catalogue()[name]).savefig(FOLDER / f"{name}.png", dpi=80)
     return 0
 

@@ -115,13 +115,13 @@ def motions() -> list[tuple[str, Array, Array]]:
 def compared(shown: Shown) -> Comparison:
     """Fit the law alone to runs with a hidden effect, and compare it with them."""
     rig, random = jbf.Rig.thesis(), np.random.default_rng(11)
-    own = shown.effects or {}
-    names = list(dict.fromkeys(name.partition(".")[0] for name in own))
-    truth = jbf.Model(rig, effects=names, parameters=LAW | own)
+    effect_values = shown.effects or {}
+    names = list(dict.fromkeys(name.partition(".")[0] for name in effect_values))
+    truth = jbf.Model(rig, effects=names, parameters=LAW | effect_values)
     runs = []
     for number, (name, time_s, speed) in enumerate(motions()):
-        way = np.concatenate(([0.0], np.cumsum(0.5 * STEP_S * (speed[1:] + speed[:-1]))))
-        clean = jbf.Run.from_arrays(time_s, speed, angle_rad=way / RADIUS_M)
+        path_m = np.concatenate(([0.0], np.cumsum(0.5 * STEP_S * (speed[1:] + speed[:-1]))))
+        clean = jbf.Run.from_arrays(time_s, speed, angle_rad=path_m / RADIUS_M)
         force = truth.predict(clean) + random.normal(0.0, NOISE_N, len(time_s))
         if shown.spoil is not None:
             force = force + shown.spoil(number, time_s, speed)
@@ -129,11 +129,13 @@ def compared(shown: Shown) -> Comparison:
         # The force at the last sample of a rest is that of the start, so it is recorded as moving.
         last = np.flatnonzero((speed[:-1] == 0.0) & (speed[1:] != 0.0))
         seen[last] = 0.5 * speed[last + 1]
-        runs.append(jbf.Run.from_arrays(time_s, seen, force, angle_rad=way / RADIUS_M, name=name))
+        runs.append(
+            jbf.Run.from_arrays(time_s, seen, force, angle_rad=path_m / RADIUS_M, name=name)
+        )
     return jbf.compare(jbf.fit(rig, runs).model, runs)
 
 
-def looks(shown: Shown, found: Comparison) -> str:
+def looks(shown: Shown, comparison: Comparison) -> str:
     """Describe the result of the comparison; the axis must be among those that it names."""
     if shown.kind == "frequency":
         return (
@@ -141,19 +143,19 @@ def looks(shown: Shown, found: Comparison) -> str:
         )
     if shown.kind == "bursts":
         return "The residual is large at some instants, and noise elsewhere."
-    failure = next(f for f in found.failures if f.axis == shown.kind)
+    failure = next(f for f in comparison.failures if f.axis == shown.kind)
     share = f"{100 * failure.share:.0f} % of the mean square"
     return f"{failure.where[0].upper()}{failure.where[1:]}: {share}."
 
 
-def draw(shown: Shown, found: Comparison, name: str) -> None:
+def draw(shown: Shown, comparison: Comparison, name: str) -> None:
     """Draw the picture of a failure."""
     if shown.kind == "frequency":
-        ax = jbf.plot.spectrum(found)
+        ax = jbf.plot.spectrum(comparison)
     elif shown.kind == "bursts":
-        ax = jbf.plot.residual_in_time(found)
+        ax = jbf.plot.residual_in_time(comparison)
     else:
-        ax = jbf.plot.residual_along(found, axis=shown.kind)
+        ax = jbf.plot.residual_along(comparison, axis=shown.kind)
     jbf.plot.save(ax, IMAGES / name)
 
 
@@ -166,17 +168,17 @@ def page(drawn: bool) -> str:
     """Return the page, and draw the pictures if `drawn`."""
     parts = [HEAD]
     for shown in SHOWN:
-        found = compared(shown)
+        comparison = compared(shown)
         name = f"{shown.kind.replace(' ', '_')}.png"
         if drawn:
-            draw(shown, found, name)
+            draw(shown, comparison, name)
         advice = advice_on(shown.kind)
         parts.append(
             f"## {shown.title}\n"
             f"![Residual of the law alone: {shown.hidden}](../images/failures/{name})\n\n"
             f"**Simulated cause:** {shown.hidden}.\n\n"
-            f"**Comparison:** {looks(shown, found)} The RMS is "
-            f"{found.rms / found.noise_rms:.2g} times the noise.\n\n"
+            f"**Comparison:** {looks(shown, comparison)} The RMS is "
+            f"{comparison.rms / comparison.noise_rms:.2g} times the noise.\n\n"
             f"**Usual causes:** {advice.causes}.\n\n"
             f"**Next step:** {sentence(advice.to_do)}\n"
         )

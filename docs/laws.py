@@ -39,9 +39,9 @@ def figure_of(law: str) -> Figure:
     bearing = "journal" in law
     time_s = np.linspace(0.0, 4.0 * np.pi, 6001)
     speed = SPEED_M_S * np.sin(time_s)
-    way = SPEED_M_S * (1.0 - np.cos(time_s))
+    path_m = SPEED_M_S * (1.0 - np.cos(time_s))
     rig = jbf.Rig.thesis() if bearing else jbf.Rig()
-    place = {"angle_rad": way / 0.0127} if bearing else {"position_m": way}
+    place = {"angle_rad": path_m / 0.0127} if bearing else {"position_m": path_m}
     model = jbf.Model(rig, law=law, parameters=VALUES[law])
     force = model.predict(jbf.Run.from_arrays(time_s, speed, **place))
     late = time_s >= 2.0 * np.pi
@@ -55,7 +55,7 @@ def figure_of(law: str) -> Figure:
     plane.plot(speed[late], force[late], color=LINE, lw=1.2, label="a sine of 1 rad/s")
     plane.set(xlabel="speed (m/s)", ylabel="friction (N)", title=law)
     plane.legend(frameon=False, fontsize=8)
-    along.plot(1e3 * way[late], force[late], color=LINE, lw=1.2)
+    along.plot(1e3 * path_m[late], force[late], color=LINE, lw=1.2)
     along.set(xlabel="place (mm)")
     return figure
 

@@ -33,16 +33,16 @@ def page() -> str:
 
 def _sections(section: Any, before: str) -> list[str]:
     """Return the tables of all sections within one, in order."""
-    found = []
+    sections = []
     for f in fields(section):
         value = getattr(section, f.name)
         if is_dataclass(value):
             name = f"{before}{f.name}"
             title = (type(value).__doc__ or "").splitlines()[0].rstrip(".")
-            if any(not is_dataclass(getattr(value, own.name)) for own in fields(value)):
-                found.append(_table(value, f"{name}.", title))
-            found += _sections(value, f"{name}.")
-    return found
+            if any(not is_dataclass(getattr(value, field.name)) for field in fields(value)):
+                sections.append(_table(value, f"{name}.", title))
+            sections += _sections(value, f"{name}.")
+    return sections
 
 
 def _table(section: Any, before: str, title: str) -> str:

@@ -35,8 +35,8 @@ def loop(
     period_s = 2.0 * np.pi / frequency_rad_s
     time_s = np.linspace(0.0, 2.0 * period_s, 4001)
     speed = AMPLITUDE_M_S * np.sin(frequency_rad_s * time_s)
-    way = AMPLITUDE_M_S / frequency_rad_s * (1.0 - np.cos(frequency_rad_s * time_s))
-    run = jbf.Run.from_arrays(time_s, speed, angle_rad=way / 0.0127)
+    path_m = AMPLITUDE_M_S / frequency_rad_s * (1.0 - np.cos(frequency_rad_s * time_s))
+    run = jbf.Run.from_arrays(time_s, speed, angle_rad=path_m / 0.0127)
     return speed[2000:], of.predict(run)[2000:] / 104.0
 
 
@@ -46,11 +46,11 @@ def main() -> None:
     steady, journal, thesis = figure.subplots(1, 3)
     speeds = np.geomspace(1e-4, 0.2646, 200)
     for colour, table in zip(COLOURS, TABLES, strict=True):
-        found = model(table)
-        load = found.rig.load.normal_n if found.rig.load else None
+        fitted = model(table)
+        load = fitted.rig.load.normal_n if fitted.rig.load else None
         assert load is not None
         steady.plot(
-            speeds, found.steady_friction(speeds) / load, color=colour, label=f"Table {table}"
+            speeds, fitted.steady_friction(speeds) / load, color=colour, label=f"Table {table}"
         )
     steady.set(
         xlabel="speed (m/s)", ylabel="friction coefficient", title="Steady: the Stribeck curve"

@@ -64,11 +64,11 @@ class Source:
             if within_code or "://" in target or target.startswith(("#", "mailto:")):
                 continue
             path, hash_, anchor = target.partition("#")
-            there = (page.parent / path).resolve()
+            resolved = (page.parent / path).resolve()
             try:
-                if not there.exists():
+                if not resolved.exists():
                     raise Broken("is not there")
-                new = os.path.relpath(self.place(there), here or ".")
+                new = os.path.relpath(self.place(resolved), here or ".")
             except (Broken, ValueError) as why:
                 self.broken.append(f"{page.relative_to(ROOT)}: {target}: {why}")
                 continue

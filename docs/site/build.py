@@ -65,12 +65,12 @@ def main() -> int:
     # Errors in docstrings are printed, but strict mode ignores them.
     if done.returncode != 0 or re.search(r"^(griffe|WARNING)", done.stdout, re.MULTILINE):
         return 1
-    found = faults(SITE / "html", skip=("rust",))
-    for line in found:
+    problems = faults(SITE / "html", skip=("rust",))
+    for line in problems:
         print(line, file=sys.stderr)
-    if not found:
+    if not problems:
         print(f"{SITE / 'html'}: python -m http.server -d {SITE / 'html'}")
-    return len(found) > 0
+    return len(problems) > 0
 
 
 if __name__ == "__main__":

@@ -51,10 +51,10 @@ def faults(folder: Path, skip: tuple[str, ...] = ()) -> list[str]:
         for path in sorted(folder.rglob("*.html"))
         if path.relative_to(folder).parts[0] not in skip
     }
-    found = []
+    problems = []
     for path, page in pages.items():
         name = path.relative_to(folder)
-        found += [f"{name}: loads {address}" for address in page.loads if outside(address)]
+        problems += [f"{name}: loads {address}" for address in page.loads if outside(address)]
         # The page for missing addresses is served from any depth.
         if path.name == "404.html":
             continue
@@ -62,16 +62,16 @@ def faults(folder: Path, skip: tuple[str, ...] = ()) -> list[str]:
             parts = urlsplit(address)
             if parts.scheme or parts.netloc:
                 continue
-            there = (path.parent / unquote(parts.path)).resolve() if parts.path else path
-            if there.is_dir():
-                there /= "index.html"
-            if not there.exists():
-                found.append(f"{name}: {address} is not there")
-            elif there in pages and unquote(parts.fragment) not in pages[there].anchors:
-                found.append(f"{name}: {address} has no such anchor")
+            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            if target.is_dir():
+                target /= "index.html"
+            if not target.exists():
+                problems.append(f"{name}: {address} is not there")
+            elif target in pages and unquote(parts.fragment) not in pages[target].anchors:
+                problems.append(f"{name}: {address} has no such anchor")
     for sheet in sorted(folder.rglob("*.css")):
         text = sheet.read_text(encoding="utf-8", errors="replace")
         for word in ("url(http", "url('http", 'url("http', "url(//", "@import"):
             if word in text and sheet.relative_to(folder).parts[0] not in skip:
-                found.append(f"{sheet.relative_to(folder)}: {word}")
-    return found
+                problems.append(f"{sheet.relative_to(folder)}: {word}")
+    return problems

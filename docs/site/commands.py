@@ -76,8 +76,8 @@ def section(of: argparse.ArgumentParser, about: str) -> str:
         for action in group._group_actions:
             if "-h" in action.option_strings or action.help == argparse.SUPPRESS:
                 continue
-            said = (action.help or "") % {"default": action.default, "prog": of.prog}
-            lines.append(f"| {named(action)} | {cell(said)} |")
+            help_text = (action.help or "") % {"default": action.default, "prog": of.prog}
+            lines.append(f"| {named(action)} | {cell(help_text)} |")
     shown = [line.strip() for line in (of.epilog or "").splitlines() if line.startswith("  ")]
     if shown:
         lines += ["", "```text", *shown, "```"]

@@ -77,14 +77,14 @@ def brought(names: tuple[str, ...]) -> str:
     return said("git", "log", "-1", "--format=%h, %as", "--", *paths).strip()
 
 
-def write(rows: list[tuple[str, tuple[str, ...], str]], told: str) -> None:
+def write(rows: list[tuple[str, tuple[str, ...], str]], note: str) -> None:
     """Write the page."""
     lines = ["| file in `docs` | command | commit |", "| --- | --- | --- |"]
     for script, names, source in rows:
         shown = ", ".join(f"`{name}`" for name in names)
         lines.append(f"| {shown} | `.venv/bin/python {script}` | {source} |")
     lines += [f"| `{name}` | {why} | |" for name, why in NOT_ANEW.items()]
-    text = "\n".join([HEAD, told, "", *lines, ""])
+    text = "\n".join([HEAD, note, "", *lines, ""])
     PAGE.write_text(text, encoding="utf-8")
 
 
@@ -93,10 +93,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scripts", nargs="*", metavar="SCRIPT", help="such as docs/laws.py")
     parser.add_argument("--as-committed", action="store_true")
-    asked = parser.parse_args()
-    if unknown := [name for name in asked.scripts if name not in SCRIPTS]:
+    options = parser.parse_args()
+    if unknown := [name for name in options.scripts if name not in SCRIPTS]:
         parser.error(f"{unknown[0]} makes no figure; these do: {', '.join(SCRIPTS)}")
-    made = [] if asked.as_committed else asked.scripts or list(SCRIPTS)
+    made = [] if options.as_committed else options.scripts or list(SCRIPTS)
     source = commit()
     # The date that matplotlib writes into SVG files is that of the commit.
     dated = {**os.environ, "SOURCE_DATE_EPOCH": said("git", "log", "-1", "--format=%ct").strip()}
@@ -108,12 +108,12 @@ def main() -> int:
         print(f"{script}: {time.monotonic() - start:.0f} s", flush=True)
     rows = [(s, names, source if s in made else brought(names)) for s, names in SCRIPTS.items()]
     if made:
-        told = f"Made on {date.today().isoformat()} from {source}, on {machine()}."
+        note = f"Made on {date.today().isoformat()} from {source}, on {machine()}."
         if len(made) < len(SCRIPTS):
-            told += " Other files: the last commit that changed them."
+            note += " Other files: the last commit that changed them."
     else:
-        told = "The commit is the last one that changed the files."
-    write(rows, told)
+        note = "The commit is the last one that changed the files."
+    write(rows, note)
     return 0
 
 

@@ -48,8 +48,8 @@ class Block:
 
 def every_page() -> list[Path]:
     """Return all pages of the site and the README, in a fixed order."""
-    found = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
-    return [*found, *(ROOT / name for name in OUTSIDE if (ROOT / name).exists())]
+    inside = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
+    return [*inside, *(ROOT / name for name in OUTSIDE if (ROOT / name).exists())]
 
 
 def name_of(page: Path) -> str:
@@ -59,14 +59,14 @@ def name_of(page: Path) -> str:
 
 def blocks(text: str) -> list[Block]:
     """Return the code blocks of a page, in order."""
-    found = []
+    code_blocks = []
     for match in FENCE.finditer(text):
         info = match["info"].strip()
         title = TITLE.search(info)
         language = info.split()[0] if info and not info.startswith("title=") else ""
         row = text.count("\n", 0, match.start()) + 1
         note = NOTE.search(text, 0, match.start())
-        found.append(
+        code_blocks.append(
             Block(
                 language,
                 title[1] if title else "",
@@ -75,7 +75,7 @@ def blocks(text: str) -> list[Block]:
                 note[1].strip() if note else "",
             )
         )
-    return found
+    return code_blocks
 
 
 def prose(text: str) -> str:

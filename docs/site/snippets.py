@@ -117,9 +117,9 @@ def squeezed(text: str) -> str:
     return " ".join(text.split())
 
 
-def compare(shown: str, said: str) -> None:
+def compare(shown: str, output: str) -> None:
     """Check that the shown lines occur in the output in this order."""
-    lines, at = [squeezed(line) for line in said.splitlines()], 0
+    lines, at = [squeezed(line) for line in output.splitlines()], 0
     for wanted in (squeezed(line) for line in shown.splitlines()):
         if wanted in ("", "..."):
             continue
@@ -127,7 +127,7 @@ def compare(shown: str, said: str) -> None:
         while at < len(lines) and not pattern.fullmatch(lines[at]):
             at += 1
         if at == len(lines):
-            raise Wrong(f"is not printed here: {wanted}\nbut:\n{said[-6000:]}")
+            raise Wrong(f"is not printed here: {wanted}\nbut:\n{output[-6000:]}")
         at += 1
 
 
@@ -142,8 +142,8 @@ def not_tested(note: str) -> bool:
 
 def missing(page: Path) -> list[str]:
     """Return what a page needs and this machine lacks: programs and Rust targets."""
-    found = re.findall(r"<!-- needs: (.*?) -->", page.read_text(encoding="utf-8"))
-    return [name for name in " ".join(found).split() if not _is_there(name)]
+    requirements = re.findall(r"<!-- needs: (.*?) -->", page.read_text(encoding="utf-8"))
+    return [name for name in " ".join(requirements).split() if not _is_there(name)]
 
 
 def _is_there(name: str) -> bool:

@@ -212,19 +212,19 @@ def _force(
     for effect in ("cogging", "cogging_2"):
         push = push + of(effect, "A") * _wave(hidden, effect, path, 0.0)
     sliding = (np.sign(v) * level + slope * v) * cold * place
-    found: Vector = sliding + carried + lost + push
+    force: Vector = sliding + carried + lost + push
     if any(effect in hidden for effect in BENT):
         # The zero offset arises in the amplifier, after the cell.
         zero = of("sensor_offset", "b")
-        found = through_cell(found - zero, hidden) + zero
-    return found
+        force = through_cell(force - zero, hidden) + zero
+    return force
 
 
 def _peak(hidden: dict[str, dict[str, float]], v: Vector) -> Vector:
     """Excess of the low-speed friction in positive motion over the mean of both directions, N."""
-    own = hidden.get("stribeck_asymmetry", {"c": 0.0, "v_s": 1.0, "n": 1.0})
-    found: Vector = own["c"] * np.power(math.e, -((np.abs(v) / own["v_s"]) ** own["n"]))
-    return found
+    values = hidden.get("stribeck_asymmetry", {"c": 0.0, "v_s": 1.0, "n": 1.0})
+    excess: Vector = values["c"] * np.power(math.e, -((np.abs(v) / values["v_s"]) ** values["n"]))
+    return excess
 
 
 def _along_the_stroke(hidden: dict[str, dict[str, float]], path: Vector) -> Vector:
@@ -233,21 +233,29 @@ def _along_the_stroke(hidden: dict[str, dict[str, float]], path: Vector) -> Vect
     The waves over the stroke are Chebyshev polynomials of the cosine of the phase of the first
     wave.
     """
-    own = hidden.get("stroke_dependence")
-    if own is None:
+    values = hidden.get("stroke_dependence")
+    if values is None:
         return np.ones(len(path))
-    share = np.clip((path - own["x_0"]) / own["h"], -1.0, 1.0)
+    share = np.clip((path - values["x_0"]) / values["h"], -1.0, 1.0)
     # From the upper end down: cos(k t), t from 0 to pi; the sign alternates for odd k.
-    sizes = [0.0, own["a_1"], -own["a_2"], -own["a_3"], own["a_4"], own["a_5"], -own["a_6"]]
-    whole: Vector = 1.0 + np.polynomial.chebyshev.chebval(
+    sizes = [
+        0.0,
+        values["a_1"],
+        -values["a_2"],
+        -values["a_3"],
+        values["a_4"],
+        values["a_5"],
+        -values["a_6"],
+    ]
+    level: Vector = 1.0 + np.polynomial.chebyshev.chebval(
         np.cos(0.5 * math.pi * (1.0 - share)), sizes
     )
-    return whole
+    return level
 
 
 def _wave(hidden: dict[str, dict[str, float]], effect: str, path: Vector, ahead: float) -> Vector:
     """A sine over the pitch, advanced by `ahead` periods; `phase` is a lag."""
-    own = hidden.get(effect, {"pitch": 1.0, "phase": 0.0})
-    turns = path / own["pitch"] - own["phase"] / (2.0 * math.pi) + ahead
-    found: Vector = np.imag(np.exp(2j * math.pi * turns))
-    return found
+    values = hidden.get(effect, {"pitch": 1.0, "phase": 0.0})
+    turns = path / values["pitch"] - values["phase"] / (2.0 * math.pi) + ahead
+    wave: Vector = np.imag(np.exp(2j * math.pi * turns))
+    return wave

@@ -162,8 +162,8 @@ class StrokeScatter:
     def apply(self, time: Vector, angle: Vector, speed: Vector, force: Vector, rng: Rng) -> Vector:
         # Small oscillations about a rest do not count as reversals.
         moving = np.flatnonzero(np.abs(speed) > 0.02 * np.max(np.abs(speed)))
-        ways = np.sign(speed[moving])
-        turned = moving[1:][ways[1:] != ways[:-1]]
+        directions = np.sign(speed[moving])
+        turned = moving[1:][directions[1:] != directions[:-1]]
         stroke = np.searchsorted(turned, np.arange(len(speed)), side="right")
         levels = 1.0 + self.share * rng.standard_normal(len(turned) + 1)
         return force * levels[stroke]

@@ -32,8 +32,8 @@ def finer(times: Vector, jumps: Vector) -> Vector:
     """Instants of the finer grid (s): those of `times`, between them, and next to jumps."""
     where = np.arange(FINER * (len(times) - 1) + 1) / FINER
     between = np.interp(where, np.arange(len(times)), times)
-    beside = np.concatenate([between, times, jumps - BESIDE_S, jumps + BESIDE_S])
-    return np.unique(np.clip(beside, times[0], times[-1]))
+    instants = np.concatenate([between, times, jumps - BESIDE_S, jumps + BESIDE_S])
+    return np.unique(np.clip(instants, times[0], times[-1]))
 
 
 def through_cell(force: Vector, effects: Parameters) -> Vector:

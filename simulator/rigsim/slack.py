@@ -25,11 +25,11 @@ def behind_gap(motion: Motion, gap_rad: float, radius_m: float) -> Motion:
             place = gap if piece.sign > 0 else 0.0
         room = gap - place if piece.sign > 0 else place
         start = piece.position(piece.t0)
-        way = abs(piece.position(piece.t1) - start)
-        crossed = min(room, way)
+        distance = abs(piece.position(piece.t1) - start)
+        crossed = min(room, distance)
         place += piece.sign * crossed
         closes = piece.t0
-        if way <= room:
+        if distance <= room:
             closes = piece.t1
         elif room > 0.0:
             closes = brentq(

@@ -55,8 +55,8 @@ def draw_warmth(kind: Kind, number: int, duration_s: float, rng: np.random.Gener
 
 def thinner(b_k: float, temperature_c: float) -> float:
     """Viscosity relative to the reference, from both distances to the divergence (Vogel)."""
-    here, there = temperature_c + OIL_K, REFERENCE_C + OIL_K
-    return float(10.0 ** (b_k / math.log(10.0) * (there - here) / (here * there)))
+    actual, reference = temperature_c + OIL_K, REFERENCE_C + OIL_K
+    return float(10.0 ** (b_k / math.log(10.0) * (reference - actual) / (actual * reference)))
 
 
 def read_by(thermometer: str, times: Vector, celsius: Vector, rng: np.random.Generator) -> Vector:

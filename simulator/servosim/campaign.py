@@ -122,8 +122,8 @@ def simulate(seed: int, hidden: Sequence[str] = (), runs: int = RUNS) -> Campaig
         control = control_of(
             drawn.kind, drawn.plant, drawn.demand, drawn.tick_s, ticks, start, random
         )
-        own = np.random.default_rng([seed, 4, k])
-        motion = run(drawn.plant, control, drawn.tick_s, ticks, start, own)
+        run_rng = np.random.default_rng([seed, 4, k])
+        motion = run(drawn.plant, control, drawn.tick_s, ticks, start, run_rng)
         records.append(record(drawn.logger, motion, drawn.tick_s, random))
     return Campaign(drawn, records)
 

@@ -60,10 +60,10 @@ def control_of(
     def control(tick: int, x: float, v: float) -> float:
         nonlocal total
         error = stiffness * (position[tick] - x) + velocity[tick] - v
-        asked = gain * error + total
-        if abs(asked) < limit:
+        command = gain * error + total
+        if abs(command) < limit:
             total += gain * integral * 0.1 * error * tick_s
-        return max(-limit, min(limit, asked))
+        return max(-limit, min(limit, command))
 
     return control
 
@@ -122,13 +122,13 @@ def _hand(
     k = np.minimum(time.astype(int), len(knots) - 3)
     s = time - k
     smooth = s * s * (3.0 - 2.0 * s)
-    asked = knots[k] * (1.0 - smooth) + knots[k + 1] * smooth
+    target = knots[k] * (1.0 - smooth) + knots[k + 1] * smooth
     gain = plant.inertia * 2.0 * math.pi * 3.0
 
     def control(tick: int, x: float, v: float) -> float:
         # A hand carries the weight and overcomes the friction that it feels.
         carried = plant.gravity * (math.sin(x) if plant.swings else 1.0)
-        felt = plant.coulomb * math.tanh(20.0 * asked[tick] / demand.top)
-        return carried + felt + plant.viscous * v + gain * (asked[tick] - v)
+        friction = plant.coulomb * math.tanh(20.0 * target[tick] / demand.top)
+        return carried + friction + plant.viscous * v + gain * (target[tick] - v)
 
     return control

@@ -98,8 +98,8 @@ def run(
     rows: list[tuple[float, float, float, float, float, float]] = []
     for tick in range(ticks):
         u = control(tick, at.position, at.velocity)
-        left = tick_s
-        while left > 1e-12:
+        remaining_s = tick_s
+        while remaining_s > 1e-12:
             t, x, v = at.time, at.position, at.velocity
             weight = plant.gravity * (math.sin(x) if plant.swings else 1.0)
             push, factor = hidden.push(at), hidden.factor(at)
@@ -110,7 +110,7 @@ def run(
             f = factor * (plant.coulomb + hidden.level(at))
             if v == 0.0 and abs(drive) <= f + lost * abs(weight):
                 rows.append((t, x, 0.0, 0.0, 0.0, u))
-                at.time, left = t + left, 0.0
+                at.time, remaining_s = t + remaining_s, 0.0
                 continue
             # All friction except the part proportional to speed, which is integrated in closed
             # form.
@@ -122,17 +122,17 @@ def run(
             force, damping = net / through - weight, slope / through
             a0 = (force - damping * v) / m
             last = force / damping  # the velocity approached
-            h = left
+            h = remaining_s
             # Does the velocity reach zero within the piece?
             if v != 0.0 and sign * last < 0.0:
-                h = min(left, m / damping * math.log1p(-v / last))
+                h = min(remaining_s, m / damping * math.log1p(-v / last))
             decay = math.exp(-damping / m * h)
             ended = last + (v - last) * decay
-            if h < left or sign * ended < 0.0:
+            if h < remaining_s or sign * ended < 0.0:
                 ended = 0.0
             rows.append((t, x, v, a0, (force - damping * ended) / m, u))
             at.position += last * h - (v - last) * m / damping * math.expm1(-damping / m * h)
-            at.time, at.velocity, left = t + h, ended, left - h
+            at.time, at.velocity, remaining_s = t + h, ended, remaining_s - h
     columns = np.array(rows).T
     return Trajectory(
         np.append(columns[0], at.time),

@@ -199,7 +199,7 @@ def test_vogel_viscosity_reaches_the_friction_of_the_final_temperature():
     speed = hold(0.03)
     cold, warm = (force(hidden, speed, warmth=Warmth(c)) for c in (15.0, 40.0))
     warming = force(hidden, speed, warmth=Warmth(15.0, rise_k=25.0, tau_s=6.0))
-    apart = abs(cold[-1] - warm[-1])
-    assert apart > 1.0
-    assert abs(warming[-1] - warm[-1]) < 0.02 * apart
-    assert np.max(np.abs(warming - warm)) > 0.5 * apart
+    difference = abs(cold[-1] - warm[-1])
+    assert difference > 1.0
+    assert abs(warming[-1] - warm[-1]) < 0.02 * difference
+    assert np.max(np.abs(warming - warm)) > 0.5 * difference

@@ -217,9 +217,9 @@ def test_noise_level_of_each_run_is_the_reported_one_and_differs_between_runs():
 def test_long_memory_noise_is_correlated_over_a_fifth_of_a_second():
     for clean, record, size in pairs("long_memory"):
         extra = record.friction - clean.friction
-        apart = round(0.2 / (clean.time_s[1] - clean.time_s[0]))
+        lag = round(0.2 / (clean.time_s[1] - clean.time_s[0]))
         centred = extra - np.mean(extra)
-        assert np.mean(centred[apart:] * centred[:-apart]) > 0.4 * np.mean(centred**2)
+        assert np.mean(centred[lag:] * centred[:-lag]) > 0.4 * np.mean(centred**2)
         assert 0.2 * size["sd_n"] < np.std(extra) < 2.0 * size["sd_n"]
 
 

@@ -27,8 +27,8 @@ def test_drive_without_gravity_slides_to_a_stop_after_its_kinetic_energy_is_lost
     pushed = 500
     motion = run(plant, lambda tick, x, v: push if tick < pushed else 0.0, 1e-3, 2000, 0.0)
     speed = (push - plant.coulomb) / plant.inertia * pushed * 1e-3
-    way = 0.5 * speed * pushed * 1e-3 + 0.5 * plant.inertia * speed**2 / plant.coulomb
-    assert motion.position[-1] == pytest.approx(way, rel=1e-3)
+    distance = 0.5 * speed * pushed * 1e-3 + 0.5 * plant.inertia * speed**2 / plant.coulomb
+    assert motion.position[-1] == pytest.approx(distance, rel=1e-3)
     assert motion.velocity[-1] == 0.0
 
 
@@ -69,14 +69,14 @@ def test_parameters_of_a_drive_are_recovered_if_the_force_has_no_delay(seed: int
     campaign = servosim.simulate(seed)
     plant = campaign.drawn.plant
     rows, forces = moving_samples(campaign)
-    found, _, rank, _ = np.linalg.lstsq(rows, forces, rcond=None)
+    estimate, _, rank, _ = np.linalg.lstsq(rows, forces, rcond=None)
     assert rank == rows.shape[1]
-    left = forces - rows @ found
-    sd = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows)) * (left @ left) / len(left))
+    residual = forces - rows @ estimate
+    sd = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows)) * (residual @ residual) / len(residual))
     true = [plant.coulomb, plant.viscous, plant.inertia, plant.gravity][:rank]
     # The tolerance allows for encoder counts and pieces of constant weight besides the noise.
     share = np.abs(rows).max(axis=0) / np.std(forces)
-    assert np.all(np.abs(found - true) * share < 4.5 * sd * share + 0.005)
+    assert np.all(np.abs(estimate - true) * share < 4.5 * sd * share + 0.005)
 
 
 def test_seeds_draw_every_kind_of_motion_stamps_and_channels() -> None:

@@ -20,9 +20,9 @@ WITH_CODE = [
 
 @pytest.mark.parametrize("page", WITH_CODE, ids=name_of)
 def test_code_blocks_of_a_page_print_the_output_shown_below_them(page: Path) -> None:
-    lacking = missing(page)
-    if lacking:
-        pytest.skip(f"{name_of(page)} needs {', '.join(lacking)}")
+    unavailable = missing(page)
+    if unavailable:
+        pytest.skip(f"{name_of(page)} needs {', '.join(unavailable)}")
     command = [sys.executable, str(SITE / "snippets.py"), str(page)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

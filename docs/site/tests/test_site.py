@@ -26,8 +26,8 @@ def _page(folder: Path, name: str, body: str) -> None:
 def test_site_check_lists_broken_links_missing_anchors_and_external_images(tmp_path: Path) -> None:
     _page(tmp_path, "a.html", "<h1 id=one>A</h1><a href=b.html#two>b</a><a href=c.html>c</a>")
     _page(tmp_path, "b.html", "<a href=a.html#one>a</a><img src=https://x.org/a.png>")
-    found = faults(tmp_path)
-    assert sorted(found) == [
+    problems = faults(tmp_path)
+    assert sorted(problems) == [
         "a.html: b.html#two has no such anchor",
         "a.html: c.html is not there",
         "b.html: loads https://x.org/a.png",

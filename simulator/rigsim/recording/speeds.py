@@ -28,8 +28,8 @@ def _difference(draft: Draft, counts_per_rad: float, before: int, after: int) ->
     at = np.arange(len(angle))
     low, high = np.maximum(at - before, 0), np.minimum(at + after, len(angle) - 1)
     low, high = np.where(low == high, 0, low), np.where(low == high, 1, high)
-    way = (angle[high] - angle[low]) * draft.signals.base.bearing.radius_m
-    speed: Vector = way / (draft.stamps[high] - draft.stamps[low])
+    distance = (angle[high] - angle[low]) * draft.signals.base.bearing.radius_m
+    speed: Vector = distance / (draft.stamps[high] - draft.stamps[low])
     return speed
 
 

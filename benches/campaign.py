@@ -63,12 +63,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--seed", type=int, default=3)
-    asked = parser.parse_args()
-    rig, runs = campaign(asked.seed)
+    options = parser.parse_args()
+    rig, runs = campaign(options.seed)
     prepared = Campaign.prepare(rig, runs)
     problem = Problem(prepared, "journal", "journal", EFFECTS)
-    found = jbf.fit(rig, runs, EFFECTS)
-    values, motions = found.model.values, [driven.motion for driven in prepared.motions]
+    fitted = jbf.fit(rig, runs, EFFECTS)
+    values, motions = fitted.model.values, [driven.motion for driven in prepared.motions]
     count = len(values)
 
     def chain(step_s: float) -> _core.Chain:
@@ -81,16 +81,16 @@ def main() -> None:
             max_step_s=step_s,
         )
 
-    def whole(step_s: float) -> tuple[np.ndarray, np.ndarray]:
+    def predicted(step_s: float) -> tuple[np.ndarray, np.ndarray]:
         rows = chain(step_s).jacobian(values, motions, list(range(count)))
         return np.concatenate([f for f, _ in rows]), np.concatenate([j for _, j in rows])
 
     seconds = sum(float(r.time_s[-1] - r.time_s[0]) for r in runs)
     print(f"{len(runs)} runs, {seconds:.0f} s, {sum(map(len, runs))} samples, {count} parameters")
-    exact, slopes = whole(FINEST_STEP_S)
+    exact, slopes = predicted(FINEST_STEP_S)
     print(f"\nError against steps of {FINEST_STEP_S * 1e3:g} ms, share of the peak, RMS:")
     for step_s in (MAX_STEP_S, FINE_STEP_S):
-        f, j = whole(step_s)
+        f, j = predicted(step_s)
         error = np.sqrt(np.mean((f - exact) ** 2)) / np.max(np.abs(exact))
         worst = np.max(np.sqrt(np.mean((j - slopes) ** 2, 0)) / np.max(np.abs(slopes), 0))
         print(f"  {step_s * 1e3:g} ms: friction {error:.1e}, worst derivative {worst:.1e}")
@@ -98,15 +98,15 @@ def main() -> None:
     for step_s in (MAX_STEP_S, FINE_STEP_S):
         core = chain(step_s)
         what = f"inner step {step_s * 1e3:g} ms"
-        row(f"prediction, {what}", timed(lambda c=core: c.predict(values, motions), asked.rounds))
+        row(f"prediction, {what}", timed(lambda c=core: c.predict(values, motions), options.rounds))
         for k in (1, 2, 4, count):
             columns = list(range(k))
-            times = timed(lambda c=core, k=columns: c.jacobian(values, motions, k), asked.rounds)
+            times = timed(lambda c=core, k=columns: c.jacobian(values, motions, k), options.rounds)
             row(f"and derivatives by {k}, {what}", times, k)
-    fits = max(asked.rounds // 3, 3)
+    fits = max(options.rounds // 3, 3)
     row("records made ready", timed(lambda: Campaign.prepare(rig, runs), fits))
     row(f"`jbf.fit`, {count} parameters", timed(lambda: jbf.fit(rig, runs, EFFECTS), fits))
-    print(f"\nThe fit: converged {found.converged}, RMS {found.rms:.4f} N ({found.message})")
+    print(f"\nThe fit: converged {fitted.converged}, RMS {fitted.rms:.4f} N ({fitted.message})")
 
 
 if __name__ == "__main__":

@@ -39,9 +39,11 @@ def rustc() -> str:
 def measured(root: Path, target: Path) -> Counts:
     """Build `root` into `target` and count the instructions per step, by name."""
     # Flags set by the user would produce other code than the baseline's.
-    own = {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS")}
+    environment = {
+        k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS")
+    }
     build = ["cargo", "build", "--quiet", "--release", "-p", "jbf-benches", "--bin", "counts"]
-    subprocess.run([*build, "--target-dir", str(target)], check=True, cwd=root, env=own)
+    subprocess.run([*build, "--target-dir", str(target)], check=True, cwd=root, env=environment)
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out"
         tool = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}"]
@@ -57,8 +59,8 @@ def measured(root: Path, target: Path) -> Counts:
 
         def part(number: int) -> int:
             text = out.with_name(f"out.{number}").read_text(encoding="ascii", errors="replace")
-            found = re.search(r"^summary: (\d+)", text, re.MULTILINE)
-            return int(found.group(1)) if found else 0
+            match = re.search(r"^summary: (\d+)", text, re.MULTILINE)
+            return int(match.group(1)) if match else 0
 
         # Two marks per name: the instructions between them are counted.
         return {name: part(2 * i + 2) / steps for i, name in enumerate(names)}
@@ -119,12 +121,12 @@ def baseline(target: Path) -> tuple[Counts, float]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--write", action="store_true", help="write the baseline anew")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     if shutil.which("valgrind") is None:
         stop("valgrind is missing: apt-get install valgrind")
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve() / "counts"
     now = measured(ROOT, target)
-    if asked.write:
+    if options.write:
         write(now)
         print(f"{len(now)} counts written to {BASELINE.relative_to(ROOT)}")
         return

@@ -145,27 +145,27 @@ def answer(task: Task) -> Answer:
     """Simulate a campaign, diagnose it and assess the result."""
     rig, runs, noise_rms = simulated(task)
     begun = time.process_time()
-    found = jbf.diagnose(rig, runs[:FITTED], law="coulomb")
+    diagnosis = jbf.diagnose(rig, runs[:FITTED], law="coulomb")
     took = time.process_time() - begun
-    left = jbf.compare(found.model, runs[FITTED:]).rms / noise_rms
-    named = (*found.machine, *found.effects)
-    return Answer(task, judged(task, found), found.verdict, named, left, took)
+    held_out = jbf.compare(diagnosis.model, runs[FITTED:]).rms / noise_rms
+    named = (*diagnosis.machine, *diagnosis.effects)
+    return Answer(task, judged(task, diagnosis), diagnosis.verdict, named, held_out, took)
 
 
-def judged(task: Task, found: jbf.Diagnosis) -> str:
+def judged(task: Task, diagnosis: jbf.Diagnosis) -> str:
     """Assess a diagnosis.
 
     The result is one of the outcomes in the columns of `table`.
     """
     if task.foreign:
-        return "right" if found.verdict == "unexplained" else "not told"
-    named, true = {*found.machine, *found.effects}, set(task.effects)
+        return "right" if diagnosis.verdict == "unexplained" else "not told"
+    named, true = {*diagnosis.machine, *diagnosis.effects}, set(task.effects)
     if named == true:
         right = {"adequate", "missing", "ambiguous"} if true else {"adequate"}
-        return "right" if found.verdict in right else "unexplained"
-    others = {name: {name, *more} for name, more in found.alternatives.items()}
+        return "right" if diagnosis.verdict in right else "unexplained"
+    others = {name: {name, *more} for name, more in diagnosis.alternatives.items()}
     could = set().union(*others.values()) if others else set()
-    if found.verdict == "ambiguous" and len(named) == len(true) and true <= could:
+    if diagnosis.verdict == "ambiguous" and len(named) == len(true) and true <= could:
         return "tied"
     return "named falsely" if named - true else "missed"
 
@@ -177,15 +177,15 @@ def table(answers: list[Answer]) -> Iterator[str]:
     yield f"| {' | '.join(head)} |"
     yield "|---" * len(head) + "|"
     for kind in KINDS:
-        own = [a for a in answers if a.task.kind == kind]
-        if not own:
+        of_kind = [a for a in answers if a.task.kind == kind]
+        if not of_kind:
             continue
-        counts = Counter(a.judged for a in own)
-        left = [a.held_out for a in own]
+        counts = Counter(a.judged for a in of_kind)
+        held_out = [a.held_out for a in of_kind]
         numbers = " | ".join(str(counts[c]) for c in columns)
         yield (
-            f"| {kind} | {len(own)} | {numbers} | {np.median(left):.3f} | {max(left):.3f} "
-            f"| {max(a.cpu_s for a in own):.0f} |"
+            f"| {kind} | {len(of_kind)} | {numbers} | {np.median(held_out):.3f} | "
+            f"{max(held_out):.3f} | {max(a.cpu_s for a in of_kind):.0f} |"
         )
     for a in answers:
         if a.judged != "right":
@@ -201,14 +201,14 @@ def main() -> int:
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1, help="campaigns side by side")
     parser.add_argument("--least", type=float, metavar="SHARE", help="fail where fewer are right")
-    asked = parser.parse_args()
-    rounds = range(asked.first_seed, asked.first_seed + asked.seeds)
-    plan = list(tasks(asked.kinds.split(","), rounds))
-    with ProcessPoolExecutor(asked.jobs) as pool:
+    options = parser.parse_args()
+    rounds = range(options.first_seed, options.first_seed + options.seeds)
+    plan = list(tasks(options.kinds.split(","), rounds))
+    with ProcessPoolExecutor(options.jobs) as pool:
         answers = list(pool.map(answer, plan))
     print("\n".join(table(answers)))
     right = sum(a.judged in ("right", "tied") for a in answers) / max(len(answers), 1)
-    return 1 if asked.least is not None and right < asked.least else 0
+    return 1 if options.least is not None and right < options.least else 0
 
 
 if __name__ == "__main__":

@@ -42,12 +42,12 @@ def main() -> int:
     parser.add_argument("--diagnoses", type=int, default=1000)
     parser.add_argument("--samples", type=int, default=800, help="of a run")
     parser.add_argument("--growth-mib", type=float, default=20.0)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     held, verdicts, begun = [], {"adequate": 0, "missing": 0}, time.monotonic()
-    tenth = max(asked.diagnoses // 10, 1)
-    for k in range(asked.diagnoses):
-        found = jbf.diagnose(jbf.Rig(), campaign(k, asked.samples), law="stribeck")
-        verdicts[found.verdict] = verdicts.get(found.verdict, 0) + 1
+    tenth = max(options.diagnoses // 10, 1)
+    for k in range(options.diagnoses):
+        diagnosis = jbf.diagnose(jbf.Rig(), campaign(k, options.samples), law="stribeck")
+        verdicts[diagnosis.verdict] = verdicts.get(diagnosis.verdict, 0) + 1
         if (k + 1) % tenth == 0:
             held.append(resident_mib())
             print(
@@ -57,7 +57,7 @@ def main() -> int:
     print(", ".join(f"{count} {verdict}" for verdict, count in verdicts.items()))
     growth = held[-1] - held[min(1, len(held) - 1)]
     print(f"grown by {growth:.1f} MiB")
-    return 0 if growth <= asked.growth_mib else 1
+    return 0 if growth <= options.growth_mib else 1
 
 
 if __name__ == "__main__":

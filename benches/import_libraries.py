@@ -117,17 +117,17 @@ def pint_unit(registry: Any, text: str) -> tuple[float, dict[str, int]] | None:
     return float(size.magnitude), {k: int(v) for k, v in powers.items()}
 
 
-def unit_outcome(found: tuple[float, dict[str, int]] | None, wanted: str, size: float) -> Outcome:
+def unit_outcome(reading: tuple[float, dict[str, int]] | None, wanted: str, size: float) -> Outcome:
     """Assess a unit: angles and counts may be dimensionless; degrees read as radians are wrong."""
-    if found is None:
+    if reading is None:
         return None
     expected = {b: int(p or 1) for b, _, p in (f.partition("^") for f in wanted.split())}
-    powers = {base: power for base, power in found[1].items() if power}
+    powers = {base: power for base, power in reading[1].items() if power}
     counts = {"rad": 0, "count": 0}
     same = {**powers, **counts} == {**expected, **counts} and set(powers) <= set(expected)
-    if same and math.isclose(found[0], size, rel_tol=1e-9):
+    if same and math.isclose(reading[0], size, rel_tol=1e-9):
         return ""
-    return f"{found[0]:.6g} {' '.join(f'{b}^{p}' for b, p in powers.items()) or '1'}"
+    return f"{reading[0]:.6g} {' '.join(f'{b}^{p}' for b, p in powers.items()) or '1'}"
 
 
 def compare_units() -> None:
@@ -171,8 +171,11 @@ def compare_units() -> None:
             ("seconds for the text `2**2**28`", seconds(lambda: parse_unit("2**2**28")), took),
         ]
         table(("units", "jbf", "pint"), ((n, f"{a:.3g}", f"{b:.3g}") for n, a, b in rows))
-    asked = sum(text in ASK for text in TWO_MEANINGS)
-    print(f"\nTexts with two meanings: jbf asks for {asked} of {len(TWO_MEANINGS)}, pint for none.")
+    questions = sum(text in ASK for text in TWO_MEANINGS)
+    print(
+        f"\nTexts with two meanings: jbf asks for {questions} of {len(TWO_MEANINGS)}, "
+        "pint for none."
+    )
 
 
 # Dates
@@ -196,12 +199,12 @@ def own_date(cell: str) -> int | None:
 
 def date_outcome(read: Callable[[str], Any], cell: str, wanted: int | None) -> Outcome:
     try:
-        found = read(cell)
+        instant = read(cell)
     except Exception:
         return None if wanted is not None else ""
-    if found == wanted:
+    if instant == wanted:
         return ""
-    return None if found is None else str(np.datetime64(found, "ns"))
+    return None if instant is None else str(np.datetime64(instant, "ns"))
 
 
 def compare_dates(stamps: int) -> None:
@@ -269,20 +272,20 @@ def detectors() -> dict[str, Callable[[Path, Text], Detected]]:
         """Whether a boolean result about the first row is right and sufficient."""
         return text.header < 2 and answer == (text.header == 1)
 
-    def own(path: Path, text: Text) -> Detected:
+    def jbf_detector(path: Path, text: Text) -> Detected:
         source = TextSource(path, Options())
         return source.dialect.delimiter, source.dialect.decimal, source.layout.names == text.names
 
     def sniffer(path: Path, text: Text) -> Detected:
         sample = path.read_text(text.encoding)
-        found = csv.Sniffer().sniff(sample, delimiters=",;\t| ")
-        return found.delimiter, None, header_found(csv.Sniffer().has_header(sample), text)
+        dialect = csv.Sniffer().sniff(sample, delimiters=",;\t| ")
+        return dialect.delimiter, None, header_found(csv.Sniffer().has_header(sample), text)
 
     def clever(path: Path, text: Text) -> Detected:
         sample = path.read_text(text.encoding)
         detector = clevercsv.Detector()
-        found = detector.detect(sample)
-        return found.delimiter, None, header_found(detector.has_header(sample), text)
+        dialect = detector.detect(sample)
+        return dialect.delimiter, None, header_found(detector.has_header(sample), text)
 
     def duck(path: Path, text: Text) -> Detected:
         query = "select Delimiter, HasHeader, SkipRows from sniff_csv(?)"
@@ -290,7 +293,7 @@ def detectors() -> dict[str, Callable[[Path, Text], Detected]]:
         right = skipped + 1 == text.header if header else text.header == 0
         return delimiter, None, right
 
-    known = {"jbf": own, "csv.Sniffer": sniffer}
+    known = {"jbf": jbf_detector, "csv.Sniffer": sniffer}
     if clevercsv is not None:
         known[f"clevercsv {version('clevercsv')}"] = clever
     if duckdb is not None:
@@ -310,11 +313,11 @@ def compare_texts(megabytes: float) -> None:
             missed: dict[str, list[str]] = {"delimiter": [], "decimal": [], "names": []}
             for name, text in cases.items():
                 try:
-                    found = detect(paths[name], text)
+                    detected = detect(paths[name], text)
                 except Exception:
-                    found = ("", None, False)
+                    detected = ("", None, False)
                 wanted = (text.delimiter, text.decimal, True)
-                for part, got, right in zip(missed, found, wanted, strict=True):
+                for part, got, right in zip(missed, detected, wanted, strict=True):
                     if got != right:
                         missed[part].append(name)
             shown = [

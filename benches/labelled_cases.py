@@ -48,18 +48,18 @@ def held_out_rms(model: Path, folder: Path, work: Path) -> float:
     return float(np.sqrt(total / count))
 
 
-def judge(truth: dict[str, Any], found: dict[str, Any]) -> str:
+def judge(truth: dict[str, Any], diagnosis: dict[str, Any]) -> str:
     """Assess a diagnosis: `right`, `tied`, `wrong` or `abstained`, against what can be known."""
     hidden = {current_effect(name) for name in truth["effects"]}
-    named = set(found["effects"])
+    named = set(diagnosis["effects"])
     if truth["foreign"] or hidden - set(catalogue()):
         extra = named - hidden
-        return "right" if found["verdict"] == "unexplained" and not extra else "wrong"
+        return "right" if diagnosis["verdict"] == "unexplained" and not extra else "wrong"
     if named == hidden:
         return "right"
-    if found["verdict"] == "unexplained" and not named - hidden:
+    if diagnosis["verdict"] == "unexplained" and not named - hidden:
         return "abstained"
-    others = {a for tied in found["alternatives"].values() for a in tied}
+    others = {a for tied in diagnosis["alternatives"].values() for a in tied}
     return "tied" if hidden <= named | others and len(named) == len(hidden) else "wrong"
 
 
@@ -84,14 +84,15 @@ def main() -> None:
             case = arguments.cases / name
             jbf("diagnose", case / "rig.toml", case, "--out", work / "m.toml", "--json", work / "d")
             seconds = time.monotonic() - begun
-            found = json.loads((work / "d").read_text())
+            diagnosis = json.loads((work / "d").read_text())
             rms = held_out_rms(work / "m.toml", arguments.heldout / name, work)
         hidden = ",".join([*truth["effects"], *truth["foreign"]]) or "-"
-        verdict = judge(truth, found)
+        verdict = judge(truth, diagnosis)
         tally[verdict] = tally.get(verdict, 0) + 1
         print(
-            f"{name:8}{hidden:34}{found['verdict']:13}{','.join(found['effects']) or '-':34}"
-            f"{verdict:11}{rms / truth['noise_rms']:10.4f}{seconds:7.1f}",
+            f"{name:8}{hidden:34}{diagnosis['verdict']:13}"
+            f"{','.join(diagnosis['effects']) or '-':34}{verdict:11}"
+            f"{rms / truth['noise_rms']:10.4f}{seconds:7.1f}",
             flush=True,
         )
     print(tally)

@@ -81,8 +81,8 @@ def campaign(kind: str, seed: int) -> list[jbf.Run]:
 
 def answer(kind: str, seed: int) -> tuple[str, tuple[str, ...]]:
     """Return verdict and names for one campaign."""
-    found = jbf.diagnose(jbf.Rig(), campaign(kind, seed), law="coulomb")
-    return found.verdict, found.effects
+    diagnosis = jbf.diagnose(jbf.Rig(), campaign(kind, seed), law="coulomb")
+    return diagnosis.verdict, diagnosis.effects
 
 
 def main() -> None:

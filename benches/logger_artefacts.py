@@ -115,11 +115,11 @@ def main() -> None:
                 path.write_text(treat(columns))
             (Path(folder) / "map.toml").write_text(mapping)
             recording = jbf.import_files(paths, Path(folder) / "map.toml")
-            found = jbf.diagnose(recording.rig, recording.runs)
-        named = ", ".join(found.effects) or "-"
-        kinds = ", ".join(sorted({finding.kind for finding in found.findings})) or "-"
-        error = found.steps[-1].held_out_rms / found.steps[-1].noise_rms
-        print(f"| {name} | `{found.verdict}` | {named} | {error:.2f} | {kinds} |", flush=True)
+            diagnosis = jbf.diagnose(recording.rig, recording.runs)
+        named = ", ".join(diagnosis.effects) or "-"
+        kinds = ", ".join(sorted({finding.kind for finding in diagnosis.findings})) or "-"
+        error = diagnosis.steps[-1].held_out_rms / diagnosis.steps[-1].noise_rms
+        print(f"| {name} | `{diagnosis.verdict}` | {named} | {error:.2f} | {kinds} |", flush=True)
 
 
 def read(path: Path) -> Columns:

@@ -46,7 +46,7 @@ def main() -> int:
 
     last = ""
 
-    def told(message: str, done: int, total: int) -> None:
+    def report(message: str, done: int, total: int) -> None:
         nonlocal last
         if message != last:
             print(
@@ -55,11 +55,11 @@ def main() -> int:
             last = message
 
     begun, worked = time.monotonic(), time.process_time()
-    found = jbf.diagnose(jbf.Rig(), runs, law=given.law, progress=told)
+    diagnosis = jbf.diagnose(jbf.Rig(), runs, law=given.law, progress=report)
     wall, cpu = time.monotonic() - begun, time.process_time() - worked
-    left = jbf.compare(found.model, [other]).rms / float(str(truth["noise_n"]))
-    named = (*found.machine, *found.effects)
-    print(f"{found.verdict}: {', '.join(named) or 'nothing'}; held out {left:.3f}")
+    held_out = jbf.compare(diagnosis.model, [other]).rms / float(str(truth["noise_n"]))
+    named = (*diagnosis.machine, *diagnosis.effects)
+    print(f"{diagnosis.verdict}: {', '.join(named) or 'nothing'}; held out {held_out:.3f}")
     print(f"{wall:.0f} s, {cpu:.0f} s of the processor, at most {_peak_gib():.2f} GiB")
     return 0 if named == hidden else 1
 

@@ -109,7 +109,7 @@ def single(folder: Path, rounds: int) -> None:
         [TARGET / "release" / "t1"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )
 
-    def ask(task: str) -> float:
+    def measure(task: str) -> float:
         assert ours.stdin is not None
         assert ours.stdout is not None
         ours.stdin.write(task + "\n")
@@ -135,7 +135,7 @@ def single(folder: Path, rounds: int) -> None:
             rows: Timed = {
                 "C": theirs("libpeers.so", method, kind),
                 "C, -ffast-math": theirs("libpeers_fast.so", method, kind),
-                "jbf": lambda task=f"{method} {kind}": ask(task),
+                "jbf": lambda task=f"{method} {kind}": measure(task),
             }
             table(f"T1, one step, {method}, {kind}", "ns/step", "C", 5 * rounds, rows)
     assert ours.stdin is not None
@@ -219,9 +219,9 @@ def trajectories(
 
     def error(tolerance: float) -> float:
         worst = 0.0
-        for w, found, exact in zip(peers.WS, ours(tolerance), truth, strict=True):
+        for w, solution, exact in zip(peers.WS, ours(tolerance), truth, strict=True):
             expected = peers.fric(peers.PV0, exact, peers.tgrid(w)[1], w)
-            worst = max(worst, float(np.abs(found[1:] - expected).max()))
+            worst = max(worst, float(np.abs(solution[1:] - expected).max()))
         return worst
 
     def theirs(rtol: float, atol: float) -> list[np.ndarray]:
@@ -242,11 +242,11 @@ def trajectories(
         if e < wanted
     }
     best = min(seconds, key=lambda s: seconds[s])
-    asked = {float(t): error(t) for t in np.geomspace(wanted * 1000, wanted / 1000, 61)}
-    cheapest = max(t for t, e in asked.items() if e < wanted)
+    error_of_setting = {float(t): error(t) for t in np.geomspace(wanted * 1000, wanted / 1000, 61)}
+    cheapest = max(t for t, e in error_of_setting.items() if e < wanted)
     lost = {
-        name: sum(not np.isfinite(e) for e in found.values())
-        for name, found in (("numbalsoda", errors), ("jbf", asked))
+        name: sum(not np.isfinite(e) for e in solution.values())
+        for name, solution in (("numbalsoda", errors), ("jbf", error_of_setting))
     }
     print(f"\n{task}: largest friction error wanted {wanted:g}")
     print(
@@ -255,8 +255,8 @@ def trajectories(
     )
     print(f"jbf, tolerance {wanted:.1e}: {error(wanted):.1e}")
     print(
-        f"jbf, tolerance {cheapest:.1e}: {asked[cheapest]:.1e}; "
-        f"{lost['jbf']} of {len(asked)} settings failed"
+        f"jbf, tolerance {cheapest:.1e}: {error_of_setting[cheapest]:.1e}; "
+        f"{lost['jbf']} of {len(error_of_setting)} settings failed"
     )
     peer = "numbalsoda, 2 threads"
     rows: Timed = {
@@ -275,16 +275,16 @@ def main() -> None:
         "--tasks", nargs="+", choices=TASKS, default=TASKS, metavar="TASK", help=" ".join(TASKS)
     )
     parser.add_argument("--no-rest", action="store_true", help="one turn right after the other")
-    asked = parser.parse_args()
-    if asked.no_rest:
+    options = parser.parse_args()
+    if options.no_rest:
         global REST_S
         REST_S = 0.0
-    if asked.folder is None or not (asked.folder / "c" / "kern.h").is_file():
-        skip("All", f"no peers in {asked.folder}: give the folder that holds c/kern.h")
+    if options.folder is None or not (options.folder / "c" / "kern.h").is_file():
+        skip("All", f"no peers in {options.folder}: give the folder that holds c/kern.h")
         return
     copy = TARGET / "peers"
     shutil.copytree(
-        asked.folder, copy, ignore=shutil.ignore_patterns("target", "venv"), dirs_exist_ok=True
+        options.folder, copy, ignore=shutil.ignore_patterns("target", "venv"), dirs_exist_ok=True
     )
     subprocess.run(["chmod", "-R", "u+w", str(copy)], check=True)
     files = ["libpeers.so", "libpeers_fast.so", "libpeers_simd.so"]
@@ -292,15 +292,15 @@ def main() -> None:
         skip("T1 and batch", "gcc and make are needed")
     else:
         subprocess.run(["make", "-s", "-C", str(copy / "c"), *files], check=True)
-        if "T1" in asked.tasks:
-            single(copy, asked.rounds)
-        if "batch" in asked.tasks:
-            batch(copy, asked.rounds)
-    if "T2" in asked.tasks or "T3" in asked.tasks:
-        solvers(copy, asked.rounds, asked.tasks)
-    if "T4" in asked.tasks:
+        if "T1" in options.tasks:
+            single(copy, options.rounds)
+        if "batch" in options.tasks:
+            batch(copy, options.rounds)
+    if "T2" in options.tasks or "T3" in options.tasks:
+        solvers(copy, options.rounds, options.tasks)
+    if "T4" in options.tasks:
         sys.path.insert(0, str(copy))
-        fit_task(asked.rounds)
+        fit_task(options.rounds)
 
 
 if __name__ == "__main__":

@@ -71,10 +71,10 @@ def _rows(t4: ModuleType, rounds: int) -> dict[str, Row]:
     start = dict(zip(NAMES, t4.START.tolist(), strict=True))
 
     def ours(tolerance: float) -> Found:
-        found = jbf.fit_trajectories(
+        result = jbf.fit_trajectories(
             RIG, runs, data, start=start, tolerance=tolerance, phi_rad=0.01
         )
-        return np.array([found.params[name] for name in NAMES]), found.evaluations
+        return np.array([result.params[name] for name in NAMES]), result.evaluations
 
     return {
         "jbf.fit_trajectories, tolerance 1e-6": Row(lambda: ours(1e-6), 5 * rounds),

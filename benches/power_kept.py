@@ -39,13 +39,15 @@ def at_strength(bare: jbf.Model, power: Power, value: float) -> jbf.Model:
     start, null = usual[power.parameter]
     assert null is not None
     times = start / value if math.isinf(null) else (value - null) / (start - null)
-    own = {}
+    parameters = {}
     for name, (size, zero) in usual.items():
-        there = size
+        value_at_strength = size
         if zero is not None:
-            there = size / times if math.isinf(zero) else zero + times * (size - zero)
-        own[f"{power.effect}.{name}"] = there
-    return jbf.Model(bare.rig, bare.law, [power.effect], {**bare.parameters, **own}, bare.clock)
+            value_at_strength = size / times if math.isinf(zero) else zero + times * (size - zero)
+        parameters[f"{power.effect}.{name}"] = value_at_strength
+    return jbf.Model(
+        bare.rig, bare.law, [power.effect], {**bare.parameters, **parameters}, bare.clock
+    )
 
 
 def with_effect(
@@ -70,13 +72,13 @@ def campaign(seed: int, effects: Sequence[str] | None = None) -> Iterator[dict[s
     limits the effects.
     """
     rig, runs, _ = simulated(seed, campaign="short", coloured=seed % 2 == 1)
-    found = jbf.diagnose(rig, runs)
-    if found.effects:
+    diagnosis = jbf.diagnose(rig, runs)
+    if diagnosis.effects:
         return
-    bare = found.model
+    bare = diagnosis.model
     # Separate noise for each: with common noise all or none of the effects would be found.
     draws = itertools.count(1000 * seed)
-    for power in found.power:
+    for power in diagnosis.power:
         for kind, value in (("found", power.detectable_80), ("alone", power.distinguishable_80)):
             draw = next(draws)
             if value is None or power.always or power.effect not in (effects or [power.effect]):
@@ -121,29 +123,29 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--effects", nargs="+", help="only these; all by default")
     parser.add_argument("--out", type=Path, help="JSON lines, one a diagnosis")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     rows: list[dict[str, Any]] = []
-    if asked.out is not None and asked.out.exists():
-        rows = [json.loads(line) for line in asked.out.read_text(encoding="utf-8").splitlines()]
+    if options.out is not None and options.out.exists():
+        rows = [json.loads(line) for line in options.out.read_text(encoding="utf-8").splitlines()]
     done = {int(row["key"].rsplit("/", 1)[1]) for row in rows}
-    seeds = range(asked.first_seed, asked.first_seed + asked.seeds)
-    with ProcessPoolExecutor(asked.jobs) as pool:
+    seeds = range(options.first_seed, options.first_seed + options.seeds)
+    with ProcessPoolExecutor(options.jobs) as pool:
         for future in as_completed(
-            [pool.submit(_all, s, asked.effects) for s in seeds if s not in done]
+            [pool.submit(_all, s, options.effects) for s in seeds if s not in done]
         ):
             rows += future.result()
-            if asked.out is not None:
-                with asked.out.open("a", encoding="utf-8") as file:
+            if options.out is not None:
+                with options.out.open("a", encoding="utf-8") as file:
                     file.writelines(json.dumps(row) + "\n" for row in future.result())
             print(f"{len(rows)} diagnoses", flush=True)
     for kind in ("power_found", "power_alone"):
         print(f"\n{kind}: {PROMISED:.0%} promised")
-        own = [row for row in rows if row["kind"] == kind]
-        for effect in sorted({row["hidden"] for row in own}):
-            told = [row["judged"] == "right" for row in own if row["hidden"] == effect]
-            sure = stats.binomtest(sum(told), len(told)).proportion_ci(0.95, method="exact")
+        of_kind = [row for row in rows if row["kind"] == kind]
+        for effect in sorted({row["hidden"] for row in of_kind}):
+            named = [row["judged"] == "right" for row in of_kind if row["hidden"] == effect]
+            sure = stats.binomtest(sum(named), len(named)).proportion_ci(0.95, method="exact")
             share = f"{sure.low:.0%} to {sure.high:.0%}"
-            print(f"{effect:24}{sum(told):4} of {len(told):3}   {share}")
+            print(f"{effect:24}{sum(named):4} of {len(named):3}   {share}")
     return 0
 
 

@@ -77,9 +77,9 @@ def _promises() -> Iterator[Promise]:
         yield Promise(f"nothing hidden, {where}: no name", "99 %", none, quiet)
         yield Promise(f"nothing hidden, {where}: `adequate`", "95 %", none, right)
         for words, kind in (("one effect", "single"), ("two effects", "pair")):
-            own = _kind(kind, logged=logged)
+            condition = _kind(kind, logged=logged)
             nominal = "90 %" if logged else "98 %"
-            yield Promise(f"{words}, {where}: named, nothing false", nominal, own, right)
+            yield Promise(f"{words}, {where}: named, nothing false", nominal, condition, right)
     foreign = _kind("foreign", logged=False)
     yield Promise(
         "what no catalogue has: `unexplained`",
@@ -141,9 +141,12 @@ def coverage(rows: Sequence[Row]) -> tuple[float, float, float, int]:
 def delivered(rows: Sequence[Row]) -> Iterator[tuple[str, tuple[float, float, float, int]]]:
     """Share, interval and campaigns of each statement that the rows judge."""
     for promise in PROMISES:
-        own = [row for row in rows if promise.of(row)]
-        if own:
-            yield promise.words, (*interval(sum(map(promise.kept, own)), len(own)), len(own))
+        relevant = [row for row in rows if promise.of(row)]
+        if relevant:
+            yield (
+                promise.words,
+                (*interval(sum(map(promise.kept, relevant)), len(relevant)), len(relevant)),
+            )
     if any(row.get("intervals") for row in rows):
         yield COVERAGE, coverage(rows)
 
@@ -266,21 +269,21 @@ def main() -> int:
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
     parser.add_argument("--check", action="store_true", help="write nothing")
     parser.add_argument("--least", type=int, default=0, metavar="N", help="campaigns of each; 0")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     rows = [
         json.loads(line)
-        for file in asked.files
+        for file in options.files
         for line in file.read_text(encoding="utf-8").splitlines()
     ]
-    if rows and not asked.check:
+    if rows and not options.check:
         enter(rows)
     text = PAGE.read_text(encoding="utf-8")
     new = page(text)
-    if asked.check:
+    if options.check:
         return int(new != text)
     PAGE.write_text(new, encoding="utf-8")
     fewest = min(sum(map(promise.of, rows)) for promise in PROMISES)
-    return int(fewest < asked.least)
+    return int(fewest < options.least)
 
 
 if __name__ == "__main__":

@@ -47,8 +47,8 @@ def main() -> int:
         ]
     ours, numbers = np.median(pairs, axis=0)
     ratio = np.median([a / b for a, b in pairs])
-    told = f"{1e3 * ours:.2f} ms, numpy.loadtxt {1e3 * numbers:.2f} ms, {ratio:.1f} times"
-    print(f"{given.rows} rows: {told}")
+    times_text = f"{1e3 * ours:.2f} ms, numpy.loadtxt {1e3 * numbers:.2f} ms, {ratio:.1f} times"
+    print(f"{given.rows} rows: {times_text}")
     return 0
 
 

@@ -59,11 +59,11 @@ def drive(path: Path) -> Halves:
     """Split each sweep of a drive into its first and its second half."""
     c = columns(path)
     t, v, f = c["time_ms"] / 1e3, c["speed_rpm"] * 2.0 * np.pi / 60.0, c["torque_pct"]
-    fitted, left = [], []
+    fitted, held_out = [], []
     for i, at in enumerate(np.split(np.arange(len(t)), np.flatnonzero(np.diff(t) < 0.0) + 1)):
-        for half, into in ((at[: len(at) // 2], fitted), (at[len(at) // 2 :], left)):
+        for half, into in ((at[: len(at) // 2], fitted), (at[len(at) // 2 :], held_out)):
             into.append(jbf.Run.from_arrays(t[half], v[half], f[half], name=f"sweep {i}"))
-    return fitted, left
+    return fitted, held_out
 
 
 def part(c: dict[str, Array], at: npt.NDArray[np.intp], name: str) -> jbf.Run:
@@ -92,11 +92,11 @@ def strokes(path: Path) -> Halves:
 
 def all_strokes(folder: Path) -> Halves:
     """Split the recordings at all pressures together, each as in `strokes`."""
-    fitted, left = [], []
+    fitted, held_out = [], []
     for path in sorted(folder.glob("NAP310_*bar.csv")):
-        for some, into in zip(strokes(path), (fitted, left), strict=True):
+        for some, into in zip(strokes(path), (fitted, held_out), strict=True):
             into += [replace(run, name=f"{path.stem} {run.name}") for run in some]
-    return fitted, left
+    return fitted, held_out
 
 
 def cycles(path: Path) -> Halves:
@@ -120,17 +120,17 @@ def steady(folder: Path) -> Halves:
     The ends of the travel are excluded, where the force of the end stop is measured.
     """
     fitted: list[jbf.Run] = []
-    left: list[jbf.Run] = []
+    held_out: list[jbf.Run] = []
     for path in sorted(folder.glob("valve*V.csv")):
         c = columns(path)
         place, v = c["position_m"], c["velocity_m_s"]
         at = np.flatnonzero((np.abs(v) > 0.01) & (place > 0.01) & (place < 0.19))
         cuts = (np.diff(at) > 1) | (np.diff(np.sign(v[at])) != 0.0)
         parts = [p for p in np.split(at, np.flatnonzero(cuts) + 1) if len(p) > 50]
-        for into, which in ((fitted, (0, 1)), (left, (2, 3))):
+        for into, which in ((fitted, (0, 1)), (held_out, (2, 3))):
             chosen = np.concatenate([p for i, p in enumerate(parts) if i % 4 in which])
             into.append(part(c, chosen, path.stem))
-    return fitted, left
+    return fitted, held_out
 
 
 def halved(path: Path) -> Halves:
@@ -193,7 +193,7 @@ def plan(folder: Path, law: str) -> Iterator[Task]:
     yield Task("motor_dyno/1", folder / "motor_dyno/m1_*.csv", files, "rotary", law)
 
 
-def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], left: list[jbf.Run]) -> tuple[float, str]:
+def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], held_out: list[jbf.Run]) -> tuple[float, str]:
     """Return the smallest error on the other half among the fits by hand, and its model."""
     machine = ["sensor_offset", "inertia"]
     if all(run.angle_rad is not None for run in fitted):
@@ -205,7 +205,7 @@ def by_hand(rig: jbf.Rig, fitted: list[jbf.Run], left: list[jbf.Run]) -> tuple[f
                 continue
             try:
                 model = jbf.fit(rig, fitted, [*machine, *effects], law=law).model
-                errors[" + ".join([law, *effects])] = jbf.compare(model, left).rms
+                errors[" + ".join([law, *effects])] = jbf.compare(model, held_out).rms
             except (jbf.InputError, Unfinished):
                 continue
     best = min(errors, key=lambda name: errors[name])
@@ -216,21 +216,22 @@ def row(task: Task) -> str:
     """Diagnose one recording and return its row of the table."""
     quantity = "force" if task.motion == "linear" else "torque"
     rig = jbf.Rig(drive=jbf.Drive(task.motion, quantity))
-    fitted, left = (
+    fitted, held_out = (
         [replace(run, quantities=rig.quantities) for run in half] for half in task.cut(task.path)
     )
     begun = time.process_time()
     try:
-        found = jbf.diagnose(rig, fitted, law=task.law)
+        diagnosis = jbf.diagnose(rig, fitted, law=task.law)
     except Unfinished as error:
         return f"| {task.title} | no answer: {error} |"
     took = time.process_time() - begun
-    rms = jbf.compare(found.model, left).rms
-    hand, model = by_hand(rig, fitted, left)
-    names = ", ".join(found.effects) or "-"
+    rms = jbf.compare(diagnosis.model, held_out).rms
+    hand, model = by_hand(rig, fitted, held_out)
+    names = ", ".join(diagnosis.effects) or "-"
     return (
-        f"| {task.title} | {found.model.law} | {rms:.3g} | {hand:.3g} ({model}) | {rms / hand:.3f} "
-        f"| {found.verdict} | {', '.join(found.machine) or '-'} | {names} | {took:.0f} |"
+        f"| {task.title} | {diagnosis.model.law} | {rms:.3g} | {hand:.3g} ({model}) | "
+        f"{rms / hand:.3f} | {diagnosis.verdict} | "
+        f"{', '.join(diagnosis.machine) or '-'} | {names} | {took:.0f} |"
     )
 
 
@@ -241,8 +242,8 @@ def main() -> int:
     parser.add_argument("--law", default="auto", help="base law (default auto)")
     parser.add_argument("--only", default="", help="recordings whose name contains this")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default 1)")
-    asked = parser.parse_args()
-    if asked.folder is None:
+    options = parser.parse_args()
+    if options.folder is None:
         print("skipped: name the folder of the recordings: python benches/real_halves.py FOLDER")
         return 0
     print(
@@ -250,14 +251,14 @@ def main() -> int:
     )
     print("|---|---|---|---|---|---|---|---|---|")
     tasks = []
-    for task in plan(asked.folder, asked.law):
-        if asked.only not in task.title:
+    for task in plan(options.folder, options.law):
+        if options.only not in task.title:
             continue
         if not list(task.path.parent.glob(task.path.name)):
             print(f"skipped: there is no {task.path}")
             continue
         tasks.append(task)
-    with ProcessPoolExecutor(asked.jobs) as pool:
+    with ProcessPoolExecutor(options.jobs) as pool:
         for line in pool.map(row, tasks):
             print(line, flush=True)
     return 0

@@ -46,9 +46,9 @@ def table(title: str, run: jbf.Run) -> None:
 
 def diagnosed(title: str, run: jbf.Run) -> None:
     """Diagnose with the Coulomb law and print the effects added with the error at each step."""
-    found = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
-    print(f"{title}: diagnosed beside coulomb in {found.elapsed_s:.0f} s: {found.verdict}")
-    for step in found.steps:
+    diagnosis = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
+    print(f"{title}: diagnosed beside coulomb in {diagnosis.elapsed_s:.0f} s: {diagnosis.verdict}")
+    for step in diagnosis.steps:
         names = ", ".join(step.effects) or "the law alone"
         print(f"  {step.rms:8.3f} N, left-out half {step.held_out_rms:8.3f} N  {names}")
 

@@ -133,11 +133,11 @@ def study(
     rows: Iterator[list[dict[str, float]]]
     if jobs == 1:
         rows = map(work, range(rigs))
-        found = [row for part in rows for row in part]
+        errors = [row for part in rows for row in part]
     else:
         with ProcessPoolExecutor(jobs) as pool:
-            found = [row for part in pool.map(work, range(rigs)) for row in part]
-    return {name: [row[name] for row in found] for name in found[0]}
+            errors = [row for part in pool.map(work, range(rigs)) for row in part]
+    return {name: [row[name] for row in errors] for name in errors[0]}
 
 
 def _one_rig(
@@ -213,24 +213,24 @@ def main() -> None:
     )
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--json", type=Path, help="write every error here, effect by effect")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     kept: dict[str, dict[str, list[float]]] = {}
-    print(f"{asked.repeats} fits an effect, {asked.rigs} rigs, seed {asked.seed}\n\n{HEADER}")
-    for effect in asked.effects or [None, *rigsim.CATALOGUE]:
+    print(f"{options.repeats} fits an effect, {options.rigs} rigs, seed {options.seed}\n\n{HEADER}")
+    for effect in options.effects or [None, *rigsim.CATALOGUE]:
         name = None if effect in (None, "none") else effect
         errors = study(
             name,
-            asked.repeats,
-            asked.rigs,
-            asked.seed,
-            asked.coloured,
-            asked.jobs,
-            asked.bootstrap,
+            options.repeats,
+            options.rigs,
+            options.seed,
+            options.coloured,
+            options.jobs,
+            options.bootstrap,
         )
         kept[name or "none"] = errors
         print("\n".join(lines(name or "none", errors)), flush=True)
-        if asked.json is not None:
-            asked.json.write_text(json.dumps(kept), encoding="utf-8")
+        if options.json is not None:
+            options.json.write_text(json.dumps(kept), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -57,17 +57,17 @@ def rig_of(load_n: float) -> jbf.Rig:
 
 
 def errors_in_sigma(
-    found: jbf.Fit, base: Mapping[str, float], effects: Mapping[str, Mapping[str, float]]
+    fit: jbf.Fit, base: Mapping[str, float], effects: Mapping[str, Mapping[str, float]]
 ) -> dict[str, float]:
     """Estimate minus truth in standard errors, by parameter; NaN where a fit gives no interval."""
     pages = parameters_of("journal", tuple(effects))
     values = {"f_m": base["f_m"], "U_tr_m_s": base["U_tr"], "K0": base["K0"]}
     values["gamma"] = base["gamma"]
-    for effect, own in effects.items():
-        values |= {find_parameter(f"{effect}.{name}", pages): v for name, v in own.items()}
+    for effect, parameters in effects.items():
+        values |= {find_parameter(f"{effect}.{name}", pages): v for name, v in parameters.items()}
     errors = {}
     for name, value in values.items():
-        estimate, period = found.parameters[name], pages[name].period
+        estimate, period = fit.parameters[name], pages[name].period
         off = estimate.value - value
         if period is not None:
             off -= period * round(off / period)

@@ -34,21 +34,21 @@ VOLATILE = ("elapsed_s", "policy")
 
 def campaigns() -> dict[str, dict[str, Any]]:
     """Return by name what is simulated and how it is diagnosed."""
-    found: dict[str, dict[str, Any]] = {}
+    by_name: dict[str, dict[str, Any]] = {}
     for i, name in enumerate(sorted(CATALOGUE)):
         plan = "loads" if name == "load_dependence" else "short"
-        found[name] = {"effects": (name,), "campaign": plan, "coloured": i % 2 == 1}
-    found["none"] = {}
-    found["none coloured"] = {"coloured": True}
-    found["pair"] = {"effects": ("coulomb_drag", "sensor_lag")}
-    found["pair with a drive"] = {"effects": ("presliding", "thermal_thinning"), "coloured": True}
-    found["foreign"] = {"foreign": ("hum",)}
-    found["foreign chatter"] = {"foreign": ("chatter",), "strength": 1.5}
-    found["tied"] = {"effects": ("coulomb_drag",), "campaign": "one_way"}
-    found["slow"] = {"effects": ("sensor_lag",), "campaign": "slow"}
-    found["stribeck"] = {"effects": ("coulomb_drag",), "law": "stribeck"}
-    found["lugre"] = {"law": "lugre"}
-    return found
+        by_name[name] = {"effects": (name,), "campaign": plan, "coloured": i % 2 == 1}
+    by_name["none"] = {}
+    by_name["none coloured"] = {"coloured": True}
+    by_name["pair"] = {"effects": ("coulomb_drag", "sensor_lag")}
+    by_name["pair with a drive"] = {"effects": ("presliding", "thermal_thinning"), "coloured": True}
+    by_name["foreign"] = {"foreign": ("hum",)}
+    by_name["foreign chatter"] = {"foreign": ("chatter",), "strength": 1.5}
+    by_name["tied"] = {"effects": ("coulomb_drag",), "campaign": "one_way"}
+    by_name["slow"] = {"effects": ("sensor_lag",), "campaign": "slow"}
+    by_name["stribeck"] = {"effects": ("coulomb_drag",), "law": "stribeck"}
+    by_name["lugre"] = {"law": "lugre"}
+    return by_name
 
 
 def answers(name: str, options: dict[str, Any], seed: int) -> Row:
@@ -62,12 +62,12 @@ def answers(name: str, options: dict[str, Any], seed: int) -> Row:
         campaign=options.get("campaign", "short"),
         foreign=options.get("foreign", ()),
     )
-    found = jbf.diagnose(rig, runs, law=law)
-    fit = jbf.fit(rig, runs, found.effects, law=law)
+    diagnosis = jbf.diagnose(rig, runs, law=law)
+    fit = jbf.fit(rig, runs, diagnosis.effects, law=law)
     row: Row = {
-        "diagnosis": {k: v for k, v in found.to_dict().items() if k not in VOLATILE},
-        "before": found.before.to_dict(),
-        "after": found.after.to_dict(),
+        "diagnosis": {k: v for k, v in diagnosis.to_dict().items() if k not in VOLATILE},
+        "before": diagnosis.before.to_dict(),
+        "after": diagnosis.after.to_dict(),
         "fit": {
             "parameters": {n: [p.value, p.stderr, p.note] for n, p in fit.parameters.items()},
             "correlations": fit.correlations.tolist(),
@@ -77,15 +77,15 @@ def answers(name: str, options: dict[str, Any], seed: int) -> Row:
             "doubtful": list(fit.doubtful),
             "residuals_n": [float(np.sqrt(np.mean(r**2))) for r in fit.residuals],
         },
-        "predictions": [digest(f) for f in found.after.predictions],
-        "model": found.model.to_toml(),
+        "predictions": [digest(f) for f in diagnosis.after.predictions],
+        "model": diagnosis.model.to_toml(),
     }
-    if found.experiment is not None:
-        run = found.experiment.run
+    if diagnosis.experiment is not None:
+        run = diagnosis.experiment.run
         row["experiment"] = [
             digest(run.time_s),
             digest(run.velocity),
-            found.experiment.evidence,
+            diagnosis.experiment.evidence,
         ]
     if name in ("coulomb_drag", "none"):
         again = jbf.bootstrap(fit, runs, repeats=19)
@@ -127,20 +127,20 @@ def main() -> int:
     parser.add_argument("file", type=Path)
     parser.add_argument("--only", default="", help="names of campaigns, with commas")
     parser.add_argument("--to", type=float, default=SLACK, help="relative difference let pass")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     every = campaigns()
-    names = [n for n in asked.only.split(",") if n] or list(every)
-    found: dict[str, Row] = {}
-    recorded = json.loads(asked.file.read_text()) if asked.work == "compare" else {}
+    names = [n for n in options.only.split(",") if n] or list(every)
+    results: dict[str, Row] = {}
+    recorded = json.loads(options.file.read_text()) if options.work == "compare" else {}
     wrong = 0
     for name in names:
-        found[name] = answers(name, every[name], SEED + list(every).index(name))
-        verdict = found[name]["diagnosis"]["verdict"]
-        if asked.work == "record":
+        results[name] = answers(name, every[name], SEED + list(every).index(name))
+        verdict = results[name]["diagnosis"]["verdict"]
+        if options.work == "record":
             print(f"{name}: {verdict}", flush=True)
-            asked.file.write_text(json.dumps(found, indent=1))
+            options.file.write_text(json.dumps(results, indent=1))
             continue
-        lines = differences(recorded[name], found[name], asked.to)
+        lines = differences(recorded[name], results[name], options.to)
         print(
             f"{name}: {verdict}: {'the same' if not lines else f'{len(lines)} differences'}",
             flush=True,

@@ -97,14 +97,14 @@ def diagnosed(task: Task) -> Answer:
     plant, logger = drawn.plant, drawn.logger
     rig, runs = runs_of(campaign)
     begun = time.process_time()
-    found = jbf.diagnose(rig, runs[:FITTED], law=task.law)
+    diagnosis = jbf.diagnose(rig, runs[:FITTED], law=task.law)
     took = time.process_time() - begun
     machine = {"inertia"}
     if plant.gravity:
         machine.add("gravity" if plant.swings else "sensor_offset")
     true = {*machine, *(name for name in task.hidden if name in EFFECTS)}
     terms = jbf.fit(rig, runs[:FITTED], sorted(true), law="coulomb")
-    errors = [jbf.compare(m, runs[FITTED:]).rms for m in (found.model, terms.model)]
+    errors = [jbf.compare(m, runs[FITTED:]).rms for m in (diagnosis.model, terms.model)]
     words = (
         f"{drawn.kind} {logger.rate_hz:.0f} Hz {logger.stamps} {logger.speed} {logger.force} "
         f"late {logger.speed_late:+.2f} {logger.force_late:+.2f}"
@@ -112,27 +112,27 @@ def diagnosed(task: Task) -> Answer:
     return Answer(
         task,
         words,
-        judged(task, true, found),
-        {*found.machine} == machine,
-        found.verdict,
-        found.model.law,
-        (*found.machine, *found.effects),
-        tuple(f"{r.axis} {r.share:.2g} ({r.where[:60]})" for r in found.residual_structure),
+        judged(task, true, diagnosis),
+        {*diagnosis.machine} == machine,
+        diagnosis.verdict,
+        diagnosis.model.law,
+        (*diagnosis.machine, *diagnosis.effects),
+        tuple(f"{r.axis} {r.share:.2g} ({r.where[:60]})" for r in diagnosis.residual_structure),
         errors[0] / errors[1],
         took,
     )
 
 
-def judged(task: Task, true: set[str], found: jbf.Diagnosis) -> str:
+def judged(task: Task, true: set[str], diagnosis: jbf.Diagnosis) -> str:
     """Assess a diagnosis against the simulated effects `true`: one of the columns of `table`."""
     if task.kind == "unknown":
-        return "right" if found.verdict == "unexplained" else "not reported"
-    named = {*found.machine, *found.effects}
+        return "right" if diagnosis.verdict == "unexplained" else "not reported"
+    named = {*diagnosis.machine, *diagnosis.effects}
     if named == true:
         right = ("missing", "ambiguous") if task.hidden else ("adequate",)
-        return "right" if found.verdict in right else "unexplained"
-    could = {other for names in found.alternatives.values() for other in names}
-    if found.verdict == "ambiguous" and len(named) == len(true) and true <= named | could:
+        return "right" if diagnosis.verdict in right else "unexplained"
+    could = {other for names in diagnosis.alternatives.values() for other in names}
+    if diagnosis.verdict == "ambiguous" and len(named) == len(true) and true <= named | could:
         return "tied"
     return "false name" if named - true else "missed"
 
@@ -144,13 +144,13 @@ def table(answers: list[Answer]) -> Iterator[str]:
     yield f"| {' | '.join(head)} |"
     yield "|---" * len(head) + "|"
     for kind in KINDS:
-        own = [a for a in answers if a.task.kind == kind]
-        if own:
-            counts = Counter(a.judged for a in own)
+        of_kind = [a for a in answers if a.task.kind == kind]
+        if of_kind:
+            counts = Counter(a.judged for a in of_kind)
             numbers = " | ".join(str(counts[c]) for c in columns)
-            ratios = [a.ratio for a in own if np.isfinite(a.ratio)] or [float("nan")]
+            ratios = [a.ratio for a in of_kind if np.isfinite(a.ratio)] or [float("nan")]
             yield (
-                f"| {kind} | {len(own)} | {numbers} | {sum(a.machine for a in own)} "
+                f"| {kind} | {len(of_kind)} | {numbers} | {sum(a.machine for a in of_kind)} "
                 f"| {np.median(ratios):.3f} | {max(ratios):.3f} |"
             )
     cpu = [a.cpu_s for a in answers]
@@ -175,16 +175,18 @@ def main() -> None:
     parser.add_argument("--law", default="coulomb", help="base law (default coulomb), or auto")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default 1)")
     parser.add_argument("--json", type=Path, help="write all answers to this file")
-    asked = parser.parse_args()
-    plan = tasks(asked.kinds.split(","), range(asked.first, asked.first + asked.count), asked.law)
+    options = parser.parse_args()
+    plan = tasks(
+        options.kinds.split(","), range(options.first, options.first + options.count), options.law
+    )
     answers = []
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        for found in pool.map(answer, plan):
-            answers.append(found)
-            print(line(found), flush=True)
+    with ProcessPoolExecutor(options.jobs) as pool:
+        for result in pool.map(answer, plan):
+            answers.append(result)
+            print(line(result), flush=True)
     print("\n".join(table(answers)))
-    if asked.json is not None:
-        asked.json.write_text(json.dumps([asdict(a) for a in answers], indent=1))
+    if options.json is not None:
+        options.json.write_text(json.dumps([asdict(a) for a in answers], indent=1))
 
 
 if __name__ == "__main__":

@@ -67,12 +67,12 @@ def study(seed: int) -> dict[str, Any]:
     except Exception as error:
         return row | {"error": f"{type(error).__name__}: {error}"[:200], "right": False}
     row["seconds"] = time.process_time() - started
-    found = {name: fit.parameters[name] for name in true}
+    estimates = {name: fit.parameters[name] for name in true}
     row["z"] = {
-        n: (found[n].value - t) / found[n].stderr if found[n].stderr else math.inf
+        n: (estimates[n].value - t) / estimates[n].stderr if estimates[n].stderr else math.inf
         for n, t in true.items()
     }
-    row["relative"] = {n: found[n].value / t - 1.0 for n, t in true.items()}
+    row["relative"] = {n: estimates[n].value / t - 1.0 for n, t in true.items()}
     row["right"] = all(abs(z) <= RIGHT for z in row["z"].values())
     row["close"] = all(abs(r) <= CLOSE for r in row["relative"].values())
     row["findings"] = sorted({f.kind for f in fit.findings})

@@ -71,7 +71,7 @@ def drawn(page: Page, act: str) -> float:
 
 def measured(page: Page, times: int) -> dict[str, list[float]]:
     """Measure all cases, each `times` times."""
-    found: dict[str, list[float]] = {way: [] for way in WAYS}
+    times_ms: dict[str, list[float]] = {case: [] for case in WAYS}
     for model in ("", ", with a model"):
         if model:
             page.click("[data-key=tab-Model]")
@@ -85,15 +85,15 @@ def measured(page: Page, times: int) -> dict[str, list[float]]:
         for _ in range(times):
             page.click("[data-key=tab-Data]")
             page.wait_for_selector("[data-drawn] canvas")
-            found["first draw" + model].append(drawn(page, "see"))
-            found["brush" + model].append(drawn(page, "brush"))
+            times_ms["first draw" + model].append(drawn(page, "see"))
+            times_ms["brush" + model].append(drawn(page, "brush"))
             page.keyboard.press("Escape")
             page.wait_for_timeout(300)
-        for way in (f"first draw{model}", f"brush{model}"):
-            each = found[way]
-            line = f"{way:28}{np.min(each):8.0f}{np.median(each):8.0f}{np.max(each):8.0f}"
+        for case in (f"first draw{model}", f"brush{model}"):
+            each = times_ms[case]
+            line = f"{case:28}{np.min(each):8.0f}{np.median(each):8.0f}{np.max(each):8.0f}"
             print(line, flush=True)
-    return found
+    return times_ms
 
 
 def main() -> int:
@@ -102,22 +102,26 @@ def main() -> int:
     parser.add_argument("--samples", type=int, default=1_000_000)
     parser.add_argument("--times", type=int, default=7)
     parser.add_argument("--most", type=float, nargs=2, metavar=("FIRST", "BRUSH"))
-    asked = parser.parse_args()
+    options = parser.parse_args()
     if why_not() is not None:
         print(f"SKIPPED: {why_not()}")
         return 0
-    print(f"{asked.samples} samples, {asked.times} times: least, median and worst, ms", flush=True)
+    print(
+        f"{options.samples} samples, {options.times} times: least, median and worst, ms", flush=True
+    )
     with tempfile.TemporaryDirectory() as folder:
-        recording(Path(folder), asked.samples)
-        with served(Path(folder)) as address, examine_runs(address) as (page, said):
+        recording(Path(folder), options.samples)
+        with served(Path(folder)) as address, examine_runs(address) as (page, messages):
             page.click('[data-key="open-rig.toml"]')
             page.wait_for_selector("[data-drawn] canvas", timeout=600_000)
-            found = measured(page, asked.times)
-            assert not said.complaints, said.complaints
-    most = asked.most or (np.inf, np.inf)
-    slow = [way for way, each in found.items() if np.min(each) > most["brush" in way]]
+            times_ms = measured(page, options.times)
+            assert not messages.complaints, messages.complaints
+    most = options.most or (np.inf, np.inf)
+    slow = [case for case, each in times_ms.items() if np.min(each) > most["brush" in case]]
     if slow:
-        print(f"FAILED: longer than {asked.most[0]:g} and {asked.most[1]:g} ms: {', '.join(slow)}")
+        print(
+            f"FAILED: longer than {options.most[0]:g} and {options.most[1]:g} ms: {', '.join(slow)}"
+        )
         return 1
     return 0
 

@@ -37,18 +37,18 @@ def main() -> int:
     )
     parser.add_argument("--out", type=Path, help="JSON lines, one a campaign")
     parser.add_argument("--picture", type=Path, help="detection rate against strength, PNG")
-    asked = parser.parse_args()
-    wanted = tuple(asked.kinds.split(","))
+    options = parser.parse_args()
+    wanted = tuple(options.kinds.split(","))
     if unknown := set(wanted) - set(KINDS):
         parser.error(f"no kind named {', '.join(sorted(unknown))}; there are {', '.join(KINDS)}")
-    planned = tasks(wanted, asked.seeds, asked.first_seed, short=asked.short)
-    todo = [t for t in planned if any(part in t.key for part in asked.only.split(","))]
+    planned = tasks(wanted, options.seeds, options.first_seed, short=options.short)
+    todo = [t for t in planned if any(part in t.key for part in options.only.split(","))]
     rows: list[Row] = []
-    if asked.out is not None and asked.out.exists():
-        rows = [json.loads(line) for line in asked.out.read_text(encoding="utf-8").splitlines()]
+    if options.out is not None and options.out.exists():
+        rows = [json.loads(line) for line in options.out.read_text(encoding="utf-8").splitlines()]
     done = {row["key"] for row in rows}
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        running = [pool.submit(work, t, asked.rivals) for t in todo if t.key not in done]
+    with ProcessPoolExecutor(options.jobs) as pool:
+        running = [pool.submit(work, t, options.rivals) for t in todo if t.key not in done]
         for future in as_completed(running):
             row = future.result()
             rows.append(row)
@@ -57,15 +57,15 @@ def main() -> int:
                 f"{row['judged']:10}{row['held_out_over_noise']:8.3f}{row['seconds']:7.1f} s",
                 flush=True,
             )
-            if asked.out is not None:
-                with asked.out.open("a", encoding="utf-8") as file:
+            if options.out is not None:
+                with options.out.open("a", encoding="utf-8") as file:
                     file.write(json.dumps(row) + "\n")
     print(tables(rows))
-    if asked.picture is not None:
+    if options.picture is not None:
         from picture import detection
 
-        detection(rows, asked.picture)
-    return 0 if asked.least is None or shares(rows, asked.least) else 1
+        detection(rows, options.picture)
+    return 0 if options.least is None or shares(rows, options.least) else 1
 
 
 if __name__ == "__main__":

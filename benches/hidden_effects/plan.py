@@ -86,5 +86,5 @@ def tasks(
 ) -> list[Task]:
     """Return all campaigns of some kinds by round, so that an early stop is a fair sample."""
     rounds = range(first_seed, first_seed + seeds)
-    found = [task for seed in rounds for kind in kinds for task in _kind(kind, seed)]
-    return [replace(task, short=short) for task in found]
+    campaigns = [task for seed in rounds for kind in kinds for task in _kind(kind, seed)]
+    return [replace(task, short=short) for task in campaigns]

@@ -38,9 +38,9 @@ class Rivals:
     @cached_property
     def bare(self) -> jbf.Fit:
         """Fit of the law alone."""
-        found = self.fit(())
-        assert found is not None
-        return found
+        fitted = self.fit(())
+        assert fitted is not None
+        return fitted
 
     def always_adequate(self) -> list[str]:
         """Report that no effect is missing."""
@@ -89,31 +89,31 @@ class Rivals:
         library, residual = self._library(self.runs)
         seen, unseen = self._library(self.others)
         size = np.linalg.norm(library, axis=0) / math.sqrt(len(residual))
-        felt = np.flatnonzero(size > 1e-9)
-        names = [list(jbf.effects())[i] for i in felt]
+        active = np.flatnonzero(size > 1e-9)
+        names = [list(jbf.effects())[i] for i in active]
         scale = float(np.std(residual))
-        best, lowest = np.zeros(len(felt)), float(np.mean(unseen**2))
+        best, lowest = np.zeros(len(active)), float(np.mean(unseen**2))
         for threshold in THRESHOLDS:
             optimizer: Any = STLSQ(threshold=threshold, alpha=1e-3, max_iter=50)
             try:
-                optimizer.fit(library[:, felt] / size[felt], residual[:, None] / scale)
+                optimizer.fit(library[:, active] / size[active], residual[:, None] / scale)
             except Exception:  # no term survives this threshold
                 continue
-            weights = np.ravel(optimizer.coef_) * scale / size[felt]
-            error = float(np.mean((unseen - seen[:, felt] @ weights) ** 2))
+            weights = np.ravel(optimizer.coef_) * scale / size[active]
+            error = float(np.mean((unseen - seen[:, active] @ weights) ** 2))
             if error < lowest:
                 best, lowest = weights, error
         return [name for name, weight in zip(names, best, strict=True) if weight != 0.0]
 
     def _library(self, runs: list[jbf.Run]) -> tuple[Array, Array]:
-        own = dict(zip(self.bare.parameters, self.bare.model.values.tolist(), strict=True))
+        law_values = dict(zip(self.bare.parameters, self.bare.model.values.tolist(), strict=True))
         base = np.concatenate([self.bare.model.predict(run) for run in runs])
         record = np.concatenate([run.friction for run in runs if run.friction is not None])
         columns = []
         for effect in jbf.effects().values():
             values = {f"{effect.name}.{p.name}": p.starts[0] for p in effect.parameters}
             try:
-                model = jbf.Model(self.rig, effects=[effect.name], parameters=own | values)
+                model = jbf.Model(self.rig, effects=[effect.name], parameters=law_values | values)
                 columns.append(np.concatenate([model.predict(run) for run in runs]) - base)
             except jbf.InputError:
                 columns.append(np.zeros_like(base))

@@ -22,13 +22,13 @@ def summary(rows: list[Row]) -> str:
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for kind in dict.fromkeys(row["kind"] for row in rows):
-        own = [row for row in rows if row["kind"] == kind]
-        count = Counter(row["judged"] for row in own)
-        ratio = [row["held_out_over_noise"] for row in own]
-        seconds = np.median([row["seconds"] for row in own])
-        cells = " | ".join(_share(count[o], len(own)) for o in OUTCOMES)
+        of_kind = [row for row in rows if row["kind"] == kind]
+        count = Counter(row["judged"] for row in of_kind)
+        ratio = [row["held_out_over_noise"] for row in of_kind]
+        seconds = np.median([row["seconds"] for row in of_kind])
+        cells = " | ".join(_share(count[o], len(of_kind)) for o in OUTCOMES)
         lines.append(
-            f"| {kind} | {len(own)} | {cells} | {np.median(ratio):.3f} | {max(ratio):.3f} "
+            f"| {kind} | {len(of_kind)} | {cells} | {np.median(ratio):.3f} | {max(ratio):.3f} "
             f"| {seconds:.1f} |"
         )
     return "\n".join(lines)
@@ -36,7 +36,7 @@ def summary(rows: list[Row]) -> str:
 
 def confusion(rows: list[Row]) -> str:
     """Table of results by hidden effect, for campaigns with at most one hidden effect."""
-    said: dict[str, Counter[str]] = {}
+    results: dict[str, Counter[str]] = {}
     for row in rows:
         if row["kind"] == "pair":
             continue
@@ -47,9 +47,9 @@ def confusion(rows: list[Row]) -> str:
         elif row["named"] and row["verdict"] == "unexplained":
             name += " + unexplained"
         hidden = row["hidden"] + (" (no such effect)" if row["kind"] == "foreign" else "")
-        said.setdefault(hidden, Counter())[name] += 1
+        results.setdefault(hidden, Counter())[name] += 1
     lines = ["| hidden | said |", "|---|---|"]
-    for hidden, names in sorted(said.items()):
+    for hidden, names in sorted(results.items()):
         words = ", ".join(f"{name} ({n})" for name, n in names.most_common())
         lines.append(f"| {hidden} | {words} |")
     return "\n".join(lines)
@@ -63,24 +63,24 @@ def rivals(rows: list[Row]) -> str:
     rules = list(known[0]["rivals"])
     lines = ["| hidden | jbf | " + " | ".join(rules) + " |", "|---" * (len(rules) + 2) + "|"]
     for kind in dict.fromkeys(row["kind"] for row in known):
-        own = [row for row in known if row["kind"] == kind]
+        of_kind = [row for row in known if row["kind"] == kind]
         good = ("right", "tied")
-        cells = [_share(sum(row["judged"] in good for row in own), len(own))]
+        cells = [_share(sum(row["judged"] in good for row in of_kind), len(of_kind))]
         for rule in rules:
-            cells.append(_share(sum(row["rivals"][rule] in good for row in own), len(own)))
+            cells.append(_share(sum(row["rivals"][rule] in good for row in of_kind), len(of_kind)))
         lines.append(f"| {kind} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 
 def next_runs(rows: list[Row]) -> str:
     """Share of ties that are resolved by the proposed run."""
-    asked = [row["after_next_run"] for row in rows if row.get("after_next_run")]
-    if not asked:
+    outcomes = [row["after_next_run"] for row in rows if row.get("after_next_run")]
+    if not outcomes:
         return ""
-    right = sum(said == "right" for said in asked)
+    right = sum(outcome == "right" for outcome in outcomes)
     random = sum(row.get("after_random_run") == "right" for row in rows)
     return (
-        f"ties for which a run was proposed: {len(asked)}; that run names the one: {right}; "
+        f"ties for which a run was proposed: {len(outcomes)}; that run names the one: {right}; "
         f"a run at random, as long: {random}"
     )
 
@@ -89,9 +89,11 @@ def shares(rows: list[Row], least: float) -> bool:
     """Whether each kind reaches this share of good results; prints the kinds that do not."""
     good = True
     for kind in dict.fromkeys(row["kind"] for row in rows):
-        own = [row["judged"] in ("right", "tied") for row in rows if row["kind"] == kind]
-        if np.mean(own) < least:
-            print(f"{kind}: {sum(own)} of {len(own)} good answers, fewer than {least:g}")
+        acceptable = [row["judged"] in ("right", "tied") for row in rows if row["kind"] == kind]
+        if np.mean(acceptable) < least:
+            print(
+                f"{kind}: {sum(acceptable)} of {len(acceptable)} good answers, fewer than {least:g}"
+            )
             good = False
     return good
 

@@ -57,14 +57,14 @@ def at_random(task: Task, rig: jbf.Rig, runs: list[jbf.Run], like: jbf.Run) -> j
     return run_from_motion(rig, chosen, step_s, linear=False)
 
 
-def next_runs(task: Task, found: jbf.Diagnosis, rig: jbf.Rig, runs: list[jbf.Run]) -> Row:
+def next_runs(task: Task, diagnosis: jbf.Diagnosis, rig: jbf.Rig, runs: list[jbf.Run]) -> Row:
     """Assess the diagnosis after the proposed run and after a random one.
 
     The result is None if no run was proposed.
     """
-    if found.experiment is None:
+    if diagnosis.experiment is None:
         return {"after_next_run": None}
-    proposed = found.experiment.run
+    proposed = diagnosis.experiment.run
     return {
         "after_next_run": after_run(task, proposed),
         "after_random_run": after_run(task, at_random(task, rig, runs, proposed)),
@@ -76,10 +76,10 @@ def work(task: Task, with_rivals: bool) -> Row:
     rig, runs, truth = simulate(task, task.campaign)
     _, others, _ = simulate(task, "heldout")
     begun = time.monotonic()
-    found = jbf.diagnose(rig, runs)
+    diagnosis = jbf.diagnose(rig, runs)
     seconds = time.monotonic() - begun
     colour = math.sqrt(1.25) if task.coloured else 1.0
-    alternatives = {k: list(v) for k, v in found.alternatives.items()}
+    alternatives = {k: list(v) for k, v in diagnosis.alternatives.items()}
     foreign = bool(task.foreign)
     row: Row = {
         "key": task.key,
@@ -87,36 +87,37 @@ def work(task: Task, with_rivals: bool) -> Row:
         "hidden": task.hidden,
         "strength": task.strength,
         "coloured": task.coloured,
-        "verdict": found.verdict,
-        "named": list(found.effects),
+        "verdict": diagnosis.verdict,
+        "named": list(diagnosis.effects),
         "alternatives": alternatives,
         "judged": judge(
             task.effects,
-            found.verdict,
-            found.effects,
+            diagnosis.verdict,
+            diagnosis.effects,
             alternatives,
             foreign=foreign,
-            unseen=found.not_detectable,
+            unseen=diagnosis.not_detectable,
         ),
-        "not_detectable": list(found.not_detectable),
-        "held_out_over_noise": held_out(found.model, others)["rms"] / (truth["noise_n"] * colour),
+        "not_detectable": list(diagnosis.not_detectable),
+        "held_out_over_noise": held_out(diagnosis.model, others)["rms"]
+        / (truth["noise_n"] * colour),
         "effect_over_noise": max(truth["effect_to_noise"].values(), default=0.0) / colour,
-        "residual_structure": [str(r.where) for r in found.residual_structure],
-        "rms_over_floor": found.steps[-1].rms / found.steps[-1].noise_rms,
-        "held_out_over_rms": found.steps[-1].held_out_rms / found.steps[-1].rms,
+        "residual_structure": [str(r.where) for r in diagnosis.residual_structure],
+        "rms_over_floor": diagnosis.steps[-1].rms / diagnosis.steps[-1].noise_rms,
+        "held_out_over_rms": diagnosis.steps[-1].held_out_rms / diagnosis.steps[-1].rms,
         "seconds": seconds,
     }
     if row["judged"] == "right" and not foreign:
-        errors = errors_in_sigma(found.fit, truth["base"], truth["effects"]).values()
+        errors = errors_in_sigma(diagnosis.fit, truth["base"], truth["effects"]).values()
         known = [abs(z) for z in errors if math.isfinite(z)]
         row["intervals"], row["covered"] = len(known), sum(z < WIDTH for z in known)
     if task.kind == "tied":
-        row |= next_runs(task, found, rig, runs)
+        row |= next_runs(task, diagnosis, rig, runs)
     if with_rivals:
         rivals = Rivals(rig, runs, others)
         row["rivals"] = {}
         for rule, choose in RULES.items():
             names = choose(rivals)
-            said = "missing" if names else "adequate"
-            row["rivals"][rule] = judge(task.effects, said, names, {}, foreign=foreign)
+            verdict = "missing" if names else "adequate"
+            row["rivals"][rule] = judge(task.effects, verdict, names, {}, foreign=foreign)
     return row

@@ -54,46 +54,46 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
 
 
 def tried_in(
-    asked: argparse.Namespace, package: str, bench: Bench, done: list[Trial]
+    options: argparse.Namespace, package: str, bench: Bench, done: list[Trial]
 ) -> list[Trial]:
     """Test the sample of one package; mutants in the record are taken from it."""
-    reach = Reach.read(asked.reach) if asked.reach.is_file() else by_imports(asked.root)
-    known = {t.name: t for t in done if (t.package, t.seed) == (package, asked.seed)}
-    files = sorted((asked.root / asked.sources / package).rglob("*.py"))
+    reach = Reach.read(options.reach) if options.reach.is_file() else by_imports(options.root)
+    known = {t.name: t for t in done if (t.package, t.seed) == (package, options.seed)}
+    files = sorted((options.root / options.sources / package).rglob("*.py"))
     if not files:
         raise SystemExit(f"{package} is not a package")
-    found: list[Trial] = []
-    for fault in islice(drawn(asked.root, files, f"{package} {asked.seed}"), asked.sample):
+    trials: list[Trial] = []
+    for fault in islice(drawn(options.root, files, f"{package} {options.seed}"), options.sample):
         trial = known.get(fault.name)
-        if trial is None or (asked.again and not trial.caught):
-            chosen = reach.chosen(fault.file, fault.line, asked.budget)
-            if asked.tests:
-                chosen = Chosen(tuple(asked.tests), 60.0)
+        if trial is None or (options.again and not trial.caught):
+            chosen = reach.chosen(fault.file, fault.line, options.budget)
+            if options.tests:
+                chosen = Chosen(tuple(options.tests), 60.0)
             trial = bench.tried(fault, chosen)
-            trial.package, trial.seed = package, asked.seed
-            if asked.out:
-                with asked.out.open("a", encoding="utf-8") as record:
+            trial.package, trial.seed = package, options.seed
+            if options.out:
+                with options.out.open("a", encoding="utf-8") as record:
                     record.write(json.dumps(trial.row()) + "\n")
             print(f"{trial.word:<12}{trial.took_s:6.1f} s  {trial.name}", flush=True)
             if not trial.caught:
                 print("\n".join(f"    {line}" for line in trial.diff), flush=True)
-        found.append(trial)
-    return found
+        trials.append(trial)
+    return trials
 
 
 def main(given: list[str] | None = None) -> int:
     """Test the mutants; return 1 if too few were caught."""
-    asked = arguments(given)
-    done = read(asked.out) if asked.out else []
+    options = arguments(given)
+    done = read(options.out) if options.out else []
     trials: list[Trial] = []
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
-        bench = Bench(TreeCopy(asked.root, Path(folder)))
-        for package in asked.package or PACKAGES:
-            trials += tried_in(asked, package, bench, done)
+        bench = Bench(TreeCopy(options.root, Path(folder)))
+        for package in options.package or PACKAGES:
+            trials += tried_in(options, package, bench, done)
     print(table(trials))
     share = sum(trial.caught for trial in trials) / max(len(trials), 1)
-    if share < asked.least:
-        print(f"{share:.0%} caught, {asked.least:.0%} were asked for", file=sys.stderr)
+    if share < options.least:
+        print(f"{share:.0%} caught, {options.least:.0%} were asked for", file=sys.stderr)
         return 1
     return 0
 

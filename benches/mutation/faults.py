@@ -97,13 +97,13 @@ def main() -> int:
         bench = Bench(TreeCopy(ROOT, Path(folder)))
         for fault in faults:
             if fault.test:
-                found, by = noticed_by_cargo(bench.copy, fault), " ".join(fault.test)
+                caught, by = noticed_by_cargo(bench.copy, fault), " ".join(fault.test)
             else:
                 tests = reach.chosen(fault.file, fault.line, chosen.budget)
                 trial = bench.tried(fault, tests)
-                found, by = trial.caught, trial.by
-            noticed += found
-            print(f"{'noticed' if found else 'NOT NOTICED':<12} {fault.what}: {by}", flush=True)
+                caught, by = trial.caught, trial.by
+            noticed += caught
+            print(f"{'noticed' if caught else 'NOT NOTICED':<12} {fault.what}: {by}", flush=True)
     print(f"{noticed} of {len(faults)} noticed")
     return int(noticed < chosen.least)
 

@@ -20,13 +20,13 @@ SLOW = ("campaigns", "golden", "rigruns", "rigsim", "subprocess", "playwright")
 
 def imported(path: Path) -> set[str]:
     """The modules that a file imports, and the names that it takes from them."""
-    found = set()
+    modules = set()
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            modules |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module is not None:
-            found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-    return found
+            modules |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return modules
 
 
 def by_imports(root: Path) -> Reach:
@@ -46,8 +46,8 @@ def by_imports(root: Path) -> Reach:
             file: min((steps[n] for n in names if n in steps), default=len(steps))
             for file, names in tests.items()
         }
-        own = path.relative_to(package).parts[0]
-        reaching = [f for f in tests if far[f] < len(steps) or Path(f).parent.name == own]
+        subpackage = path.relative_to(package).parts[0]
+        reaching = [f for f in tests if far[f] < len(steps) or Path(f).parent.name == subpackage]
         reaching = reaching or _alike(path, list(tests))
         reaching.sort(key=_order(path, far, seconds))
         lines[path.relative_to(root).as_posix()] = {ANY: reaching}

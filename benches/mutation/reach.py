@@ -117,11 +117,11 @@ def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None
         command = [sys.executable, "-m", "pytest", "-p", "no:xdist", "-p", "no:cacheprovider", file]
         command += ["--cov=jbf", "--cov-report=", "--cov-context=test", f"--junitxml={report}"]
         environment = os.environ | {"COVERAGE_FILE": str(data)}
-        code, told, errors = run(command, ROOT, environment, limit_s)
+        code, output, errors = run(command, ROOT, environment, limit_s)
         if code is None:
             print(f"{file}: longer than {limit_s:.0f} s, left out", file=sys.stderr, flush=True)
             continue
-        print(f"{file}: {told.splitlines()[-1] if told else errors[-200:]}", flush=True)
+        print(f"{file}: {output.splitlines()[-1] if output else errors[-200:]}", flush=True)
 
 
 def _passed(report: Path) -> Iterator[tuple[str, float]]:
@@ -143,8 +143,8 @@ def gathered(folder: Path) -> Reach:
         seconds |= {c: took[c.split("::", 1)[1]] for c in contexts if c.split("::", 1)[1] in took}
         for measured_file in data.measured_files():
             module = Path(measured_file).relative_to(ROOT).as_posix()
-            for line, found in data.contexts_by_lineno(measured_file).items():
-                reached = {c.rsplit("|", 1)[0] for c in found if c} & set(seconds)
+            for line, names in data.contexts_by_lineno(measured_file).items():
+                reached = {c.rsplit("|", 1)[0] for c in names if c} & set(seconds)
                 lines[module][str(line)] += sorted(reached)
     return Reach(seconds, lines)
 
@@ -157,18 +157,18 @@ def main() -> None:
     parser.add_argument("--by-file", type=Path, help="also the short form, for a sample in CI")
     parser.add_argument("--data", type=Path, help="where to keep what was measured, to go on there")
     parser.add_argument("--longest", type=float, default=LONGEST_S, help="processor time, s a file")
-    asked = parser.parse_args()
-    files = asked.tests or sorted(
+    options = parser.parse_args()
+    files = options.tests or sorted(
         p.relative_to(ROOT).as_posix() for p in (ROOT / "python" / "tests").glob("**/test_*.py")
     )
     with tempfile.TemporaryDirectory() as folder:
-        kept = asked.data or Path(folder)
+        kept = options.data or Path(folder)
         kept.mkdir(parents=True, exist_ok=True)
-        measured(files, kept, asked.longest)
-        found = gathered(kept)
-    found.write(asked.out)
-    if asked.by_file:
-        found.by_file().write(asked.by_file)
+        measured(files, kept, options.longest)
+        reach = gathered(kept)
+    reach.write(options.out)
+    if options.by_file:
+        reach.by_file().write(options.by_file)
 
 
 if __name__ == "__main__":

@@ -20,14 +20,14 @@ def interval(caught: int, total: int, level: float = 0.95) -> tuple[float, float
 
 def read(path: Path) -> list[Trial]:
     """Read the trials of a record, the last of each name; incomplete lines are skipped."""
-    found: dict[tuple[str, int, str], Trial] = {}
+    trials: dict[tuple[str, int, str], Trial] = {}
     for line in path.read_text("utf-8").splitlines() if path.is_file() else []:
         try:
             trial = Trial(**json.loads(line))
         except (json.JSONDecodeError, TypeError):
             continue
-        found[trial.package, trial.seed, trial.name] = trial
-    return list(found.values())
+        trials[trial.package, trial.seed, trial.name] = trial
+    return list(trials.values())
 
 
 def table(trials: list[Trial]) -> str:

@@ -95,7 +95,7 @@ def faults_of(source: str, file: str) -> list[Fault]:
     """Return every possible fault of a source."""
     tree = load_grammar().parse(source)
     nodes = list(_nodes(tree))
-    found = []
+    faults = []
     for name in OPERATORS:
         operator = _operator(name)
         count: Counter[str] = Counter()
@@ -104,8 +104,8 @@ def faults_of(source: str, file: str) -> list[Fault]:
                 occurrence = count[name]
                 count[name] += 1
                 if not _is_for_types(node):
-                    found.append(Fault(file, line, column, name, occurrence))
-    return found
+                    faults.append(Fault(file, line, column, name, occurrence))
+    return faults
 
 
 def _compiles(fault: Fault, source: str) -> bool:

@@ -63,8 +63,8 @@ class Bench:
         command += ["-p", "no:cacheprovider", *tests]
         command += [word for test in without for word in ("--deselect", test)]
         environment = self.copy.environment | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-        code, told, _ = run(command, self.copy.folder, environment, limit_s)
-        return code, told
+        code, output, _ = run(command, self.copy.folder, environment, limit_s)
+        return code, output
 
     def is_sound(self, test: str) -> bool:
         """Whether a test passes without a fault; otherwise its failure is not evidence."""
@@ -90,14 +90,14 @@ class Bench:
         while tests:
             path.write_text(after, "utf-8")
             try:
-                code, told = self.pytest(tests, limit_s, struck_off)
+                code, output = self.pytest(tests, limit_s, struck_off)
             finally:
                 path.write_text(before, "utf-8")
-            found = FAILED.search(told)
-            trial.by = found.group(1) if found else None
+            match = FAILED.search(output)
+            trial.by = match.group(1) if match else None
             # A mutant that cannot be imported also reports missing tests.
             if code == NO_TESTS or (code == USAGE and not self.is_sound(tests[0])):
-                raise RuntimeError(f"{fault.name}: its tests cannot be found\n{told[-800:]}")
+                raise RuntimeError(f"{fault.name}: its tests cannot be found\n{output[-800:]}")
             trial.word = "timeout" if code is None else "survived" if code == PASSED else "caught"
             # Tests that take as long without the mutant have not noticed it.
             if code is None and self.pytest(tests, limit_s, struck_off)[0] is None:

@@ -51,52 +51,52 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _simulated(asked: argparse.Namespace, parser: argparse.ArgumentParser) -> list[Job]:
-    kinds = tuple(asked.kinds.split(","))
-    artefacts = tuple(name for name in asked.artefacts.split(",") if name)
+def _simulated(options: argparse.Namespace, parser: argparse.ArgumentParser) -> list[Job]:
+    kinds = tuple(options.kinds.split(","))
+    artefacts = tuple(name for name in options.artefacts.split(",") if name)
     for given, known in ((kinds, KINDS), (artefacts, (OFF_GRID, *ARTEFACTS))):
         if unknown := set(given) - set(known):
             parser.error(f"there is no {', '.join(sorted(unknown))}; there are {', '.join(known)}")
-    planned = tasks(kinds, asked.seeds, asked.first_seed, artefacts)
-    if asked.short:
-        planned = short(asked.first_seed)
+    planned = tasks(kinds, options.seeds, options.first_seed, artefacts)
+    if options.short:
+        planned = short(options.first_seed)
 
     def job(task: Task) -> Row | None:
         with tempfile.TemporaryDirectory() as scratch:
             try:
-                case = written(task, asked.keep or Path(scratch))
+                case = written(task, options.keep or Path(scratch))
             except (ArithmeticError, ValueError) as error:
                 print(f"{task.key}: left out, it cannot be simulated: {error}", flush=True)
                 return None
-            return scored(case, asked.limit)
+            return scored(case, options.limit)
 
     return [(task.key, lambda task=task: job(task)) for task in planned]  # type: ignore[misc]
 
 
-def _on_disk(asked: argparse.Namespace) -> list[Job]:
-    found = cases(asked.folder, asked.heldout)
-    return [(c.key, lambda c=c: scored(c, asked.limit)) for c in found]  # type: ignore[misc]
+def _on_disk(options: argparse.Namespace) -> list[Job]:
+    campaigns = cases(options.folder, options.heldout)
+    return [(c.key, lambda c=c: scored(c, options.limit)) for c in campaigns]  # type: ignore[misc]
 
 
 def main() -> int:
     """Run the missing campaigns, then print all results."""
     parser = _parser()
-    asked = parser.parse_args()
-    if (asked.folder is None) != (asked.heldout is None):
+    options = parser.parse_args()
+    if (options.folder is None) != (options.heldout is None):
         parser.error("name both --folder and --heldout")
     try:
-        jobs = _simulated(asked, parser) if asked.folder is None else _on_disk(asked)
+        jobs = _simulated(options, parser) if options.folder is None else _on_disk(options)
     except FileNotFoundError as missing:
         print(f"skipped: {missing}")
         return 0
-    jobs = [job for job in jobs if any(part in job[0] for part in asked.only.split(","))]
-    jobs = jobs[: asked.first]
+    jobs = [job for job in jobs if any(part in job[0] for part in options.only.split(","))]
+    jobs = jobs[: options.first]
     rows: list[Row] = []
-    if asked.out is not None and asked.out.exists():
-        rows = [json.loads(text) for text in asked.out.read_text(encoding="utf-8").splitlines()]
+    if options.out is not None and options.out.exists():
+        rows = [json.loads(text) for text in options.out.read_text(encoding="utf-8").splitlines()]
     done = {row["key"] for row in rows}
     # These threads only wait and simulate: each diagnosis is a separate process.
-    with ThreadPoolExecutor(asked.jobs) as pool:
+    with ThreadPoolExecutor(options.jobs) as pool:
         running = [pool.submit(run) for key, run in jobs if key not in done]
         for future in as_completed(running):
             row = future.result()
@@ -104,11 +104,11 @@ def main() -> int:
                 continue
             rows.append(row)
             print(line(row), flush=True)
-            if asked.out is not None:
-                with asked.out.open("a", encoding="utf-8") as file:
+            if options.out is not None:
+                with options.out.open("a", encoding="utf-8") as file:
                     file.write(json.dumps(row) + "\n")
     print(tables(rows))
-    return 0 if asked.least is None or kept(rows) >= asked.least else 1
+    return 0 if options.least is None or kept(rows) >= options.least else 1
 
 
 if __name__ == "__main__":

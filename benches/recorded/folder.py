@@ -20,12 +20,12 @@ def cases(folder: Path, held_out: Path) -> list[Case]:
     for needed in (folder, held_out):
         if not needed.is_dir():
             raise FileNotFoundError(f"there is no folder {needed}")
-    found = []
+    campaigns = []
     for name, truth in sorted(_truths(folder).items()):
         for needed in (folder / name, held_out / name):
             if not needed.is_dir():
                 raise FileNotFoundError(f"the truth knows {name}, but there is no {needed}")
-        found.append(
+        campaigns.append(
             Case(
                 name,
                 tuple(map(current_effect, truth["effects"])),
@@ -36,7 +36,7 @@ def cases(folder: Path, held_out: Path) -> list[Case]:
                 str(held_out / name),
             )
         )
-    return found
+    return campaigns
 
 
 def _truths(folder: Path) -> dict[str, Any]:
@@ -45,7 +45,7 @@ def _truths(folder: Path) -> dict[str, Any]:
         if place.is_file():
             truths: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
             return truths
-    beside = [path for path in folder.glob("*.json") if path.with_suffix("").is_dir()]
-    if not beside:
+    truth_files = [path for path in folder.glob("*.json") if path.with_suffix("").is_dir()]
+    if not truth_files:
         raise FileNotFoundError(f"there is no {places[0]}, nor {places[1]}")
-    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in beside}
+    return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in truth_files}

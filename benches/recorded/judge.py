@@ -74,9 +74,9 @@ def found(artefacts: Iterable[str], kinds: Iterable[str]) -> tuple[list[str], li
 
     Artefacts that no finding can report (`off_grid`) are in neither list.
     """
-    said = set(kinds)
+    reported = set(kinds)
     can = [name for name in artefacts if name in FOUND_AS]
-    told = [name for name in can if FOUND_AS[name] & said]
-    silent = [name for name in can if name not in told]
+    detected = [name for name in can if FOUND_AS[name] & reported]
+    silent = [name for name in can if name not in detected]
     true = ALWAYS_FAIR.union(*(FOUND_AS[name] for name in can))
-    return told, silent, sorted(said - true)
+    return detected, silent, sorted(reported - true)

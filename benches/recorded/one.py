@@ -51,21 +51,21 @@ def answered(case: Case) -> Row:
     rig = jbf.read_rig(f"{case.runs}/rig.toml")
     diagnosis = jbf.diagnose(rig, jbf.read_runs([case.runs]))
     seconds, cpu_s = time.monotonic() - begun, time.process_time() - worked
-    said = diagnosis.to_dict()
-    kinds = sorted({finding["kind"] for finding in said.get("findings", [])})
-    told, silent, untrue = found(case.artefacts, kinds)
+    content = diagnosis.to_dict()
+    kinds = sorted({finding["kind"] for finding in content.get("findings", [])})
+    detected, silent, untrue = found(case.artefacts, kinds)
     rms, settled = held_out(diagnosis.model, jbf.read_runs([case.held_out]))
-    named, alternatives = said["effects"], said["alternatives"]
+    named, alternatives = content["effects"], content["alternatives"]
     return {
-        "verdict": said["verdict"],
+        "verdict": content["verdict"],
         "named": named,
         "alternatives": alternatives,
-        "not_detectable": said["not_detectable"],
-        "judged": judge(case.effects, case.artefacts, said["verdict"], named, alternatives),
+        "not_detectable": content["not_detectable"],
+        "judged": judge(case.effects, case.artefacts, content["verdict"], named, alternatives),
         "names_all": set(case.effects) <= set(named),
-        "residual_structure": [part["where"] for part in said["residual_structure"]],
+        "residual_structure": [part["where"] for part in content["residual_structure"]],
         "findings": kinds,
-        "found": told,
+        "found": detected,
         "not_found": silent,
         "untrue_findings": untrue,
         "held_out_over_noise": rms / case.noise_rms,

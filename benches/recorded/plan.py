@@ -77,12 +77,12 @@ def _round(number: int) -> list[Task]:
     names = sorted(set(CATALOGUE) - set(BY_THERMOMETER))
     ones = itertools.cycle([(n,) for n in rng.permutation(names).tolist()])
     pairs = itertools.cycle(rng.permutation(list(itertools.combinations(names, 2))).tolist())
-    found = []
+    planned = []
     for i, (kind, artefacts, strength) in enumerate(_recordings(rng)):
         hidden = {"none": (), "single": next(ones), "pair": tuple(next(pairs))}[kind]
-        found.append(Task(kind, A_ROUND * number + i, hidden, artefacts, strength))
+        planned.append(Task(kind, A_ROUND * number + i, hidden, artefacts, strength))
     # Shuffled, so that an early stop leaves a fair sample.
-    return [found[k] for k in rng.permutation(len(found))]
+    return [planned[k] for k in rng.permutation(len(planned))]
 
 
 def tasks(
@@ -105,10 +105,10 @@ def _samples(seed: int, effects: tuple[str, ...]) -> float:
 def short(first_seed: int = 1) -> list[Task]:
     """Return a dozen small campaigns: those with few samples, from the first seed on."""
     seeds = itertools.count(A_ROUND * first_seed)
-    found = []
+    planned = []
     for artefacts, effects in SHORT:
         strength = "-" if artefacts == (OFF_GRID,) else "usual"
         task = Task("single" if effects else "none", 0, effects, artefacts, strength)
         seed = next(s for s in seeds if _samples(s, effects) < FEW_SAMPLES)
-        found.append(replace(task, seed=seed))
-    return found
+        planned.append(replace(task, seed=seed))
+    return planned

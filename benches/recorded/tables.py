@@ -17,9 +17,9 @@ def _held_out(rows: Sequence[Row]) -> list[str]:
 
 
 def _found(rows: Sequence[Row]) -> str:
-    told = sum(len(row["found"]) for row in rows)
-    total = told + sum(len(row["not_found"]) for row in rows)
-    return f"{told} of {total}" if total else "-"
+    detected = sum(len(row["found"]) for row in rows)
+    total = detected + sum(len(row["not_found"]) for row in rows)
+    return f"{detected} of {total}" if total else "-"
 
 
 def _cpu_s(row: Row) -> float:
@@ -37,11 +37,19 @@ def grouped(rows: Sequence[Row], title: str, of: Callable[[Row], str]) -> str:
     heads += ["held-out, median", "worst", "artefacts found", "CPU s, median", "worst"]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for name in sorted({of(row) for row in rows}):
-        own = [row for row in rows if of(row) == name]
-        counts = [str(sum(row["judged"] == o for row in own)) for o in OUTCOMES]
-        hidden = [row for row in own if row["effects"]]
+        of_group = [row for row in rows if of(row) == name]
+        counts = [str(sum(row["judged"] == o for row in of_group)) for o in OUTCOMES]
+        hidden = [row for row in of_group if row["effects"]]
         named = f"{sum(row['names_all'] for row in hidden)} of {len(hidden)}" if hidden else "-"
-        cells = [name, str(len(own)), *counts, named, *_held_out(own), _found(own), *_seconds(own)]
+        cells = [
+            name,
+            str(len(of_group)),
+            *counts,
+            named,
+            *_held_out(of_group),
+            _found(of_group),
+            *_seconds(of_group),
+        ]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
@@ -75,8 +83,8 @@ def totals(rows: Sequence[Row]) -> str:
 
     lines = ["| | campaigns | share |", "|---|---|---|"]
     for words, kind in (("one effect", "single"), ("two effects", "pair"), ("nothing", "none")):
-        own = [row for row in clean if row["kind"] == kind]
-        lines.append(_line(f"recorded cleanly, {words}: right", own, right))
+        of_kind = [row for row in clean if row["kind"] == kind]
+        lines.append(_line(f"recorded cleanly, {words}: right", of_kind, right))
     lines.append(_line("recorded, one effect: named, nothing false, not `unexplained`", one, right))
     lines.append(_line("the same or an honest tie", one, fair))
     two = [row for row in dirty if row["kind"] == "pair"]
@@ -100,12 +108,12 @@ def kept(rows: Sequence[Row]) -> float:
 
 def line(row: Row) -> str:
     """Format a campaign as one line, for progress output."""
-    said = ",".join(row["named"]) or "-"
+    named = ",".join(row["named"]) or "-"
     held = f"{row['held_out_over_noise']:7.3f}" if "held_out_over_noise" in row else "      -"
     hidden = ",".join(row["effects"]) or "-"
     why = ",".join(row["findings"]) or row.get("why", "")
     return (
-        f"{row['key']:44} {hidden:34} {row['verdict']:12} {said:34} {row['judged']:14}{held}"
+        f"{row['key']:44} {hidden:34} {row['verdict']:12} {named:34} {row['judged']:14}{held}"
         f"{row['cpu_s']:7.1f} s  {why}"
     )
 

@@ -57,19 +57,23 @@ def judge(case: Case) -> tuple[str, list[str]]:
     try:
         fitted = jbf.fit(case.rig, case.runs, law="stribeck" if case.law == "auto" else case.law)
         wrong += complaints(case, fitted)
-        found = jbf.diagnose(case.rig, case.runs, law=case.law)
+        diagnosis = jbf.diagnose(case.rig, case.runs, law=case.law)
     except jbf.JbfError as error:
-        said = str(error)
-        return said, [*wrong, "more than one line"] if "\n" in said else wrong
-    wrong += complaints(case, found.fit)
-    last = found.steps[-1]
+        message = str(error)
+        return message, [*wrong, "more than one line"] if "\n" in message else wrong
+    wrong += complaints(case, diagnosis.fit)
+    last = diagnosis.steps[-1]
     if not all(np.isfinite([last.rms, last.noise_rms, last.held_out_rms])):
         wrong.append(f"errors {last.rms:g}, {last.noise_rms:g}, {last.held_out_rms:g}")
     samples = sum(map(len, case.runs))
-    if found.verdict == "adequate" and samples > 100 and last.rms > FAR_OFF * case.noise_rms > 0.0:
+    if (
+        diagnosis.verdict == "adequate"
+        and samples > 100
+        and last.rms > FAR_OFF * case.noise_rms > 0.0
+    ):
         wrong.append(f"adequate at {last.rms / case.noise_rms:.1f} times the noise")
-    json.dumps(found.to_dict(), allow_nan=False)
-    return found.verdict, wrong
+    json.dumps(diagnosis.to_dict(), allow_nan=False)
+    return diagnosis.verdict, wrong
 
 
 def tried(seed: int, limit_s: float) -> dict[str, object]:
@@ -81,29 +85,29 @@ def tried(seed: int, limit_s: float) -> dict[str, object]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            said, wrong = judge(case)
+            message, wrong = judge(case)
         except TimeoutError:
-            said, wrong = "", [f"no end in {limit_s:g} s"]
+            message, wrong = "", [f"no end in {limit_s:g} s"]
         except Exception as error:
             place = traceback.extract_tb(error.__traceback__)[-1]
-            said, wrong = "", [f"{error!r} ({Path(place.filename).name}:{place.lineno})"]
+            message, wrong = "", [f"{error!r} ({Path(place.filename).name}:{place.lineno})"]
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0.0)
     caught = [w for w in caught if not issubclass(w.category, jbf.FilmWarning)]
     wrong += sorted({f"{Path(w.filename).name}:{w.lineno}: {w.message}" for w in caught})
     seconds = time.process_time() - begun
-    return {"seed": seed, "case": case.words, "said": said, "wrong": wrong, "seconds": seconds}
+    return {"seed": seed, "case": case.words, "said": message, "wrong": wrong, "seconds": seconds}
 
 
 def kept(path: Path | None) -> list[dict[str, object]]:
     """Read the cases of a record; incomplete lines are skipped."""
-    found = []
+    rows = []
     for line in path.read_text("utf-8").splitlines() if path is not None and path.exists() else []:
         try:
-            found.append(json.loads(line))
+            rows.append(json.loads(line))
         except json.JSONDecodeError:
             continue
-    return found
+    return rows
 
 
 def main() -> int:
@@ -114,16 +118,16 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--limit", type=float, default=120.0, help="processor time, s a case; 120")
     parser.add_argument("--out", type=Path, help="JSON lines, one a case; what it has is not tried")
-    asked = parser.parse_args()
-    seeds = range(asked.first_seed, asked.first_seed + asked.cases)
-    rows = [row for row in kept(asked.out) if row["seed"] in seeds]
-    left = sorted(set(seeds) - {int(str(row["seed"])) for row in rows})
-    with ProcessPoolExecutor(asked.jobs) as pool:
-        for future in as_completed([pool.submit(tried, seed, asked.limit) for seed in left]):
+    options = parser.parse_args()
+    seeds = range(options.first_seed, options.first_seed + options.cases)
+    rows = [row for row in kept(options.out) if row["seed"] in seeds]
+    remaining = sorted(set(seeds) - {int(str(row["seed"])) for row in rows})
+    with ProcessPoolExecutor(options.jobs) as pool:
+        for future in as_completed([pool.submit(tried, seed, options.limit) for seed in remaining]):
             row = future.result()
             rows.append(row)
-            if asked.out is not None:
-                with asked.out.open("a", encoding="utf-8") as file:
+            if options.out is not None:
+                with options.out.open("a", encoding="utf-8") as file:
                     file.write(json.dumps(row) + "\n")
             if row["wrong"]:
                 print(

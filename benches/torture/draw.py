@@ -55,8 +55,8 @@ def _jumps(t: Array, top: float, random: Random) -> Array:
 
 
 def _wander(t: Array, top: float, random: Random) -> Array:
-    way = np.cumsum(random.standard_normal(len(t)))
-    return np.asarray(top * way / max(float(np.max(np.abs(way))), 1e-12))
+    path = np.cumsum(random.standard_normal(len(t)))
+    return np.asarray(top * path / max(float(np.max(np.abs(path))), 1e-12))
 
 
 def _strokes(t: Array, top: float, random: Random) -> Array:
@@ -121,9 +121,9 @@ def draw(seed: int) -> Case:
         samples = int(10.0 ** random.uniform(1.0, 3.3))
         t = step_s * np.arange(samples)
         v = MOTIONS[str(motion)](t, top, random)
-        own = np.random.default_rng(shape)
+        rng = np.random.default_rng(shape)
         force = {
-            "friction": lambda v=v, own=own: friction(v, top, force_n, own),
+            "friction": lambda v=v, rng=rng: friction(v, top, force_n, rng),
             "noise": lambda v=v: np.zeros(len(v)),
             "zeros": lambda v=v: np.zeros(len(v)),
             "constant": lambda v=v: np.full(len(v), force_n),

@@ -28,7 +28,7 @@ def one_way(
     name: str,
     friction: Friction,
     *,
-    way: float = 1.0,
+    direction: float = 1.0,
     rate: float = 2.0,
     duration_s: float = 10.0,
     noise_rms: float = 0.0,
@@ -36,24 +36,24 @@ def one_way(
 ) -> Run:
     """A run at 0.05 to 0.15 m/s in one direction.
 
-    `friction` is a function of time, speed and acceleration. The argument `way` multiplies the
-    speed and may be a sign; `rate` is the angular frequency of the speed, 1/s.
+    `friction` is a function of time, speed and acceleration. The argument `direction` multiplies
+    the speed and may be a sign; `rate` is the angular frequency of the speed, 1/s.
     """
     t = np.arange(0.0, duration_s + 0.5 * STEP_S, STEP_S)
-    v = way * (0.1 + 0.05 * np.sin(rate * t))
-    a = way * 0.05 * rate * np.cos(rate * t)
+    v = direction * (0.1 + 0.05 * np.sin(rate * t))
+    a = direction * 0.05 * rate * np.cos(rate * t)
     noise = noise_rms * np.random.default_rng(seed).standard_normal(len(t))
     return Run.from_arrays(t, v, friction(t, v, a) + noise, name=name)
 
 
 def wandering(
-    name: str, friction: Friction, *, way: float, rate: float, noise_rms: float, seed: int
+    name: str, friction: Friction, *, direction: float, rate: float, noise_rms: float, seed: int
 ) -> Run:
     """A run like `one_way` whose speed has two frequencies without a common period."""
     t = np.arange(0.0, 10.0 + 0.5 * STEP_S, STEP_S)
     other = 0.6180340 * rate
-    v = way * (0.1 + 0.03 * np.sin(rate * t) + 0.02 * np.sin(other * t + 1.0))
-    a = way * (0.03 * rate * np.cos(rate * t) + 0.02 * other * np.cos(other * t + 1.0))
+    v = direction * (0.1 + 0.03 * np.sin(rate * t) + 0.02 * np.sin(other * t + 1.0))
+    a = direction * (0.03 * rate * np.cos(rate * t) + 0.02 * other * np.cos(other * t + 1.0))
     noise = noise_rms * np.random.default_rng(seed).standard_normal(len(t))
     return Run.from_arrays(t, v, friction(t, v, a) + noise, name=name)
 
@@ -62,8 +62,10 @@ def four_runs(friction: Friction, *, noise_rms: float, seed: int = 0) -> list[Ru
     """Two `wandering` runs in each direction: any three determine the prediction of the fourth."""
     plan = (("a", 1.0, 12.0), ("b", -1.0, 14.0), ("c", 1.0, 10.0), ("d", -1.0, 16.0))
     return [
-        wandering(name, friction, way=way, rate=rate, noise_rms=noise_rms, seed=4 * seed + i)
-        for i, (name, way, rate) in enumerate(plan)
+        wandering(
+            name, friction, direction=direction, rate=rate, noise_rms=noise_rms, seed=4 * seed + i
+        )
+        for i, (name, direction, rate) in enumerate(plan)
     ]
 
 
@@ -71,7 +73,7 @@ def there_and_back(friction: Friction, *, noise_rms: float = 0.0, seed: int = 0)
     """A run in each direction of motion, named `there` and `back`; no sample is at rest."""
     return [
         one_way("there", friction, noise_rms=noise_rms, seed=2 * seed),
-        one_way("back", friction, way=-1.0, rate=3.0, noise_rms=noise_rms, seed=2 * seed + 1),
+        one_way("back", friction, direction=-1.0, rate=3.0, noise_rms=noise_rms, seed=2 * seed + 1),
     ]
 
 

@@ -75,5 +75,5 @@ def arma_innovations(values: Array, step_s: float, noise: Noise) -> Array:
     """Innovations `e_t = r_t - phi r_t-1 + phi (1 - colour) e_t-1` by SciPy on the first axis."""
     phi = float(np.exp(-step_s / noise.memory_s)) if noise.colour else 0.0
     numerator, denominator = [1.0, -phi], [1.0, -phi * (1.0 - noise.colour)]
-    found: Array = signal.lfilter(numerator, denominator, values, axis=0)
-    return found
+    innovations: Array = signal.lfilter(numerator, denominator, values, axis=0)
+    return innovations

@@ -107,8 +107,8 @@ def maxwell_slip(
     bent = np.zeros(elements)
     force = np.zeros(len(fine))
     level = 1.0 + excess / fc * np.exp(-((v / vs) ** 2))
-    for i, way in enumerate(0.5 * (v[1:] + v[:-1]) * step, start=1):
-        bent = np.clip(bent + way, -slip * level[i], slip * level[i])
+    for i, displacement in enumerate(0.5 * (v[1:] + v[:-1]) * step, start=1):
+        bent = np.clip(bent + displacement, -slip * level[i], slip * level[i])
         force[i] = s0 * np.mean(bent)
     return force[::finer] + fv * v[::finer]
 
@@ -183,18 +183,18 @@ def seven(
     late = np.array([speed(max(x - tau, t[0])) for x in fine])
     force = np.zeros_like(fine)
     sliding, bent, at_stop, grown, stuck_for = False, 0.0, fs, fs, 0.0
-    way = 0.0
+    direction = 0.0
     for i in range(len(fine)):
         part = 1.0 / (1.0 + (late[i] / vs) ** 2)
-        if sliding and np.sign(v[i]) != way:
+        if sliding and np.sign(v[i]) != direction:
             sliding, at_stop, stuck_for, bent = False, grown * part, 0.0, force[i - 1]
         if not sliding:
             stuck_for += dt
             grown = at_stop + (fs - at_stop) * stuck_for / (stuck_for + gamma)
             bent += kt * v[i] * dt
             if bent * np.sign(v[i]) >= fc + grown * part:
-                sliding, way = True, np.sign(v[i])
-        force[i] = way * (fc + grown * part) if sliding else bent
+                sliding, direction = True, np.sign(v[i])
+        force[i] = direction * (fc + grown * part) if sliding else bent
     return np.interp(t, fine, force + fv * v)
 
 

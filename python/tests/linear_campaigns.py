@@ -62,7 +62,7 @@ HIDDEN: dict[str, tuple[Friction, float]] = {
 def linear_runs(hidden: str) -> list[Run]:
     """Four runs of 10 s, each in one direction."""
     if hidden == "mass in one run":
-        first = wandering("a", mass(3.2), way=1.0, rate=12.0, noise_rms=0.1, seed=0)
+        first = wandering("a", mass(3.2), direction=1.0, rate=12.0, noise_rms=0.1, seed=0)
         return [first, *four_runs(coulomb, noise_rms=0.1)[1:]]
     friction, noise_rms = HIDDEN[hidden]
     return four_runs(friction, noise_rms=noise_rms)

@@ -16,13 +16,16 @@ COUNT_M, SPEED_NOISE_M_S, FORCE_NOISE_N = 1e-7, 1e-4, 0.3
 
 def trapezoids(random: Any, duration_s: float) -> Any:
     """Reference speed (m/s) at each substep: rounded trapezoids in both directions, with pauses."""
-    step_s, parts, way = STEP_S / SUBSTEPS, [np.zeros(200)], 1.0
+    step_s, parts, direction = STEP_S / SUBSTEPS, [np.zeros(200)], 1.0
     while sum(map(len, parts)) * step_s < duration_s:
         top, ramp_s, flat_s, pause_s = random.uniform([0.1, 0.1, 0.1, 0.4], [0.5, 0.3, 0.5, 1.5])
         time_s = np.arange(0.0, 2.0 * ramp_s + flat_s, step_s)
         ends_s = np.minimum(time_s, 2.0 * ramp_s + flat_s - time_s)
-        parts += [way * top * np.clip(ends_s / ramp_s, 0.0, 1.0), np.zeros(int(pause_s / step_s))]
-        way = -way
+        parts += [
+            direction * top * np.clip(ends_s / ramp_s, 0.0, 1.0),
+            np.zeros(int(pause_s / step_s)),
+        ]
+        direction = -direction
     speed = np.concatenate(parts)[: int(duration_s / step_s)]
     round_corners = np.full(int(ROUNDED_S / step_s), step_s / ROUNDED_S)
     return np.convolve(speed, round_corners)[: len(speed)]

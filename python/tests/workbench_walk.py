@@ -64,7 +64,7 @@ def served(folder: Path, *more: str) -> Iterator[str]:
     assert "Traceback" not in rest, rest
 
 
-class Said:
+class Messages:
     """Console errors of a page, and requests to other hosts."""
 
     def __init__(self, page: Page) -> None:
@@ -84,7 +84,7 @@ class Said:
 
 
 @contextmanager
-def examine_runs(address: str) -> Iterator[tuple[Page, Said]]:
+def examine_runs(address: str) -> Iterator[tuple[Page, Messages]]:
     """The page at an address, 1,280 pixels wide."""
     from playwright.sync_api import sync_playwright
 
@@ -94,7 +94,7 @@ def examine_runs(address: str) -> Iterator[tuple[Page, Said]]:
         )
         page = chromium.new_page(viewport={"width": 1280, "height": 900})
         page.set_default_timeout(PATIENCE_MS)
-        messages = Said(page)
+        messages = Messages(page)
         page.goto(address)
         try:
             yield page, messages

@@ -18,7 +18,7 @@ def coulomb_model(force: float, rig: Rig | None = None) -> Model:
 
 def many_runs(count: int) -> list[Run]:
     return [
-        one_way(f"{i}", coulomb, way=(-1.0) ** i, rate=2.0 + i, noise_rms=NOISE_N, seed=i)
+        one_way(f"{i}", coulomb, direction=(-1.0) ** i, rate=2.0 + i, noise_rms=NOISE_N, seed=i)
         for i in range(count)
     ]
 

@@ -28,11 +28,11 @@ def binned(bins: Bins, *places: list[int]) -> Binned:
     return Binned("run", bins, [np.array(p, dtype=np.intp) for p in places])
 
 
-def description(bins: Bins, means: list[float], counts: Any = 100, found: Any = None) -> str:
+def description(bins: Bins, means: list[float], counts: Any = 100, errors: Any = None) -> str:
     """Description of a pattern of bin means with a number of samples in each bin."""
     axis = Binned("run" if bins[0].name else "direction", bins, [], "N m")
     count = np.broadcast_to(np.array(counts, dtype=np.intp), len(bins))
-    return pattern_words(axis, np.array(means), count, None if found is None else np.array(found))
+    return pattern_words(axis, np.array(means), count, None if errors is None else np.array(errors))
 
 
 def test_bin_means_use_only_counted_samples_that_have_a_bin() -> None:
@@ -126,7 +126,7 @@ def test_pattern_description_names_the_bins_with_the_largest_explained_square() 
     """10 samples of 2 N m explain 40 (N m)^2; 100 samples of 1 and -0.9 N m explain 100 and 81."""
     words = description(RUNS[:3], [2.0, 1.0, -0.9], [10, 100, 100])
     assert words == "most +1 N m at run b; -0.9 N m at run c"
-    found_elsewhere = description(RUNS[:3], [1.0, -8.0, 2.0], found=[3.0, 0.1, 3.0])
+    found_elsewhere = description(RUNS[:3], [1.0, -8.0, 2.0], errors=[3.0, 0.1, 3.0])
     assert found_elsewhere.endswith("most +2 N m at run c; +1 N m at run a")
 
 

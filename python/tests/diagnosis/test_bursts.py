@@ -45,13 +45,13 @@ def bursts_in(
     return find_bursts(campaign.prepared, samples, innovations, residuals or innovations, given)
 
 
-def times(found: Remainder) -> list[tuple[float, str]]:
+def times(remainder: Remainder) -> list[tuple[float, str]]:
     """Time (s) and run of each burst, in the order of the description."""
-    return [(float(t), run) for t, run in re.findall(r"([\d.]+) s in (\w)", found.where)]
+    return [(float(t), run) for t, run in re.findall(r"([\d.]+) s in (\w)", remainder.where)]
 
 
-def largest_n(found: Remainder) -> float:
-    return numbers_in(r"([\d.e+-]+) N: at", found.where)[0]
+def largest_n(remainder: Remainder) -> float:
+    return numbers_in(r"([\d.e+-]+) N: at", remainder.where)[0]
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])

@@ -50,10 +50,10 @@ def explained(design: Array, target: Array) -> float:
 def by_regression(residuals: Sequence[Array], design: Array) -> tuple[float, list[float]]:
     """Gain of separate parameters for each run over common ones, and explained squares by run."""
     sigma = [float(np.sqrt(np.mean(r**2))) for r in residuals]
-    own = [explained(design, r / s) for r, s in zip(residuals, sigma, strict=True)]
+    separate = [explained(design, r / s) for r, s in zip(residuals, sigma, strict=True)]
     stacked = np.concatenate([r / s for r, s in zip(residuals, sigma, strict=True)])
     common = explained(np.concatenate([design / s for s in sigma]), stacked)
-    return sum(own) - common, own
+    return sum(separate) - common, separate
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])

@@ -25,9 +25,9 @@ from linear_campaigns import (
 )
 
 
-def trial(found: Diagnosis, effect: str, step: int = 0) -> Trial:
+def trial(diagnosis: Diagnosis, effect: str, step: int = 0) -> Trial:
     """The trial of an effect in one step of the ledger."""
-    return next(t for t in found.steps[step].trials if t.effect == effect)
+    return next(t for t in diagnosis.steps[step].trials if t.effect == effect)
 
 
 def test_evidence_is_twice_the_log_likelihood_gain_minus_the_threshold() -> None:

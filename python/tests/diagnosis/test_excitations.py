@@ -19,9 +19,9 @@ def motions(
     top: float = 0.1, sharp: float = 0.2, duration_s: float = 60.0, **more: Any
 ) -> dict[str, Excitation]:
     """Candidate motions by their unique descriptions."""
-    found = list(excitations(Limits(top, sharp, duration_s, **more), STEP_S))
-    by_words = {x.words: x for x in found}
-    assert len(by_words) == len(found)
+    candidates = list(excitations(Limits(top, sharp, duration_s, **more), STEP_S))
+    by_words = {x.words: x for x in candidates}
+    assert len(by_words) == len(candidates)
     return by_words
 
 

@@ -64,17 +64,17 @@ def rival(candidates: Candidates, effects: tuple[str, ...] = ()) -> Rival:
 
 @cache
 def proposed(pairs: int) -> Experiment:
-    found = propose(four_effects(), (PAIR, OTHER)[:pairs], LIMITS)
-    assert isinstance(found, Experiment)
-    return found
+    experiment = propose(four_effects(), (PAIR, OTHER)[:pairs], LIMITS)
+    assert isinstance(experiment, Experiment)
+    return experiment
 
 
 def residual_square_after_fit(
-    rival: Rival, own: tuple[Array, Array], truth: Array, step_s: float
+    rival: Rival, recorded: tuple[Array, Array], truth: Array, step_s: float
 ) -> float:
     """Residual sum of squares of a fit to old and new runs, relative to the noise variance."""
     noise = rival.solution.noise
-    x, gap = noise.innovations(own[1], step_s), noise.innovations(truth - own[0], step_s)
+    x, gap = noise.innovations(recorded[1], step_s), noise.innovations(truth - recorded[0], step_s)
     _, j = rival.solution.stacked()
     explained = x.T @ gap
     step = np.linalg.pinv(x.T @ x + j.T @ j) @ explained

@@ -49,16 +49,16 @@ def in_other_units(runs: list[Run]) -> list[Run]:
 
 def cut(runs: list[Run]) -> list[Run]:
     """The run with the largest number of rests, cut at a rest near its middle, or the first run."""
-    whole = max(runs, key=lambda run: int(np.sum(run.velocity == 0.0)))
-    middle = len(whole) // 2
-    resting = np.flatnonzero(whole.velocity == 0.0)
+    longest = max(runs, key=lambda run: int(np.sum(run.velocity == 0.0)))
+    middle = len(longest) // 2
+    resting = np.flatnonzero(longest.velocity == 0.0)
     if len(resting):
         middle = int(resting[np.argmin(np.abs(resting - middle))])
     halves = [
-        replace(whole.select(part), name=f"{whole.name} {i}")
+        replace(longest.select(part), name=f"{longest.name} {i}")
         for i, part in enumerate((slice(0, middle), slice(middle, None)))
     ]
-    return [new for run in runs for new in (halves if run is whole else [run])]
+    return [new for run in runs for new in (halves if run is longest else [run])]
 
 
 CHANGES: dict[str, Change] = {
@@ -97,7 +97,7 @@ def assert_same(
             assert new.stderr == pytest.approx(old.stderr, rel=max(within, 1e-3)), name
 
 
-def in_first_units(found: Diagnosis) -> Diagnosis:
+def in_first_units(diagnosis: Diagnosis) -> Diagnosis:
     """The parameters of a diagnosis of forces in other units, converted back."""
 
     def convert(name: str, p: ParameterValue) -> ParameterValue:
@@ -105,8 +105,8 @@ def in_first_units(found: Diagnosis) -> Diagnosis:
         stderr = None if p.stderr is None else p.stderr / unit
         return replace(p, value=p.value / unit, stderr=stderr)
 
-    parameters = {name: convert(name, p) for name, p in found.fit.parameters.items()}
-    return replace(found, fit=replace(found.fit, parameters=parameters))
+    parameters = {name: convert(name, p) for name, p in diagnosis.fit.parameters.items()}
+    return replace(diagnosis, fit=replace(diagnosis.fit, parameters=parameters))
 
 
 @pytest.mark.parametrize(("hidden", "change"), CASES)

@@ -159,8 +159,8 @@ def test_residual_that_a_candidate_explains_does_not_raise_the_level() -> None:
     )
 
 
-def _one_direction(way: Array, noise: Array, blocks: list[int]) -> Directions:
-    return Directions(way[:, None], noise, np.ones(1), np.array(blocks), NO_ENDS)
+def _one_direction(direction: Array, noise: Array, blocks: list[int]) -> Directions:
+    return Directions(direction[:, None], noise, np.ones(1), np.array(blocks), NO_ENDS)
 
 
 @pytest.mark.parametrize(("rate", "gain"), [(0.1, 16.0), (0.15, 4.0), (0.6, 4.0), (0.7, 0.0)])
@@ -195,9 +195,9 @@ def test_candidate_without_a_direction_keeps_its_share_of_the_significance_level
     assert calibrated(level, []) == level
 
 
-def _decoy(ways: Array, noise: Array, ends: list[int], counted: float = 1.0) -> Directions:
-    share, blocks = np.full(ways.shape[1], counted), np.arange(0, len(noise), 50)
-    return Directions(np.linalg.qr(ways)[0], noise, share, blocks, np.array(ends, np.intp))
+def _decoy(directions: Array, noise: Array, ends: list[int], counted: float = 1.0) -> Directions:
+    share, blocks = np.full(directions.shape[1], counted), np.arange(0, len(noise), 50)
+    return Directions(np.linalg.qr(directions)[0], noise, share, blocks, np.array(ends, np.intp))
 
 
 @pytest.mark.parametrize("k", [1, 3])

@@ -9,7 +9,7 @@ from jbf.estimation.campaign import Campaign
 TIME_S = 0.01 * np.arange(1200)
 
 
-def said(speed: np.ndarray, **parameters: float) -> str:
+def limitations_text(speed: np.ndarray, **parameters: float) -> str:
     force = 3.0 * np.sign(speed) + 5.0 * speed
     force = force + 0.05 * np.random.default_rng(1).normal(size=len(speed))
     campaign = Campaign.prepare(Rig(), [Run.from_arrays(TIME_S, speed, force, name="run")])
@@ -26,14 +26,14 @@ def to_and_fro(low: float, high: float) -> np.ndarray:
 def test_motion_in_one_direction_is_reported_as_a_limitation(sign: float, expected: bool) -> None:
     speed = to_and_fro(0.001, 0.2)
     speed = sign * np.abs(speed) if sign else speed
-    assert ("one direction" in said(speed)) == expected
+    assert ("one direction" in limitations_text(speed)) == expected
 
 
 @pytest.mark.parametrize(
     ("high", "expected"), [(0.0011, "hardly changes"), (0.005, "less than a decade"), (0.2, "")]
 )
 def test_narrow_range_of_speeds_is_reported_as_a_limitation(high: float, expected: str) -> None:
-    found = said(to_and_fro(0.001, high))
+    found = limitations_text(to_and_fro(0.001, high))
     assert expected in found
     assert bool(found) == bool(expected)
 
@@ -42,5 +42,5 @@ def test_narrow_range_of_speeds_is_reported_as_a_limitation(high: float, expecte
 def test_strokes_within_the_presliding_displacement_are_reported_as_a_limitation(
     stiffness: float, expected: bool
 ) -> None:
-    found = said(to_and_fro(0.001, 0.2), F_c=3.0, sigma_0=stiffness)
+    found = limitations_text(to_and_fro(0.001, 0.2), F_c=3.0, sigma_0=stiffness)
     assert ("presliding" in found) == expected

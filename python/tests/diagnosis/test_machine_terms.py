@@ -34,10 +34,10 @@ RUNS = [swinging(seed) for seed in (1, 2, 3, 4)]
 DRIVE = Rig(drive=Drive("rotary", "torque"))
 
 
-def assert_machine_is_found(found: Diagnosis) -> None:
-    assert found.steps[-1].held_out_rms < 1.1 * NOISE
+def assert_machine_is_found(diagnosis: Diagnosis) -> None:
+    assert diagnosis.steps[-1].held_out_rms < 1.1 * NOISE
     for name, true in (("inertia.m_e", INERTIA), ("gravity.G", WEIGHT)):
-        parameter = found.model.parameters[name]
+        parameter = diagnosis.model.parameters[name]
         assert parameter.stderr is not None
         assert abs(parameter.value - true) < 3.0 * parameter.stderr, name
 

@@ -48,9 +48,9 @@ def weighted(problem: Problem, solution: Solution) -> Campaign:
     campaign = problem.campaign
     for term in (variance_by_force, variance_by_run, heavy_tails):
         model = model_of(problem, solution)
-        found = term(model)
-        if found is not None and is_accepted(found, model):
-            campaign = found.campaign
+        proposal = term(model)
+        if proposal is not None and is_accepted(proposal, model):
+            campaign = proposal.campaign
             problem, solution = fit_from_truth(campaign)
     return campaign
 
@@ -68,8 +68,8 @@ def kinds_of(draw: Callable[[int, Array], Array]) -> list[str]:
 
 def kinds(problem: Problem, solution: Solution) -> list[str]:
     """Kinds of findings that concern the noise variance."""
-    found = [w(problem, solution, DEFAULT) for w in (force_weights, run_weights)]
-    return [f[1].kind for f in found if f is not None]
+    proposals = [w(problem, solution, DEFAULT) for w in (force_weights, run_weights)]
+    return [f[1].kind for f in proposals if f is not None]
 
 
 @pytest.mark.parametrize(
@@ -200,8 +200,8 @@ def _weights_of(residuals: list[Array], heavy: float = 6.0) -> tuple[list[Array]
     ]
     _, solution = fit_from_truth(Campaign.prepare(Rig(), runs))
     solution = replace(solution, residuals=residuals, noise=WHITE)
-    found = robust_weights(solution, DEFAULT.with_values({"noise.min_tail_ratio": heavy}))
-    return ([], []) if found is None else (list(found[0]), [found[1].size])
+    proposal = robust_weights(solution, DEFAULT.with_values({"noise.min_tail_ratio": heavy}))
+    return ([], []) if proposal is None else (list(proposal[0]), [proposal[1].size])
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])

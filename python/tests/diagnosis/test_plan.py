@@ -53,14 +53,14 @@ def worth(information: Array, laws: int, prices: Array) -> float:
     """
     size = np.sqrt(np.maximum(np.diag(information), 1e-300))
     scaled = information / np.outer(size, size)
-    law, mixed, own = scaled[:laws, :laws], scaled[laws:, :laws], scaled[laws:, laws:]
-    left = (own - mixed @ np.linalg.pinv(law, rcond=1e-9) @ mixed.T) * np.outer(
+    law, mixed, effects = scaled[:laws, :laws], scaled[laws:, :laws], scaled[laws:, laws:]
+    reduced = (effects - mixed @ np.linalg.pinv(law, rcond=1e-9) @ mixed.T) * np.outer(
         size[laws:], size[laws:]
     )
     # An effect that the law explains up to rounding errors has no information and is not a rival.
-    seen = np.diag(left) > 1e-9 * size[laws:] ** 2
-    variance = np.where(seen, np.diag(left), 0.0)
-    correlation = np.where(seen, left, 0.0) ** 2 / np.outer(
+    seen = np.diag(reduced) > 1e-9 * size[laws:] ** 2
+    variance = np.where(seen, np.diag(reduced), 0.0)
+    correlation = np.where(seen, reduced, 0.0) ** 2 / np.outer(
         np.where(seen, variance, 1.0), np.where(seen, variance, 1.0)
     )
     np.fill_diagonal(correlation, 0.0)

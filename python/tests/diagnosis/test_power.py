@@ -30,8 +30,10 @@ NOISE_N = 0.1
 
 def runs(friction: Friction = coulomb, seed: int = 0) -> list[Run]:
     return [
-        one_way(f"{k}", friction, way=way, rate=rate, noise_rms=NOISE_N, seed=4 * seed + k)
-        for k, (way, rate) in enumerate([(1.0, 0.7), (-1.0, 1.3), (1.0, 2.1), (-1.0, 4.0)])
+        one_way(
+            f"{k}", friction, direction=direction, rate=rate, noise_rms=NOISE_N, seed=4 * seed + k
+        )
+        for k, (direction, rate) in enumerate([(1.0, 0.7), (-1.0, 1.3), (1.0, 2.1), (-1.0, 4.0)])
     ]
 
 

@@ -51,8 +51,8 @@ def recurring_in(
     return find_replicates(given.prepared, solution, DEFAULT.with_values(policy))
 
 
-def runs_named(found: Remainder) -> list[str]:
-    return found.where.rsplit(" in ", 1)[1].split(", ")
+def runs_named(remainder: Remainder) -> list[str]:
+    return remainder.where.rsplit(" in ", 1)[1].split(", ")
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])

@@ -62,9 +62,9 @@ def ripples_in(campaign: Campaign, signals: list[Array], share: float = 1e-6) ->
     return find_ripples(campaign, campaign.samples, signals, signals, policy)
 
 
-def pitch_and_size(found: Remainder) -> tuple[float, float]:
+def pitch_and_size(remainder: Remainder) -> tuple[float, float]:
     """Pitch (m) and amplitude (N) stated in a description."""
-    pitch_m, size_n = numbers_in(r"period ([\d.e+-]+) m.*?, ([\d.e+-]+) N;", found.where)
+    pitch_m, size_n = numbers_in(r"period ([\d.e+-]+) m.*?, ([\d.e+-]+) N;", remainder.where)
     return pitch_m, size_n
 
 

@@ -34,13 +34,13 @@ def fitted(extra: Extra, *, runs: int = 6) -> tuple[Problem, Solution]:
 def clearest(problem: Problem, solution: Solution) -> Any:
     """Accepted random effect, or None."""
     model = model_of(problem, solution)
-    found = random_effect(model)
-    return found if is_accepted(found, model) else None
+    proposal = random_effect(model)
+    return proposal if is_accepted(proposal, model) else None
 
 
-def finding(found: Proposal) -> Finding:
+def finding(proposal: Proposal) -> Finding:
     """Finding of the random effect."""
-    return found.campaign.more_findings[-1]
+    return proposal.campaign.more_findings[-1]
 
 
 def deviates(sd: float) -> Array:

@@ -60,10 +60,12 @@ def anova(campaign: Campaign, residuals: list[Array]) -> tuple[float, float, int
         halves = [np.array_split(at, 2) for at in rows if len(at) >= 16]
         weight = np.array([[f[h] @ f[h] for h in pair] for pair in halves])
         level = np.array([[f[h] @ r[h] / (f[h] @ f[h]) for h in pair] for pair in halves])
-        whole = np.average(level, axis=1, weights=weight)
-        between += float(np.cov(whole, aweights=weight.sum(1), ddof=0) * weight.sum())
-        own = 1.0 / (1.0 / weight[:, 0] + 1.0 / weight[:, 1])
-        within += float(np.cov(level[:, 1] - level[:, 0], aweights=own, ddof=0) * own.sum())
+        stroke_mean = np.average(level, axis=1, weights=weight)
+        between += float(np.cov(stroke_mean, aweights=weight.sum(1), ddof=0) * weight.sum())
+        precision = 1.0 / (1.0 / weight[:, 0] + 1.0 / weight[:, 1])
+        within += float(
+            np.cov(level[:, 1] - level[:, 0], aweights=precision, ddof=0) * precision.sum()
+        )
         degrees += len(halves) - 1
     square = sum(float(r[c] @ r[c]) for r, c in zip(residuals, counted, strict=True))
     return between / within, (between - within) / square, degrees

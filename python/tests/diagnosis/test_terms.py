@@ -43,9 +43,9 @@ def residuals(fitted: Model) -> list[Array]:
     return [r[c] for r, c in zip(solution.residuals, solution.samples.counted, strict=True)]
 
 
-def proposed(found: Proposal | None) -> Proposal:
-    assert found is not None
-    return found
+def proposed(proposal: Proposal | None) -> Proposal:
+    assert proposal is not None
+    return proposal
 
 
 def test_threshold_of_a_term_shares_the_error_probability_among_ten_kinds() -> None:

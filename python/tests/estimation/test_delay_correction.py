@@ -51,8 +51,8 @@ def corrected(
         A fit with more effects, which delays would replace.
     """
     model = model_of(problem, solution, reference=before, price_of_effect=PRICE_OF_EFFECT)
-    found = delays(model)
-    return found.campaign if found is not None and is_accepted(found, model) else None
+    proposal = delays(model)
+    return proposal.campaign if proposal is not None and is_accepted(proposal, model) else None
 
 
 def unshifted(problem: Problem, solution: Solution) -> shifts.Shifted:

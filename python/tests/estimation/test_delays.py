@@ -123,8 +123,8 @@ def regression(
         right.append((residual * weight[:, 0])[keep])
     x, y = np.concatenate(rows), np.concatenate(right)
     coefficients = np.linalg.lstsq(x, y, rcond=None)[0]
-    left = y - x @ coefficients
-    covariance = float(left @ left) / len(y) * np.linalg.inv(x.T @ x)
+    misfit = y - x @ coefficients
+    covariance = float(misfit @ misfit) / len(y) * np.linalg.inv(x.T @ x)
     return coefficients[2:], covariance[2:, 2:]
 
 

@@ -42,13 +42,13 @@ def simulated(effect: str) -> tuple[Rig, list[Run], dict[str, Any]]:
 
 def truth_of(effect: str, truth: dict[str, Any]) -> dict[str, float]:
     """True parameters by their names in jbf, which are those of the simulator with a unit."""
-    found = {name: truth["base"][short] for name, short in LAW_NAMES.items()}
-    own = truth["effects"][effect]
+    true_values = {name: truth["base"][short] for name, short in LAW_NAMES.items()}
+    of_effect = truth["effects"][effect]
     for page in CATALOGUE[effect].parameters:
         if not page.stated:
-            (short,) = (k for k in own if page.name == k or page.name.startswith(f"{k}_"))
-            found[f"{effect}.{page.name}"] = own[short]
-    return found
+            (short,) = (k for k in of_effect if page.name == k or page.name.startswith(f"{k}_"))
+            true_values[f"{effect}.{page.name}"] = of_effect[short]
+    return true_values
 
 
 def error_of(p: ParameterValue) -> float:

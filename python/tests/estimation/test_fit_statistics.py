@@ -103,7 +103,10 @@ def test_bounds_that_contain_the_estimate_do_not_change_it(runs: list[Run], fitt
 
 
 def test_bounds_of_an_effect_apply_where_its_null_lies_outside() -> None:
-    runs = [one_way("a", coulomb, noise_rms=0.1), one_way("b", coulomb, way=-1.0, noise_rms=0.1)]
+    runs = [
+        one_way("a", coulomb, noise_rms=0.1),
+        one_way("b", coulomb, direction=-1.0, noise_rms=0.1),
+    ]
     bounds = {"sensor_offset.b": (0.5, 2.0)}
     found = fit(Rig(), runs, ["sensor_offset"], law="coulomb", bounds=bounds)
     assert found.params["sensor_offset.b"] == pytest.approx(0.5)

@@ -36,8 +36,8 @@ TRUE = {"F_c": COULOMB, "F_v": VISCOUS, "inertia.m_e": INERTIA}
 
 def errors_of(runs: list[Run]) -> dict[str, float]:
     """Errors of the fitted parameters, in standard errors."""
-    found = fit(Rig(), runs, ["inertia"], law="coulomb")
-    parameters = {name: found.parameters[name] for name in TRUE}
+    fitted = fit(Rig(), runs, ["inertia"], law="coulomb")
+    parameters = {name: fitted.parameters[name] for name in TRUE}
     return {n: (p.value - TRUE[n]) / (p.stderr or np.nan) for n, p in parameters.items()}
 
 
@@ -74,8 +74,8 @@ def drawn_residual(
     for k in range(n - 1, -1, -1):
         if k < n - 1:
             gain = errors.gain[k]
-            left = errors.covariance[k] - gain @ errors.covariance[k + 1] @ gain.T
-            state = gain @ state + random.multivariate_normal(np.zeros(3), left, method="svd")
+            covariance = errors.covariance[k] - gain @ errors.covariance[k + 1] @ gain.T
+            state = gain @ state + random.multivariate_normal(np.zeros(3), covariance, method="svd")
         residual[k] = scale * (sensitivity[k] @ state) + random.normal(0.0, NOISE)
     return residual
 

@@ -284,10 +284,10 @@ def fitted(design: Sequence[Array], force: Sequence[Array]) -> tuple[Solution, l
     return solution, parts
 
 
-def confirmation(law: list[Array], own: list[Array], force: list[Array]) -> Confirmation:
-    """Add an effect with the derivatives `own` to a law."""
+def confirmation(law: list[Array], effect_columns: list[Array], force: list[Array]) -> Confirmation:
+    """Add an effect with the derivatives `effect_columns` to a law."""
     simpler, held_out = fitted(law, force)
-    both = [np.column_stack(columns) for columns in zip(law, own, strict=True)]
+    both = [np.column_stack(columns) for columns in zip(law, effect_columns, strict=True)]
     richer, richer_held_out = fitted(both, force)
     return Confirmation.of(simpler, richer, held_out, richer_held_out)
 
@@ -297,17 +297,17 @@ def linear(seed: int, times: int) -> list[Linear]:
     random = np.random.default_rng(seed)
     made = []
     for _ in range(times):
-        own = [random.standard_normal(COUNT) for _ in range(RUNS)]
+        effect_columns = [random.standard_normal(COUNT) for _ in range(RUNS)]
         law = [random.standard_normal((COUNT, 2)) for _ in range(RUNS)]
         for i in range(RUNS):
             law[i][:, 1] *= 1.0 if i == 0 else 0.02
-            law[i][:, 1] += 0.004 * own[i] if i else 0.0
-        made.append((law, own, [random.standard_normal(COUNT) for _ in range(RUNS)]))
+            law[i][:, 1] += 0.004 * effect_columns[i] if i else 0.0
+        made.append((law, effect_columns, [random.standard_normal(COUNT) for _ in range(RUNS)]))
     return made
 
 
-def effect(size: float, own: Sequence[Array], noise: Sequence[Array]) -> list[Array]:
-    return [e + size * o for e, o in zip(noise, own, strict=True)]
+def effect(size: float, column: Sequence[Array], noise: Sequence[Array]) -> list[Array]:
+    return [e + size * o for e, o in zip(noise, column, strict=True)]
 
 
 def test_effect_is_confirmed_even_if_one_run_is_needed_to_determine_the_law() -> None:

@@ -45,14 +45,18 @@ def gaussian(solution: Solution, part: HeldOutPart) -> float:
     slopes = zip(solution.jacobian, weight, strict=True)
     j = [(slope * w[:, None])[:, part.identified] for slope, w in slopes]
     every = np.concatenate(j) / np.linalg.norm(np.concatenate(j), axis=0)
-    own = (j[run] / np.linalg.norm(np.concatenate(j), axis=0))[mask]
+    held_out_rows = (j[run] / np.linalg.norm(np.concatenate(j), axis=0))[mask]
     information = (
-        every.T @ every - own.T @ own + SETTINGS.held_out.min_information * np.eye(own.shape[1])
+        every.T @ every
+        - held_out_rows.T @ held_out_rows
+        + SETTINGS.held_out.min_information * np.eye(held_out_rows.shape[1])
     )
-    covariance = VARIANCE * (np.eye(len(own)) + own @ np.linalg.solve(information, own.T))
+    covariance = VARIANCE * (
+        np.eye(len(held_out_rows)) + held_out_rows @ np.linalg.solve(information, held_out_rows.T)
+    )
     errors = (part.residuals[0] * weight[run])[mask]
     density = stats.multivariate_normal(cov=covariance).logpdf(errors)
-    return float(-2.0 * density - len(own) * np.log(2.0 * np.pi * VARIANCE))
+    return float(-2.0 * density - len(held_out_rows) * np.log(2.0 * np.pi * VARIANCE))
 
 
 @pytest.mark.parametrize(

@@ -30,17 +30,17 @@ RUNS = there_and_back(coulomb, noise_rms=0.1)
 """Two runs at 0.05 to 0.15 m/s without rests or reversals."""
 
 
-def notes_of(found: Fit) -> dict[str, str]:
+def notes_of(fitted: Fit) -> dict[str, str]:
     """Notes of the held parameters, after a check that the fit is consistent with them."""
-    notes = {n: str(p.note) for n, p in found.parameters.items() if p.held}
-    for name, p in found.parameters.items():
+    notes = {n: str(p.note) for n, p in fitted.parameters.items() if p.held}
+    for name, p in fitted.parameters.items():
         assert (p.stderr is None) is (name in notes)
-        assert found.model.parameters[name] == p
-    free = len(found.parameters) - len(notes)
-    assert found.correlations.shape == (free, free)
-    np.testing.assert_allclose(np.diag(found.correlations), 1.0)
-    for run, residual in zip(RUNS, found.residuals, strict=True):
-        np.testing.assert_allclose(run.friction - found.model.predict(run), residual, atol=1e-9)
+        assert fitted.model.parameters[name] == p
+    free = len(fitted.parameters) - len(notes)
+    assert fitted.correlations.shape == (free, free)
+    np.testing.assert_allclose(np.diag(fitted.correlations), 1.0)
+    for run, residual in zip(RUNS, fitted.residuals, strict=True):
+        np.testing.assert_allclose(run.friction - fitted.model.predict(run), residual, atol=1e-9)
     return notes
 
 
@@ -143,10 +143,10 @@ def moved_back(
     problem = Problem(Campaign.prepare(Rig(), RUNS), law, "journal", ())
     here = np.array([5.0, p, q])
     solution = problem.solution(here, problem.campaign.samples, WHITE)
-    found = reset_unidentified(problem, solution, standard_errors(problem, solution), start or {})
-    for a, b in zip(found.residuals, problem.residuals(found.values), strict=True):
+    solved = reset_unidentified(problem, solution, standard_errors(problem, solution), start or {})
+    for a, b in zip(solved.residuals, problem.residuals(solved.values), strict=True):
         np.testing.assert_allclose(a, b, atol=1e-12)
-    return float(found.values[1]), float(found.values[2]), found.notes
+    return float(solved.values[1]), float(solved.values[2]), solved.notes
 
 
 @pytest.mark.parametrize(

@@ -212,10 +212,10 @@ def reading_with_play(force_n: Array, start_n: float) -> Array:
     return reading
 
 
-def play_run(name: str, rate: float, way: float, branch: float, seed: int) -> Run:
+def play_run(name: str, rate: float, direction: float, branch: float, seed: int) -> Run:
     """A force that is constant for eight seconds and then, with a rate, rises and falls."""
     t = np.arange(0.0, 60.0, 0.02)
-    v = way * (0.08 - 0.06 * np.cos(rate * np.maximum(t - 8.0, 0.0)))
+    v = direction * (0.08 - 0.06 * np.cos(rate * np.maximum(t - 8.0, 0.0)))
     path = np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t))])
     force = DRY_N * np.sign(v) + VISCOUS_N_S_M * v
     reading = reading_with_play(force, float(force[0]) - branch * HALF_WIDTH_N)
@@ -225,7 +225,10 @@ def play_run(name: str, rate: float, way: float, branch: float, seed: int) -> Ru
 
 def play_runs(branch: float) -> list[Run]:
     plan = enumerate(((0.4, 1.0), (0.5, -1.0), (0.45, 1.0), (0.55, -1.0)))
-    return [play_run(f"run {k}", rate, way, branch * way, k) for k, (rate, way) in plan]
+    return [
+        play_run(f"run {k}", rate, direction, branch * direction, k)
+        for k, (rate, direction) in plan
+    ]
 
 
 def play_problem(runs: list[Run]) -> tuple[Problem, Array]:
@@ -288,10 +291,10 @@ def step_of_speed(at_s: float, up: bool) -> Array:
 
 def with_gap(first_s: float, last_s: float, at_s: float = 8.0, up: bool = True) -> Run:
     """Friction of the bearing without the rows between two instants."""
-    whole = Run.from_arrays(TIME, step_of_speed(at_s, up), np.ones(len(TIME)), name="gap")
-    problem, values = journal_problem(whole)
-    whole = replace(whole, friction=problem.predict(values)[0])
-    return whole.select((first_s > TIME) | (last_s < TIME))
+    complete = Run.from_arrays(TIME, step_of_speed(at_s, up), np.ones(len(TIME)), name="gap")
+    problem, values = journal_problem(complete)
+    complete = replace(complete, friction=problem.predict(values)[0])
+    return complete.select((first_s > TIME) | (last_s < TIME))
 
 
 @pytest.mark.parametrize(

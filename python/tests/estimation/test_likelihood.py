@@ -143,10 +143,10 @@ def test_least_squares_solution_has_minimum_norm_in_columns_of_unit_length() -> 
 def bartlett_share(runs: list[Array], step_s: float) -> float:
     """`1 / (1 + 2 sum rho_k)` (Bartlett 1946) to 2/sqrt(n) or the longest memory of the model."""
     centred = [e - np.mean(np.concatenate(runs)) for e in runs]
-    count, whole = sum(map(len, runs)), sum(float(e @ e) for e in centred)
+    count, power = sum(map(len, runs)), sum(float(e @ e) for e in centred)
     total = 0.0
     for k in range(1, int(0.6 / step_s) + 2):
-        rho = sum(float(e[k:] @ e[:-k]) for e in centred) / whole
+        rho = sum(float(e[k:] @ e[:-k]) for e in centred) / power
         if rho < 2.0 / np.sqrt(count):
             break
         total += rho

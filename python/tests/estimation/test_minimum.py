@@ -43,13 +43,13 @@ def regression(
         rows.append(np.stack([np.sign(v), v], axis=1))
         forces.append(p.friction[c])
     j, y = np.concatenate(rows), np.concatenate(forces)
-    left, right = j, y
+    design, response = j, y
     if noise is not None:
-        left = np.concatenate([noise.innovations(x, STEP_S) for x in rows])
-        right = np.concatenate([noise.innovations(x, STEP_S) for x in forces])
+        design = np.concatenate([noise.innovations(x, STEP_S) for x in rows])
+        response = np.concatenate([noise.innovations(x, STEP_S) for x in forces])
     if weights is not None:
-        left, right = left * weights[:, None], right * weights
-    values, *_ = np.linalg.lstsq(left, right, rcond=None)
+        design, response = design * weights[:, None], response * weights
+    values, *_ = np.linalg.lstsq(design, response, rcond=None)
     return values, y - j @ values
 
 

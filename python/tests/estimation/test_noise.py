@@ -156,7 +156,7 @@ def test_periodic_model_error_is_not_taken_for_coloured_noise() -> None:
     options: dict[str, Any] = {"rate": 2.0 * np.pi, "noise_rms": 0.1}
     runs = [
         one_way("forth", mass(1.5), seed=1, **options),
-        one_way("back", mass(1.5), way=-1.0, seed=2, **options),
+        one_way("back", mass(1.5), direction=-1.0, seed=2, **options),
     ]
     fitted = fit(Rig(), runs, law="coulomb")
     assert fitted.rms > 0.2

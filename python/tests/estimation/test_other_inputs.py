@@ -39,8 +39,8 @@ def swings(folder: Path, starts_rad: list[float], seed: int) -> list[Path]:
     time = np.arange(0.0, 4.0, 0.002)
     files = []
     for number, start in enumerate(starts_rad):
-        found = solve_ivp(slopes, (0.0, 4.0), [start, 0.0], "LSODA", time, rtol=1e-8, atol=1e-9)
-        angle = np.degrees(found.y[0] + 2e-4 * rng.standard_normal(len(time)))
+        solution = solve_ivp(slopes, (0.0, 4.0), [start, 0.0], "LSODA", time, rtol=1e-8, atol=1e-9)
+        angle = np.degrees(solution.y[0] + 2e-4 * rng.standard_normal(len(time)))
         name = folder / f"swing{number}.csv"
         files.append(written(name, "time [s],angle [deg]", time, angle))
     return files
@@ -98,8 +98,8 @@ def motor(rng: np.random.Generator) -> np.ndarray:
             push = voltage[i - 1] - k_v * v
             if v == 0.0 and abs(push) <= k_s:
                 continue
-            way = np.sign(v) if v != 0.0 else np.sign(push)
-            after = v + (push - k_s * way) / k_a * step / parts
+            direction = np.sign(v) if v != 0.0 else np.sign(push)
+            after = v + (push - k_s * direction) / k_a * step / parts
             v = 0.0 if v * after < 0.0 else after
             x += v * step / parts
         speed[i], angle[i] = v, x

@@ -53,12 +53,14 @@ def axis_runs(
 def shuttle(waves: Waves, *, path_m: float = 0.2, periods: int = 10) -> Campaign:
     """A run back and forth at 0.05 m/s, 0.5 mm for each sample."""
     count = round(path_m / 0.05 / STEP_S)
-    way = np.tile(np.repeat([1.0, -1.0], count), periods)
-    t = STEP_S * np.arange(len(way))
-    x = np.concatenate(([0.0], np.cumsum(0.05 * STEP_S * way[:-1])))
+    direction = np.tile(np.repeat([1.0, -1.0], count), periods)
+    t = STEP_S * np.arange(len(direction))
+    x = np.concatenate(([0.0], np.cumsum(0.05 * STEP_S * direction[:-1])))
     noise = 0.01 * np.random.default_rng(1).standard_normal(len(t))
-    force = 5.0 * way + waves_of(x, waves) + noise
-    return Campaign.prepare(Rig(), [Run.from_arrays(t, 0.05 * way, force, position_m=x, name="s")])
+    force = 5.0 * direction + waves_of(x, waves) + noise
+    return Campaign.prepare(
+        Rig(), [Run.from_arrays(t, 0.05 * direction, force, position_m=x, name="s")]
+    )
 
 
 @pytest.mark.parametrize(
@@ -180,7 +182,7 @@ STROKE = "stroke_dependence"
 
 def slide(dry: Callable[[Array], Array], count: int = 4) -> list[Run]:
     """Runs over 0.4 m with a dry friction that is a function of the position (m)."""
-    found = []
+    runs = []
     for i in range(count):
         random = np.random.default_rng([4130, i])
         t = np.arange(0.0, 30.0, STEP_S)
@@ -188,8 +190,8 @@ def slide(dry: Callable[[Array], Array], count: int = 4) -> list[Run]:
         x = 0.2 + 0.16 * np.sin(rate * t) + 0.04 * np.sin(3.1 * rate * t + i)
         v = 0.16 * rate * np.cos(rate * t) + 0.124 * rate * np.cos(3.1 * rate * t + i)
         force = np.sign(v) * dry(x) + 30.0 * v + SLIDE_NOISE_N * random.standard_normal(len(t))
-        found.append(Run.from_arrays(t, v, force, position_m=x, name=f"{i}"))
-    return found
+        runs.append(Run.from_arrays(t, v, force, position_m=x, name=f"{i}"))
+    return runs
 
 
 def test_fitted_stroke_dependence_predicts_the_friction_level_over_the_position() -> None:

@@ -39,8 +39,8 @@ def errors_and_correlations(x: Array, residual: Array) -> tuple[Array, Array]:
 
 def regression(runs: list[Run]) -> tuple[Array, Array, Array]:
     rows = []
-    for run, rate, way in zip(runs, (2.0, 3.0), (1.0, -1.0), strict=True):
-        a = way * 0.05 * rate * np.cos(rate * run.time_s)
+    for run, rate, direction in zip(runs, (2.0, 3.0), (1.0, -1.0), strict=True):
+        a = direction * 0.05 * rate * np.cos(rate * run.time_s)
         rows.append(np.stack([f(run.time_s, run.velocity, a) for f in TERMS.values()], 1))
     x = np.concatenate(rows)
     y = np.concatenate([run.friction for run in runs if run.friction is not None])

@@ -42,9 +42,9 @@ def write_v73(path: Path, content: dict[str, Any]) -> None:
                 for field in value[0]:
                     cells = []
                     for item in value:
-                        own = f"{len(refs)}"
-                        put(refs, own, item[field])
-                        cells.append(refs[own].ref)
+                        reference = f"{len(refs)}"
+                        put(refs, reference, item[field])
+                        cells.append(refs[reference].ref)
                     group.create_dataset(field, data=np.array(cells, dtype=h5py.ref_dtype)[:, None])
             elif isinstance(value, str):
                 parent[name] = np.array([[ord(letter)] for letter in value], dtype=np.uint16)

@@ -110,11 +110,11 @@ def alignments(result: jbf.Import) -> dict[str, dict[str, float]]:
     return {further["file"]: further["alignment"] for further in page["beside"]}
 
 
-def check_force(found: dict[str, float], drift_ppm: float = FORCE_PPM) -> None:
+def check_force(alignment: dict[str, float], drift_ppm: float = FORCE_PPM) -> None:
     """Check the offset of force.csv at mid-record to 0.2 samples and its drift to 5 ppm."""
-    wanted = FORCE_S + 1e-6 * drift_ppm * found["pivot_s"]
-    assert found["offset_s"] == pytest.approx(wanted, abs=0.2 / 200)
-    assert found["drift_ppm"] == pytest.approx(drift_ppm, abs=5.0)
+    wanted = FORCE_S + 1e-6 * drift_ppm * alignment["pivot_s"]
+    assert alignment["offset_s"] == pytest.approx(wanted, abs=0.2 / 200)
+    assert alignment["drift_ppm"] == pytest.approx(drift_ppm, abs=5.0)
 
 
 def refusal(fragment: str) -> str:

@@ -65,13 +65,13 @@ def write(
 
 def channels(source: Source) -> dict[str, tuple[Values, Values, str, str]]:
     """Times, values, unit of the times and unit of the values of each channel."""
-    found = {}
+    by_name = {}
     for table in source.tables:
         head = source.head(table)
         clock, *others = table.columns
         for column in others:
-            found[column.name] = (head[clock.name], head[column.name], clock.unit, column.unit)
-    return found
+            by_name[column.name] = (head[clock.name], head[column.name], clock.unit, column.unit)
+    return by_name
 
 
 @pytest.mark.parametrize("timelines", ["all", "sampletime"])

@@ -28,8 +28,8 @@ def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Itera
 
 def section(text: str, title: str) -> str:
     """Text of a section of a docstring; empty if it has none."""
-    found = re.search(rf"(?ms)^{title}\n-+\n(.*?)(?=^\w[\w ]*\n-{{3,}}$|\Z)", text)
-    return found[1] if found else ""
+    match = re.search(rf"(?ms)^{title}\n-+\n(.*?)(?=^\w[\w ]*\n-{{3,}}$|\Z)", text)
+    return match[1] if match else ""
 
 
 @pytest.mark.parametrize("name", NAMES)

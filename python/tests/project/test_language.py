@@ -124,8 +124,8 @@ def expressions(text: str) -> Iterator[tuple[str, str]]:
     """Each listed expression in a text, with the terms that replace it."""
     text = " ".join(re.sub(r"`[^`]*`|\$[^$]*\$", "X", text).split())
     for pattern, instead in INSTEAD.items():
-        for found in re.finditer(pattern, text):
-            yield found[0].strip(" .;:"), instead
+        for match in re.finditer(pattern, text):
+            yield match[0].strip(" .;:"), instead
 
 
 def test_expressions_are_found_in_docstrings_comments_and_text_but_not_in_code() -> None:

@@ -102,8 +102,8 @@ def triangle_and_stops(name: str, time_s: Any) -> tuple[Array, Array]:
     phase = np.mod(fine_s, 8.0)
     v = 0.1 * (1.0 - 2.0 * np.abs(phase / 4.0 - 1.0))
     if name == "stops":
-        way = np.where(np.mod(fine_s, 16.0) < 8.0, 1.0, -1.0)
-        v = 0.08 * way * np.clip(np.minimum(phase - 1.003, 6.007 - phase), 0.0, 1.0)
+        direction = np.where(np.mod(fine_s, 16.0) < 8.0, 1.0, -1.0)
+        v = 0.08 * direction * np.clip(np.minimum(phase - 1.003, 6.007 - phase), 0.0, 1.0)
     return np.interp(time_s, fine_s, v), np.interp(time_s, fine_s, integrated(v, 1e-3))
 
 

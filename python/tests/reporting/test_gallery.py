@@ -35,8 +35,8 @@ def diagnosis_of(offset_n: float, drift_n_s: float, found_offset_n: float) -> Di
     values = {"sensor_offset.b": found_offset_n, "sensor_drift.d": drift_n_s}
     before = compare(Model(Rig(), "coulomb", (), fixed), runs)
     final = Model(Rig(), "coulomb", ["sensor_offset", "sensor_drift"], {**fixed, **values})
-    found, failures = diagnosis_by_hand("missing"), before.failures
-    return replace(found, before=before, after=compare(final, runs), failures=failures)
+    diagnosis, failures = diagnosis_by_hand("missing"), before.failures
+    return replace(diagnosis, before=before, after=compare(final, runs), failures=failures)
 
 
 def test_shares_of_effects_are_projections_of_their_force_on_the_pattern() -> None:

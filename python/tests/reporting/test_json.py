@@ -42,10 +42,10 @@ def closed(schema: Any) -> Any:
         return [closed(item) for item in schema]
     if not isinstance(schema, Mapping):
         return schema
-    found = {key: closed(value) for key, value in schema.items()}
-    if found.get("type") == "object" and isinstance(found.get("properties"), dict):
-        found.setdefault("additionalProperties", False)
-    return found
+    copy = {key: closed(value) for key, value in schema.items()}
+    if copy.get("type") == "object" and isinstance(copy.get("properties"), dict):
+        copy.setdefault("additionalProperties", False)
+    return copy
 
 
 def violations(kind: str, content: Any, schema: Any = None) -> list[str]:

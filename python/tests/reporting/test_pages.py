@@ -61,24 +61,27 @@ class Page(HTMLParser):
 
     def below(self, *head: str) -> Table:
         """Rows of the table with these column headings."""
-        (found,) = [table for table in self.tables if table[0] == list(head)]
-        return found[1:]
+        (matching,) = [table for table in self.tables if table[0] == list(head)]
+        return matching[1:]
 
 
 def diagnosis_of(verdict: str) -> jbf.Diagnosis:
     """A diagnosis of each verdict: `missing` with power, `unexplained` of a rotary drive."""
-    found = diagnosis_by_hand(verdict)
+    diagnosis = diagnosis_by_hand(verdict)
     if verdict == "missing":
         power = (Power("backlash", "gap", "rad", 0.1, 0.13, False, 0.02, 0.1, ()),)
-        second = replace(found.steps[1], trials=TRIALS[2:])
+        second = replace(diagnosis.steps[1], trials=TRIALS[2:])
         return replace(
-            found, power=power, steps=(found.steps[0], second), not_detectable=("running_in",)
+            diagnosis,
+            power=power,
+            steps=(diagnosis.steps[0], second),
+            not_detectable=("running_in",),
         )
     if verdict == "unexplained":
         joint = jbf.Rig(drive=jbf.Drive("rotary", "current", torque_constant_n_m_a=0.5))
-        model = replace(found.fit.model, rig=joint)
-        return replace(found, fit=replace(found.fit, model=model))
-    return found
+        model = replace(diagnosis.fit.model, rig=joint)
+        return replace(diagnosis, fit=replace(diagnosis.fit, model=model))
+    return diagnosis
 
 
 @shared  # drawing is slow

@@ -28,8 +28,8 @@ POWER = Power("backlash", "gap", "rad", 0.1, 0.13, False, 0.02, 0.1, ())
 
 
 def line(ax: Axes, label: str) -> tuple[np.ndarray, np.ndarray]:
-    (found,) = [one for one in ax.lines if one.get_label() == label]
-    return np.asarray(found.get_xdata(), dtype=float), np.asarray(found.get_ydata(), dtype=float)
+    (artist,) = [one for one in ax.lines if one.get_label() == label]
+    return np.asarray(artist.get_xdata(), dtype=float), np.asarray(artist.get_ydata(), dtype=float)
 
 
 def title(ax: Axes) -> str:
@@ -208,7 +208,7 @@ def test_plotted_run_is_selected_by_name_index_or_largest_rms(comparison: Compar
 
 def test_default_run_of_a_plot_is_that_with_the_largest_difference_between_two_models() -> None:
     """5 N + 20 N s/m and 1 N + 40 N s/m agree at 0.2 m/s and differ by 2 N at 0.1 m/s."""
-    runs = [one_way("slow", coulomb), one_way("fast", coulomb, way=2.0)]
+    runs = [one_way("slow", coulomb), one_way("fast", coulomb, direction=2.0)]
     first, second = (
         compare(Model(Rig(), "coulomb", parameters=values), runs)
         for values in (LAW, {"F_c": 1.0, "F_s": 1.0, "F_v": 40.0})

@@ -46,11 +46,13 @@ def run(options: WorkbenchOptions) -> int:
     from jbf.workbench.serve import serve
 
     def opened(address: str) -> None:
-        shown = not options.no_browser and _has_a_screen()
-        where = "The page opens in your browser" if shown else "Open this address in a browser"
+        opens_browser = not options.no_browser and _has_a_screen()
+        where = (
+            "The page opens in your browser" if opens_browser else "Open this address in a browser"
+        )
         outputs.say(f"{address}\n{where}. Ctrl-C stops the program.", {})
         outputs.flush()
-        if shown:
+        if opens_browser:
             webbrowser.open(address)
 
     serve(options.folder, options.port, opened, demo=options.demo)

@@ -173,12 +173,14 @@ def robustness(
         given = Observed(carried, tune(carried, bench)) if scheme is None else scheme
         ratios = {}
         for row, task in tasks.items():
-            short = replace(task, seconds=_SECONDS + task.skip_s)
+            short_task = replace(task, seconds=_SECONDS + task.skip_s)
             load = None
             if case.plant.rig.load is not None:
                 load = case.plant.rig.load.normal_n * case.load_factor
             errors = [
-                run(case.plant, s, short, bench=case.bench, assumed=bench, load_n=load).true_rms
+                run(
+                    case.plant, s, short_task, bench=case.bench, assumed=bench, load_n=load
+                ).true_rms
                 for s in (NoCompensation(), given)
             ]
             ratios[row] = errors[1] / errors[0]

@@ -163,10 +163,10 @@ class Header:
 def split_unit(text: str) -> tuple[str, str]:
     """Split a header into its name and the stated unit, which may be empty."""
     # Names that occur twice in a file are numbered.
-    shown = re.sub(r" #\d+$", "", " ".join(text.split()))
-    loose: list[tuple[str, str]] = []
+    heading = re.sub(r" #\d+$", "", " ".join(text.split()))
+    candidates: list[tuple[str, str]] = []
     for number, pattern in enumerate(_STATED):
-        match = pattern.match(shown)
+        match = pattern.match(heading)
         if match is None:
             continue
         name, unit = match["name"].strip(), match["unit"].strip()
@@ -177,11 +177,11 @@ def split_unit(text: str) -> tuple[str, str]:
         # Square brackets contain a unit, known or not; the other forms may also be words.
         if number < _IN_BRACKETS:
             return name, unit
-        loose.append((name, unit))
-    if loose:
-        return max(loose, key=lambda stem_and_unit: len(stem_and_unit[1]))
-    stem_and_unit = unit_of_name(shown)
-    return (shown, "") if stem_and_unit is None else (shown, stem_and_unit[1].text)
+        candidates.append((name, unit))
+    if candidates:
+        return max(candidates, key=lambda stem_and_unit: len(stem_and_unit[1]))
+    stem_and_unit = unit_of_name(heading)
+    return (heading, "") if stem_and_unit is None else (heading, stem_and_unit[1].text)
 
 
 def parse_header(text: str, unit: str = "") -> Header:

@@ -285,8 +285,8 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
             "how many counts per revolution (or metre)? Write / 4096 [counts/rev] after the column"
         )
         return Candidate(key, column, header, False, why, question)
-    sure = why == "by name" or len(header.name) <= 2
-    return Candidate(key, column, header, sure, "by name and unit" if why == "by name" else why)
+    certain = why == "by name" or len(header.name) <= 2
+    return Candidate(key, column, header, certain, "by name and unit" if why == "by name" else why)
 
 
 def _fits(unit: str, key: str) -> bool:
@@ -332,15 +332,15 @@ def _is_unambiguous(rivals: list[Candidate], key: str) -> bool:
 
 def _choose(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
     """Return the column for `key`, the rejected columns and the open questions."""
-    sure = [c for c in rivals if c.sure]
+    certain = [c for c in rivals if c.sure]
     named = [c for c in rivals if c.why != "by unit"]
     if named and len(named) < len(rivals):
         # A candidate identified by its name takes precedence over those identified by unit only.
         entry, rest, open_questions = _choose(key, named)
         return entry, [*rest, *(c.called for c in rivals if c not in named)], open_questions
     exact = [c for c in rivals if c.column.name == key]
-    if exact or len(sure) == 1 or len(rivals) == 1:
-        best = (exact or sure or rivals)[0]
+    if exact or len(certain) == 1 or len(rivals) == 1:
+        best = (exact or certain or rivals)[0]
         questions = [] if best.question is None else [Question(best.column.name, best.question)]
         if not best.sure and best.question is None and key in (*FRICTION, *MOTION):
             question = f"is it {key}? Only its unit indicates this; write it into the map"

@@ -125,12 +125,12 @@ def time_by_motion(
         assumed = {key: _with_column_unit(entries[key]) for key in pair}
         for unit in ("s", "ms", "us", "min"):
             text = time.expression.replace(OPEN, unit)
-            tried = replace(
+            trial = replace(
                 time, expression=text, why=f"speed and position agree in {unit}", sure=True
             )
-            ratio = speed_ratio({**entries, **assumed, "time_s": tried}, pair, tables, heads)
+            ratio = speed_ratio({**entries, **assumed, "time_s": trial}, pair, tables, heads)
             if ratio is not None and 1.0 / OFF < ratio < OFF:
-                fitting[unit] = tried
+                fitting[unit] = trial
     return fitting.popitem()[1] if len(fitting) == 1 else None
 
 

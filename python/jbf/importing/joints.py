@@ -52,6 +52,6 @@ def with_units_of_joint_states(table: Table) -> Table:
     columns = []
     for column in table.columns:
         matching = [unit for word, unit in units.items() if word in words[column.name]]
-        bare = len(matching) == 1 and not parse_header(column.name).unit
-        columns.append(replace(column, unit=matching[0]) if bare else column)
+        is_unambiguous = len(matching) == 1 and not parse_header(column.name).unit
+        columns.append(replace(column, unit=matching[0]) if is_unambiguous else column)
     return replace(table, columns=tuple(columns))

@@ -16,7 +16,7 @@ def column_names(tables: Sequence[Table]) -> dict[str, str]:
     """
     occurrences = Counter(column.name for table in tables for column in table.columns)
     column_of_name: dict[str, str] = {}
-    bare: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     shorter: dict[str, str] = {}
     for table in tables:
         for column in table.columns:
@@ -26,11 +26,11 @@ def column_names(tables: Sequence[Table]) -> dict[str, str]:
                 table, column.name, occurrences
             )
             name = parse_header(column.name).name
-            for short in (name, *([f"{table.name}/{name}"] if table.name else [])):
-                bare[short] += 1
-                shorter[short] = qualified(table, column.name, occurrences)
+            for candidate in (name, *([f"{table.name}/{name}"] if table.name else [])):
+                counts[candidate] += 1
+                shorter[candidate] = qualified(table, column.name, occurrences)
     for name, column_name in shorter.items():
-        if bare[name] == 1:
+        if counts[name] == 1:
             column_of_name.setdefault(name, column_name)
     return column_of_name
 

@@ -333,7 +333,7 @@ def keep_common_span(recording: Recording) -> None:
         first, last = span(stream)
         spans.append((first - step, last + step))
     begin, end = max(first for first, _ in spans), min(last for _, last in spans)
-    late = recording.streams[[first for first, _ in spans].index(begin)]
+    last_to_start = recording.streams[[first for first, _ in spans].index(begin)]
     early = recording.streams[[last for _, last in spans].index(end)]
     if begin >= end:
         problem = (
@@ -341,7 +341,7 @@ def keep_common_span(recording: Recording) -> None:
             "times do not overlap"
         )
         mend = "correct the offset or the signal under [align], or omit a file"
-        raise InputError(file=late.source, problem=problem, mend=mend)
+        raise InputError(file=last_to_start.source, problem=problem, mend=mend)
     for stream in recording.streams:
         low, high = stream.rows_between(0, begin, end)
         skipped = stream.rows - (high - low)

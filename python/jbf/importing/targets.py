@@ -32,14 +32,16 @@ def wanted_unit(key: str) -> Unit:
         If the name resembles a known name, or does not end in a unit.
     """
     if key not in KNOWN:
-        near = closest(key, [k for k in KNOWN if k.count("_") == key.count("_")], _ALIKE)
+        suggestion = closest(key, [k for k in KNOWN if k.count("_") == key.count("_")], _ALIKE)
         stem_and_unit = unit_of_name(key)
-        if near is None and stem_and_unit is not None:
+        if suggestion is None and stem_and_unit is not None:
             # A known quantity must have its standard name: the name must not state another unit.
-            near = _STEMS.get(stem_and_unit[0])
-        if near is not None:
+            suggestion = _STEMS.get(stem_and_unit[0])
+        if suggestion is not None:
             raise InputError(
-                key=f"columns.{key}", problem="is not known", mend=f"did you mean {quoted(near)}?"
+                key=f"columns.{key}",
+                problem="is not known",
+                mend=f"did you mean {quoted(suggestion)}?",
             )
     stem_and_unit = unit_of_name(key)
     if stem_and_unit is None:

@@ -50,8 +50,8 @@ class TimeLine:
         rows = np.flatnonzero(keep)
         if rows.size:
             before = np.concatenate(([self._last], times[rows[:-1]]))
-            odd = np.flatnonzero(times[rows] <= before)
-            if odd.size:
+            not_increasing = np.flatnonzero(times[rows] <= before)
+            if not_increasing.size:
                 self._one_by_one(times, rows, keep)
             else:
                 if self._first is None:

@@ -150,9 +150,9 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
     carrier = None if user_law is None else of_core([])
     bends = any(name in BENDING for name, _ in instrument)
     before = [p.name for p in pages if p not in user_effects and p.stage != "instrument"]
-    bare = of_core(before) if bends else None
+    bare_core = of_core(before) if bends else None
     return DrivenChain(
-        UserChain(core, instrument, user_effects, user_law, carrier_values, carrier, bare)
+        UserChain(core, instrument, user_effects, user_law, carrier_values, carrier, bare_core)
     )
 
 

@@ -96,12 +96,12 @@ class DelayedChain:
         # Before the run, the force is assumed to equal that at its start.
         read_s = np.maximum(run.time_s - tau_s, instants_s[0])
         read_instants = np.unique(np.append(read_s, instants_s[0]))
-        late = run.at(read_instants, np.zeros(len(read_instants)))
+        delayed_run = run.at(read_instants, np.zeros(len(read_instants)))
         moved = motion.at(instants_s, read_instants)
         turns = reversals(read_instants, moved)
         step = np.diff(read_instants)[turns.interval] if len(turns.at_s) else np.zeros(0)
         sides = np.concatenate([turns.at_s - BESIDE * step, turns.at_s + BESIDE * step])
-        all_instants, driven = with_instants(self.rig, late, moved, sides)
+        all_instants, driven = with_instants(self.rig, delayed_run, moved, sides)
         force = self.chain.predict(values[self.kept], [Driven(driven.motion)])[0]
         reading = force[np.searchsorted(all_instants, read_s)]
         if self.drift is not None:

@@ -182,8 +182,8 @@ class Model(Shown):
         """
         assert self.delay is not None
         sd_s = self.delay.stderr or 0.0
-        late = DelayedChain(self.rig, self.law, self.clock, self.effects, list(self.parameters))
-        return [late.read(self.values, *one, sd_s).mean_n for one in read]
+        delayed = DelayedChain(self.rig, self.law, self.clock, self.effects, list(self.parameters))
+        return [delayed.read(self.values, *sample, sd_s).mean_n for sample in read]
 
     def require_columns(self, run: Run) -> None:
         """Raise an InputError if a run lacks a column that an effect of this model needs."""

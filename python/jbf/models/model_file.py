@@ -53,9 +53,9 @@ def _parameters(content: Mapping[str, Any], effects: Collection[str]) -> dict[st
         inner = isinstance(entry, Mapping) and entry and not _FIELDS & set(entry)
         effect = current_effect(name) if inner else name
         if effect in effects or inner:
-            for short, value in table(entry, f"parameters.{name}").items():
-                full = current_parameter(f"{effect}.{short}")
-                parameters[full] = _parameter(value, f"parameters.{name}.{short}")
+            for short_name, value in table(entry, f"parameters.{name}").items():
+                full = current_parameter(f"{effect}.{short_name}")
+                parameters[full] = _parameter(value, f"parameters.{name}.{short_name}")
         else:
             parameters[current_parameter(name)] = _parameter(entry, f"parameters.{name}")
     return parameters

@@ -105,10 +105,10 @@ class Vocabulary:
                     mend += "; register a user-defined one first: --effects-from FILE.py"
                 raise InputError(key=key, problem=problem, mend=mend)
         for name, parameter in model.parameters.items():
-            effect, dot, short = name.rpartition(".")
+            effect, dot, short_name = name.rpartition(".")
             bounds = self.effects[effect] if dot else self.law_parameters.get(model.law, {})
-            refuse_unknown([short], bounds, f"parameters.{effect}{dot}")
-            lower, upper = bounds[short]
+            refuse_unknown([short_name], bounds, f"parameters.{effect}{dot}")
+            lower, upper = bounds[short_name]
             if not lower <= parameter.value <= upper:
                 problem = f"{parameter.value} is out of range"
                 mend = f"choose from {lower} to {upper}"

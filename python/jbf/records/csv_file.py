@@ -323,8 +323,8 @@ def _separately_clocked(
     if not sampled.any():
         return None
     if not _is_a_clock(sampled):
-        slow = [mask for mask in map(_filled_cells, other_columns) if _is_a_clock(mask)]
-        if not slow or not np.logical_or.reduce(slow)[~sampled].all():
+        clock_masks = [mask for mask in map(_filled_cells, other_columns) if _is_a_clock(mask)]
+        if not clock_masks or not np.logical_or.reduce(clock_masks)[~sampled].all():
             return None
     try:
         read = [float(cell) for cell in cells if cell.strip()]

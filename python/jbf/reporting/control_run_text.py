@@ -50,11 +50,11 @@ def runs_text(results: Sequence[Result]) -> str:
 def robustness_text(outcomes: Sequence[Outcome]) -> str:
     """Format the ratios of the errors with and without compensation, one line per case."""
     names = list(outcomes[0].ratios)
-    short = [
+    abbreviated = [
         "".join(word[0] if i == 0 else f" {word}" for i, word in enumerate(n.split()))
         for n in names
     ]
-    rows: list[tuple[str, ...]] = [("plant", *short, "worst", "")]
+    rows: list[tuple[str, ...]] = [("plant", *abbreviated, "worst", "")]
     rows += [
         (o.name, *(f"{o.ratios[n]:.3f}" for n in names), f"{o.worst:.3f}", o.verdict)
         for o in outcomes

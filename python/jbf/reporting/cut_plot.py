@@ -22,15 +22,15 @@ def plot_cut(campaign: Import, axes: Sequence[Axes] | None = None) -> Sequence[A
     Runs are shaded in alternating colours. Excluded pieces are hatched.
     """
     rows = [(view, key) for view in campaign.overviews for key in view.curves]
-    drawn = axes_or_new(axes, len(rows), 1, (11.0, 0.8 + 1.7 * len(rows)))
-    for ax, (view, key) in zip(drawn, rows, strict=True):
+    all_axes = axes_or_new(axes, len(rows), 1, (11.0, 0.8 + 1.7 * len(rows)))
+    for ax, (view, key) in zip(all_axes, rows, strict=True):
         times, low, high = view.curves[key]
         # The line at mid-height stays visible where a segment contains a single sample.
         ax.fill_between(times, low, high, color=MEASURED, linewidth=0.0)
         ax.plot(times, 0.5 * (low + high), color="black", linewidth=0.5)
         _shade(ax, campaign, view)
         dress(ax, f"{view.file}: {key}", "Time (s)", key)
-    return drawn
+    return all_axes
 
 
 def _shade(ax: Axes, campaign: Import, view: Overview) -> None:
@@ -68,5 +68,5 @@ def save_cut(campaign: Import, path: str | os.PathLike[str]) -> None:
 
 def import_page(campaign: Import) -> str:
     """Return the HTML text of an import's page."""
-    drawn = svg(plot_cut(campaign), "Each recording in time, and how it was cut")
-    return page("text.html.j2", "Import", words=campaign.summary(), picture=drawn)
+    picture = svg(plot_cut(campaign), "Each recording in time, and how it was cut")
+    return page("text.html.j2", "Import", words=campaign.summary(), picture=picture)

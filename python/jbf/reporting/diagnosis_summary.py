@@ -125,8 +125,8 @@ def _outlook(diagnosis: Diagnosis) -> list[list[str]]:
         paragraphs.append(_paragraph("Next: ", advice.to_do, 2))
     if diagnosis.limitations:
         first, *further = diagnosis.limitations
-        more = f" (and {len(further)} more)" if further else ""
-        paragraphs.append(_paragraph("Not supported by these runs: ", f"{first}{more}", 2))
+        count = f" (and {len(further)} more)" if further else ""
+        paragraphs.append(_paragraph("Not supported by these runs: ", f"{first}{count}", 2))
     if not all(effect in next_experiment for effect in diagnosis.not_detectable):
         names = ", ".join(diagnosis.not_detectable)
         paragraphs.append(_paragraph("Not detectable in these runs: ", names, 1))

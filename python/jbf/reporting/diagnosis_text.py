@@ -80,7 +80,7 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
     The order is verdict, measurement, misfit of the base law, candidates, error per step, and
     parameters.
     """
-    campaign, bare = diagnosis.before.campaign, diagnosis.steps[0]
+    campaign, base_step = diagnosis.before.campaign, diagnosis.steps[0]
     samples = diagnosis.before.samples.count
     model = diagnosis.model
     unit = model.rig.quantities.force
@@ -97,12 +97,12 @@ def diagnosis_report(diagnosis: Diagnosis) -> str:
         f"    {recorded([p.run for p in campaign.prepared])}, "
         f"{count_of(samples, 'sample')} "
         "with a known direction of motion",
-        f"    noise floor {noise_words(bare.noise_rms, unit)}"
-        + (", estimated from the records" if bare.noise_rms > 0.0 else ""),
+        f"    noise floor {noise_words(base_step.noise_rms, unit)}"
+        + (", estimated from the records" if base_step.noise_rms > 0.0 else ""),
         "",
         f"The {step_name(diagnosis, 0)} ({law_words(model, ', ')})",
-        f"    RMS error {number(bare.rms)} {unit}, "
-        f"{against_noise(bare.rms, bare.noise_rms)}"
+        f"    RMS error {number(base_step.rms)} {unit}, "
+        f"{against_noise(base_step.rms, base_step.noise_rms)}"
         + ("; lack of fit (share of the mean square residual):" if diagnosis.failures else ""),
     ]
     lines += where_lines(diagnosis.failures) or ["    no lack of fit along any axis"]

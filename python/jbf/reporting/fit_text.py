@@ -84,8 +84,8 @@ def fit_report(fit: Fit) -> str:
     pairs = correlation_pairs(fit)
     if pairs:
         lines.append(f"[[Correlations]] (absolute value above {LEAST_CORRELATION})")
-        shown = [(f"C({a}, {b})", f"= {c:+.3f}") for a, b, c in pairs[:MOST_CORRELATIONS]]
-        lines += columns(shown, "<<", 4)
+        correlations = [(f"C({a}, {b})", f"= {c:+.3f}") for a, b, c in pairs[:MOST_CORRELATIONS]]
+        lines += columns(correlations, "<<", 4)
         if len(pairs) > MOST_CORRELATIONS:
             lines.append(f"    and {len(pairs) - MOST_CORRELATIONS} smaller ones")
     return "\n".join([*lines, *effect_lines(model), *finding_lines(fit.findings)])

@@ -37,9 +37,9 @@ def guess_report(guess: Guess, map_path: str, *, kept: bool = False) -> str:
     if rows_:
         lines += ["", "Columns found:", *columns(rows_, "<<<<")]
     if guess.ignored:
-        shown = [f"{name} ({why})" for name, why in guess.ignored.items()]
-        more = [f"and {len(shown) - _MOST} more"] if len(shown) > _MOST else []
-        lines += ["", *hanging("Not used: ", ", ".join(shown[:_MOST] + more), 0)]
+        unused = [f"{name} ({why})" for name, why in guess.ignored.items()]
+        omitted = [f"and {len(unused) - _MOST} more"] if len(unused) > _MOST else []
+        lines += ["", *hanging("Not used: ", ", ".join(unused[:_MOST] + omitted), 0)]
     if guess.align_notes:
         lines += ["", "Clocks:"]
         for stem, note in guess.align_notes.items():

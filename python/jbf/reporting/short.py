@@ -24,11 +24,11 @@ A line contains at most two such lists.
 
 def first_of(items: Iterable[str], join: str = ", ") -> str:
     """Join items, and replace those beyond the maximum length by an ellipsis."""
-    shown = list(items)
-    joined = join.join(shown)
-    while len(joined) > LONGEST and shown:
-        shown.pop()
-        joined = join.join([*shown, "..."])
+    listed_items = list(items)
+    joined = join.join(listed_items)
+    while len(joined) > LONGEST and listed_items:
+        listed_items.pop()
+        joined = join.join([*listed_items, "..."])
     return joined
 
 

@@ -173,12 +173,12 @@ def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
     """Return law, number of parameters, held-out RMS (N), and outcome of the comparison of laws."""
     return [
         (
-            tried.law,
-            str(tried.parameters),
-            number(tried.held_out_rms),
-            "selected" if i == 0 else "equally good" if tried.tied else "worse",
+            comparison.law,
+            str(comparison.parameters),
+            number(comparison.held_out_rms),
+            "selected" if i == 0 else "equally good" if comparison.tied else "worse",
         )
-        for i, tried in enumerate(diagnosis.laws)
+        for i, comparison in enumerate(diagnosis.laws)
     ]
 
 
@@ -186,5 +186,5 @@ def _listed_runs(runs: list[str]) -> str:
     """List runs by name; of a long list only the first few."""
     if len(runs) <= MOST_RUNS_NAMED:
         return ", ".join(runs)
-    more = count_of(len(runs) - MOST_RUNS_NAMED, "run")
-    return f"{', '.join(runs[:MOST_RUNS_NAMED])} and {more} more"
+    further = count_of(len(runs) - MOST_RUNS_NAMED, "run")
+    return f"{', '.join(runs[:MOST_RUNS_NAMED])} and {further} more"

@@ -140,18 +140,18 @@ def law_sentence(diagnosis: Diagnosis) -> str:
     """Name the law selected from the data, or another law that predicts with fewer terms."""
     if diagnosis.laws:
         first, *other_laws = diagnosis.laws
-        tied = [other.law for other in other_laws if other.tied]
+        tied = [rival.law for rival in other_laws if rival.tied]
         words = f" Law selected from the data: {first.law}"
         if tied:
             return f"{words}, the simplest of those that predict equally well ({listed(tied)} too)."
         return f"{words}."
-    other = diagnosis.simpler_law
-    if other is None:
+    rival = diagnosis.simpler_law
+    if rival is None:
         return ""
     held_out_rms, unit = diagnosis.steps[-1].held_out_rms, diagnosis.model.rig.quantities.force
     return (
-        f" The law {other.law} without further friction effects predicts held-out runs within "
-        f"{number(other.held_out_rms)} {unit} (the model above: {number(held_out_rms)} {unit}); "
+        f" The law {rival.law} without further friction effects predicts held-out runs within "
+        f"{number(rival.held_out_rms)} {unit} (the model above: {number(held_out_rms)} {unit}); "
         "--law auto compares all laws."
     )
 
@@ -208,8 +208,8 @@ def _worst(remains: Sequence[Remainder], place: str) -> str:
     """Describe the largest item of residual structure, and count the others."""
     if not remains:
         return ""
-    more = f" (and {len(remains) - 1} more{place})" if len(remains) > 1 else ""
-    return f": {max(remains, key=lambda r: r.share).where}{more}"
+    count = f" (and {len(remains) - 1} more{place})" if len(remains) > 1 else ""
+    return f": {max(remains, key=lambda r: r.share).where}{count}"
 
 
 def _confounders_sentence(names: tuple[str, ...]) -> str:

@@ -85,5 +85,5 @@ def python(node: Mapping[str, Any] | None, steps: Steps) -> str:
 
 def _call(head: str, files: Sequence[str], tail: str) -> str:
     """Format a call with a list of files, one line per file if the list is long."""
-    shown = pformat(list(files), width=WIDTH - len(head))
-    return head + shown.replace("\n", "\n" + " " * len(head)) + tail
+    formatted = pformat(list(files), width=WIDTH - len(head))
+    return head + formatted.replace("\n", "\n" + " " * len(head)) + tail

@@ -51,8 +51,10 @@ class Folder:
             The name is not valid, or leads outside the folder.
         """
         parts = PurePosixPath(name).parts
-        odd = not parts or "\0" in name or "\\" in name or ".." in parts or name.startswith("/")
-        if not odd:
+        is_invalid = (
+            not parts or "\0" in name or "\\" in name or ".." in parts or name.startswith("/")
+        )
+        if not is_invalid:
             resolved = Path(os.path.realpath(self.root.joinpath(*parts)))
             if resolved.is_relative_to(self.root) and resolved != self.root:
                 return resolved

@@ -60,10 +60,10 @@ class Jobs:
         self._cancelled = False
         self._lock = threading.Lock()
 
-    def start(self, words: str, order: Order, ended: Ended, part: Part | None = None) -> None:
+    def start(self, words: str, order: Order, on_end: Ended, part: Part | None = None) -> None:
         """Start a job.
 
-        `ended` is called once, with the kind of ending and the result or the reason. `part` is
+        `on_end` is called once, with the kind of ending and the result or the reason. `part` is
         called earlier with a partial result.
 
         Raises
@@ -83,7 +83,7 @@ class Jobs:
         process.start()
         theirs.close()
         threading.Thread(
-            target=self._follow, args=(mine, process, ended, part), daemon=True
+            target=self._follow, args=(mine, process, on_end, part), daemon=True
         ).start()
 
     def cancel(self, at_once: bool = False) -> bool:
@@ -109,7 +109,7 @@ class Jobs:
         return True
 
     def _follow(
-        self, connection: Any, process: BaseProcess, ended: Ended, part: Part | None
+        self, connection: Any, process: BaseProcess, on_end: Ended, part: Part | None
     ) -> None:
         ending: Ending = "error"
         answer: Answer | str = "the fit process ended without a result (out of memory?)"
@@ -135,7 +135,7 @@ class Jobs:
         process.join()
         # Clear the job last, so that the result is available to callers that wait for the end.
         try:
-            ended(ending, answer)
+            on_end(ending, answer)
         finally:
             with self._lock:
                 self.job = self._process = self._connection = None

@@ -39,8 +39,8 @@ class Frame:
         def ends(parts: Sequence[Array]) -> tuple[float, float]:
             low = min((float(np.nanmin(p)) for p in parts if np.any(np.isfinite(p))), default=0.0)
             high = max((float(np.nanmax(p)) for p in parts if np.any(np.isfinite(p))), default=1.0)
-            more = MARGIN * (high - low) or max(abs(high), 1e-12)
-            return low - more, high + more
+            margin = MARGIN * (high - low) or max(abs(high), 1e-12)
+            return low - margin, high + margin
 
         return cls(*ends(x), *ends(y), columns, rows)
 
@@ -82,8 +82,8 @@ def shade(counts: Counts) -> str:
     """
     largest = max(int(counts.max(initial=0)), 1)
     level = np.log1p(counts) / np.log1p(largest)
-    shown = np.where(counts > 0, np.maximum(np.round(255 * level), 40), 0).astype(np.uint8)
-    return base64.b64encode(shown.tobytes()).decode("ascii")
+    shades = np.where(counts > 0, np.maximum(np.round(255 * level), 40), 0).astype(np.uint8)
+    return base64.b64encode(shades.tobytes()).decode("ascii")
 
 
 def within(x: Array, y: Array, box: tuple[float, float, float, float]) -> Mask:

@@ -136,14 +136,14 @@ class Session:
             def part(answer: Any) -> None:
                 numbers.append(self._add_model(answer, parent, "", law, place))
 
-            def ended(ending: Ending, answer: Any) -> None:
+            def on_end(ending: Ending, answer: Any) -> None:
                 if numbers:
                     self._add_ranking(ending, answer, numbers[0])
                 else:
                     self._finish(ending, answer, parent, words, law, place)
 
             self.message = {}
-            self.jobs.start(words, order, ended, part)
+            self.jobs.start(words, order, on_end, part)
         self.changed()
 
     def show(self, number: int | None) -> None:
@@ -168,13 +168,13 @@ class Session:
         file.write_text(node["model"], encoding="utf-8")
         order = Order("compare", bench.rig, bench.used_runs(), place, model=file)
 
-        def ended(ending: Ending, answer: Any) -> None:
+        def on_end(ending: Ending, answer: Any) -> None:
             if ending == "done":
                 node.update(records=place.name, record_names=answer["record_names"])
             elif ending == "error":
                 self.say("error", str(answer))
 
-        self.jobs.start(f"comparing {node['words']}", order, ended)
+        self.jobs.start(f"comparing {node['words']}", order, on_end)
 
     def _new_place(self) -> Path:
         self._places += 1

@@ -54,9 +54,9 @@ def thinned(time_s: Array, columns: Mapping[str, Array], stretch: Stretch) -> di
     starts = np.arange(stretch.first, stretch.end, stride)
     # Both points of a pixel lie in its middle half, smallest first: a line through them is a bar.
     last = np.minimum(starts + stride, stretch.end) - 1
-    begin, close = time_s[starts], time_s[last]
-    quarter = 0.25 * (close - begin)
-    reduced = {"time_s": np.column_stack([begin + quarter, close - quarter]).ravel()}
+    begin, end = time_s[starts], time_s[last]
+    quarter = 0.25 * (end - begin)
+    reduced = {"time_s": np.column_stack([begin + quarter, end - quarter]).ravel()}
     for name, values in columns.items():
         low = np.fmin.reduceat(values[part], starts - stretch.first)
         high = np.fmax.reduceat(values[part], starts - stretch.first)

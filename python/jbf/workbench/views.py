@@ -56,8 +56,8 @@ def series(
             columns = {"compared_n": second.model_n}
             if second.residual_n is not None:
                 columns["compared_residual_n"] = second.residual_n
-            shown = thinned(run.time_s, columns, stretch)
-            section |= {name: listed(shown[name]) for name in columns}
+            reduced = thinned(run.time_s, columns, stretch)
+            section |= {name: listed(reduced[name]) for name in columns}
     return section
 
 
@@ -238,11 +238,11 @@ def signature(
         float(run_series.time_s[-1] if span[1] is None else span[1]),
         pixels,
     )
-    shown = thinned(
+    reduced = thinned(
         run_series.time_s, {"residual_n": residual, "signature_n": scale * added}, stretch
     )
     return {"times_usual": scale, **{k: listed(v, 11 if k == "time_s" else 6)
-                                     for k, v in shown.items()}}  # fmt: skip
+                                     for k, v in reduced.items()}}  # fmt: skip
 
 
 def _usual(base: Model, effect: str) -> dict[str, float]:

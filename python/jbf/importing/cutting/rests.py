@@ -52,8 +52,8 @@ def _rests(motion: MotionSpeed, segment: int, threshold: float) -> Iterator[tupl
     began: int | None = None
     row = motion.stream.segments[segment][0]
     for first, _, speed in motion.smoothed(segment):
-        still = speed <= threshold
-        edges = np.flatnonzero(np.diff(np.concatenate(([began is not None], still))))
+        at_rest = speed <= threshold
+        edges = np.flatnonzero(np.diff(np.concatenate(([began is not None], at_rest))))
         for edge in edges:
             row = first + int(edge)
             if began is None:

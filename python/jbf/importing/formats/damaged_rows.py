@@ -52,13 +52,13 @@ class DamagedRows:
 
     def _refused(self) -> InputError:
         assert self.first is not None
-        more = ""
+        extent = ""
         if len(self.lines) > 1:
-            more = f", and {len(self.lines)} of the first {self.rows} rows are damaged"
+            extent = f", and {len(self.lines)} of the first {self.rows} rows are damaged"
         return InputError(
             file=self.path,
             row=self.first.row,
             column=self.first.column,
-            problem=self.first.problem + more,
+            problem=self.first.problem + extent,
             mend=self.first.mend,
         )

@@ -64,8 +64,10 @@ class MdfSource(Source):
             columns.append(Column(channel.name, unit.strip("\0 ")))
         self._places[name] = at, places
         start = self._file.start_time
-        shown = None if start is None else start.isoformat()
-        return Table(name, tuple(columns), CLOCK if master is not None else None, rows, start=shown)
+        start_text = None if start is None else start.isoformat()
+        return Table(
+            name, tuple(columns), CLOCK if master is not None else None, rows, start=start_text
+        )
 
     def _values(self, group: int, index: int, first: int, count: int) -> Any:
         signal = self._file.get(

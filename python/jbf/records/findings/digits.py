@@ -44,7 +44,9 @@ def resolution(values: Array) -> float:
         return digit
     smallest = float(np.min(gaps))
     step = float(np.mean(gaps[gaps < 1.5 * smallest]))
-    near = gaps[gaps < MOST_STEPS * step]
-    error = np.abs(near - step * np.round(near / step))
-    on_levels = len(near) >= FEWEST_GAPS and bool(np.all(error <= digit * (1.0 + near / step)))
+    small_gaps = gaps[gaps < MOST_STEPS * step]
+    error = np.abs(small_gaps - step * np.round(small_gaps / step))
+    on_levels = len(small_gaps) >= FEWEST_GAPS and bool(
+        np.all(error <= digit * (1.0 + small_gaps / step))
+    )
     return max(step, digit) if on_levels else digit

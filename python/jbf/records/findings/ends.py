@@ -45,17 +45,17 @@ def _count_outliers(time: Array, values: Array, neighbours: int) -> int:
     n = len(values) - neighbours
     t = np.stack([time[k : n + k] - time[:n] for k in range(1, neighbours + 1)])
     y = np.stack([values[k : n + k] - values[:n] for k in range(1, neighbours + 1)])
-    off = np.abs(np.sum(weights_at_zero(t) * y, axis=0))
-    within = float(np.max(off[MOST : n - MOST]))
-    outliers = np.flatnonzero(off[:MOST] > TIMES * within)
+    deviation = np.abs(np.sum(weights_at_zero(t) * y, axis=0))
+    within = float(np.max(deviation[MOST : n - MOST]))
+    outliers = np.flatnonzero(deviation[:MOST] > TIMES * within)
     # If the deviation of all inner samples is zero, there is no scale for the threshold.
     return int(outliers[-1]) + 1 if within > 0.0 and len(outliers) else 0
 
 
 def ends_finding(
-    channel: str, what: str, run: str, mask: Mask, off: Array, unit: str, done: str
+    channel: str, what: str, run: str, mask: Mask, error: Array, unit: str, done: str
 ) -> Finding | None:
-    """Return the finding for outliers at the ends, or None; `off` contains their deviations."""
+    """Return the finding for outliers at the ends, or None; `error` has their deviations."""
     if not mask.any():
         return None
     half = len(mask) // 2
@@ -64,6 +64,6 @@ def ends_finding(
         for word, part in (("first", mask[:half]), ("last", mask[half:]))
         if part.any()
     ]
-    size = float(np.max(np.abs(off[mask])))
+    size = float(np.max(np.abs(error[mask])))
     words = f"outliers in the {what}: {' and '.join(sides)}, up to {size:.3g} {unit}"
     return Finding("glitches", channel, run, size, unit, done, words)

@@ -60,8 +60,8 @@ def examine(run: Run, velocity: Array | None = None, period_s: float | None = No
         native = find_native_of(run.time_s, run.friction, period_s)
     if native is not None:
         return Examined((_interpolated(run, native),), np.ones(len(run), dtype=bool), native)
-    held_findings, still = find_held(run, np.zeros(len(run), dtype=bool))
-    native = find_native(run.time_s[~still], run.friction[~still]) if held_findings else None
+    held_findings, is_held = find_held(run, np.zeros(len(run), dtype=bool))
+    native = find_native(run.time_s[~is_held], run.friction[~is_held]) if held_findings else None
     if native is not None:
         # An interpolated record may also contain held samples.
         return Examined(
@@ -74,17 +74,17 @@ def examine(run: Run, velocity: Array | None = None, period_s: float | None = No
     if native is not None:
         return Examined((_filled_in(run, native),), np.ones(len(run), dtype=bool), native)
     of_readings = examine_readings(run, velocity)
-    held_findings, still = find_held(run, ~of_readings.usable)
-    usable = of_readings.usable & ~still
+    held_findings, is_held = find_held(run, ~of_readings.usable)
+    usable = of_readings.usable & ~is_held
     findings = (*of_readings.findings, *held_findings, *find_gaps(run), *find_steps(run, usable))
     return Examined(findings, usable)
 
 
 def examine_readings(run: Run, velocity: Array) -> Examined:
     """Detect single invalid readings of the force: outliers and saturation."""
-    glitches, off = find_glitches(run, velocity)
+    glitches, outliers = find_glitches(run, velocity)
     saturation, ends = find_saturation(run)
-    return Examined((*glitches, *saturation), ~(off | ends))
+    return Examined((*glitches, *saturation), ~(outliers | ends))
 
 
 def _interpolated(run: Run, native: Native) -> Finding:

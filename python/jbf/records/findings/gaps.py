@@ -32,8 +32,8 @@ def find_gaps(run: Run) -> list[Finding]:
     missing = np.rint(steps / median_step) - 1.0
     for length in range(2, min(STRETCH, len(steps)) + 1):
         window = np.lib.stride_tricks.sliding_window_view(steps, length).sum(axis=1) / median_step
-        more = np.pad(np.rint(window) - length, length - 1, constant_values=np.inf)
-        smallest = np.lib.stride_tricks.sliding_window_view(more, length).min(axis=1)
+        extra = np.pad(np.rint(window) - length, length - 1, constant_values=np.inf)
+        smallest = np.lib.stride_tricks.sliding_window_view(extra, length).min(axis=1)
         missing = np.minimum(missing, smallest)
     count = int(missing[missing > 0].sum())
     if count == 0:

@@ -44,14 +44,14 @@ def glitches(values: Array) -> Mask:
 
     change = np.diff(values)
     before, after = change[:-1], -change[1:]
-    off = np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0)
+    deviation = np.where(before * after > 0.0, np.minimum(np.abs(before), np.abs(after)), 0.0)
     bend = np.abs(before + after)
     # The second difference of white noise has sqrt(6) times its standard deviation.
     local = ndimage.median_filter(bend, WINDOW, mode="reflect") / 0.6745 / np.sqrt(6.0)
     typical = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
     step = ndimage.median_filter(np.abs(change), WINDOW, mode="reflect")
     corner = CHANGES * np.maximum(step[:-1], step[1:])
-    outliers[1:-1] = off > np.maximum(FAR * np.maximum(local, LOUD * typical), corner)
+    outliers[1:-1] = deviation > np.maximum(FAR * np.maximum(local, LOUD * typical), corner)
     if typical == 0.0 or outliers.sum() > RARE * n:
         outliers[:] = False
     return outliers
@@ -68,13 +68,13 @@ def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
     """
     assert run.friction is not None
     mask = glitches(run.friction) & ~_breakaway(velocity)
-    loose = _end_outliers(run, velocity, mask)
-    off = run.friction - _interpolated_force(run, mask | loose)
+    at_ends = _end_outliers(run, velocity, mask)
+    deviation = run.friction - _interpolated_force(run, mask | at_ends)
     unit = run.quantities.force
-    ends = ends_finding("friction_n", "force", run.name, loose, off, unit, "excluded")
-    more = [] if ends is None else [ends]
+    ends = ends_finding("friction_n", "force", run.name, at_ends, deviation, unit, "excluded")
+    end_findings = [] if ends is None else [ends]
     if not mask.any():
-        return more, loose
+        return end_findings, at_ends
     index = np.flatnonzero(mask)
     middle = 0.5 * (run.friction[index - 1] + run.friction[index + 1])
     size = float(np.max(np.abs(run.friction[index] - middle)))
@@ -82,15 +82,15 @@ def find_glitches(run: Run, velocity: Array) -> tuple[list[Finding], Mask]:
     singles = count_of(len(index), "outlier in the force", "outliers in the force")
     words = f"{singles}, up to {size:.3g} {unit} (first at {first})"
     single = Finding("glitches", "friction_n", run.name, size, unit, "excluded", words)
-    return [single, *more], mask | loose
+    return [single, *end_findings], mask | at_ends
 
 
 def _end_outliers(run: Run, velocity: Array, mask: Mask) -> Mask:
     """Detect further outliers at the ends of the record, except at reversals and starts."""
     assert run.friction is not None
-    loose, valid = np.zeros(len(mask), dtype=bool), ~mask
-    loose[valid] = end_outliers(run.time_s[valid], run.friction[valid], 1)
-    return loose & ~_breakaway(velocity)
+    outliers, valid = np.zeros(len(mask), dtype=bool), ~mask
+    outliers[valid] = end_outliers(run.time_s[valid], run.friction[valid], 1)
+    return outliers & ~_breakaway(velocity)
 
 
 def _interpolated_force(run: Run, mask: Mask) -> Array:
@@ -107,6 +107,6 @@ def _breakaway(velocity: Array) -> Mask:
     # In a slow reversal, the sign changes many samples from both ends of the slow segment.
     turns = np.flatnonzero((np.diff(direction) != 0.0) | (velocity[1:] * velocity[:-1] < 0.0))
     near_breakaway = np.zeros(len(direction), dtype=bool)
-    for off in range(1 - BESIDE, BESIDE + 1):
-        near_breakaway[np.clip(turns + off, 0, len(direction) - 1)] = True
+    for offset in range(1 - BESIDE, BESIDE + 1):
+        near_breakaway[np.clip(turns + offset, 0, len(direction) - 1)] = True
     return near_breakaway

@@ -206,8 +206,8 @@ def _beats(time: Array, values: Array, step: float) -> Array:
     frequency = np.arange(lowest, highest, 0.5 / n)
     power = np.abs(np.exp(-2j * np.pi * frequency[:, None] * place) @ rank)
     best = np.argsort(-power, kind="stable")[:BEATS]
-    near = (frequency[best, None] + NEAR / n).ravel()
-    return np.asarray(step / (1.0 - near))
+    beat = (frequency[best, None] + NEAR / n).ravel()
+    return np.asarray(step / (1.0 - beat))
 
 
 def _grid(periods: Array) -> tuple[Array, Array]:
@@ -218,9 +218,9 @@ def _grid(periods: Array) -> tuple[Array, Array]:
 
 def _as_rough_as_noise(values: Array) -> bool:
     """Return True if adjacent samples are uncorrelated, which excludes interpolation."""
-    near = np.median(np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2]))
+    adjacent = np.median(np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2]))
     distant = np.median(np.abs(values[2 * FAR :] - 2.0 * values[FAR:-FAR] + values[: -2 * FAR]))
-    return bool(near > ROUGH * distant)
+    return bool(adjacent > ROUGH * distant)
 
 
 def is_smooth(values: Array, share: float = SMOOTH) -> bool:
@@ -300,9 +300,9 @@ def _fit_polygon(
 
 def _at_ends(read: Array, values: Array) -> Array:
     """Set corners near an end of the range, within the accuracy of the digits, to that end."""
-    near = max(ENDS * last_digit(values), ROUNDING * float(np.ptp(values)))
+    tolerance = max(ENDS * last_digit(values), ROUNDING * float(np.ptp(values)))
     for end in (float(np.min(values)), float(np.max(values))):
-        read = np.where(np.abs(read - end) < near, end, read)
+        read = np.where(np.abs(read - end) < tolerance, end, read)
     return read
 
 

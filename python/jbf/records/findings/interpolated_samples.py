@@ -40,19 +40,19 @@ def find_interpolated_samples(time: Array, values: Array) -> Native | None:
     if len(time) < 5:
         return None
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
-    off = np.abs(values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:])
+    deviation = np.abs(values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:])
     rounding = ROUNDING * resolution(values)
     # Equal samples are excluded: a held channel is a separate finding.
     level = np.abs(values[2:] - values[:-2]) <= 2.0 * rounding
-    line = (off <= rounding) & ~level
+    line = (deviation <= rounding) & ~level
     # If the friction itself is linear there, the adjacent samples are also close to a line.
-    next_to_line = (off > rounding) & (np.convolve(line, [1, 0, 1], "same") > 0)
-    typical = float(np.median(off[next_to_line])) if np.any(next_to_line) else 0.0
-    if typical == 0.0 or rounding > FINE * typical or _far_from_corners(line, off > typical):
+    next_to_line = (deviation > rounding) & (np.convolve(line, [1, 0, 1], "same") > 0)
+    typical = float(np.median(deviation[next_to_line])) if np.any(next_to_line) else 0.0
+    if typical == 0.0 or rounding > FINE * typical or _far_from_corners(line, deviation > typical):
         return None
-    near = off[(off > rounding) & (off <= typical)]
+    small = deviation[(deviation > rounding) & (deviation <= typical)]
     # Quantisation puts samples on a line as often as one step off it.
-    chance = len(near) / typical * max(quantum_of(values), rounding)
+    chance = len(small) / typical * max(quantum_of(values), rounding)
     count = int(line.sum())
     if count < max(LEAST, LEAST_SHARE * len(time), BY_CHANCE * chance):
         return None

@@ -71,9 +71,9 @@ def _of_clock(
     every = np.arange(count[-1] + 1)
     ticks: Array = phase + period * every.astype(np.float64)
     # A reading equal to the previous one does not begin a sequence; use the first sample after it.
-    shown = np.minimum(np.searchsorted(time, ticks), len(time) - 1)
-    shown[count] = np.searchsorted(time, begins)
-    return Native(ticks, values[shown], period)
+    first_rows = np.minimum(np.searchsorted(time, ticks), len(time) - 1)
+    first_rows[count] = np.searchsorted(time, begins)
+    return Native(ticks, values[first_rows], period)
 
 
 def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
@@ -88,11 +88,11 @@ def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
         Beginnings of the sequences, in samples, shape (m,), m at least `LEAST_ROWS`.
     """
     # The sequences that are closest together determine the period with the least ambiguity.
-    near = int(np.argmin(begins[LEAST_ROWS - 1 :] - begins[: len(begins) - LEAST_ROWS + 1]))
-    look = begins[near : near + LEAST_ROWS] - begins[near]
+    densest = int(np.argmin(begins[LEAST_ROWS - 1 :] - begins[: len(begins) - LEAST_ROWS + 1]))
+    look = begins[densest : densest + LEAST_ROWS] - begins[densest]
     grid = np.exp(np.arange(np.log(SHORTEST), np.log(LONGEST), FINE / look[-1]))
     for period in grid[_spread(look, grid) < WITHIN + FINE][::-1].tolist():
-        count = _extended_ticks(begins, near, period)
+        count = _extended_ticks(begins, densest, period)
         if count is not None:
             return count
     return None
@@ -107,9 +107,9 @@ def _spread(begins: Array, periods: Array) -> Array:
     return widest
 
 
-def _extended_ticks(begins: Array, near: int, period: float) -> npt.NDArray[np.intp] | None:
+def _extended_ticks(begins: Array, start: int, period: float) -> npt.NDArray[np.intp] | None:
     """Tick numbers of all sequences, extended outwards from a few; None if the phase drifts."""
-    low, high = near, near + LEAST_ROWS
+    low, high = start, start + LEAST_ROWS
     while True:
         rows = begins[low:high]
         middle = rows[len(rows) // 2]
@@ -120,5 +120,5 @@ def _extended_ticks(begins: Array, near: int, period: float) -> npt.NDArray[np.i
         if (low, high) == (0, len(begins)):
             numbers: npt.NDArray[np.intp] = (count - count[0]).astype(np.intp)
             return numbers
-        more = high - low
-        low, high = max(low - more, 0), min(high + more, len(begins))
+        extension = high - low
+        low, high = max(low - extension, 0), min(high + extension, len(begins))

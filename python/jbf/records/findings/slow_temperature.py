@@ -59,11 +59,11 @@ def _smoothed_temperature(time: Array, celsius: Array) -> tuple[Array, float, fl
 
     The latter two are zero if no correction was made.
     """
-    drawn, held_s = _through_jumps(time, celsius)
-    noise_k = noise_of(drawn)
+    interpolated, held_s = _through_jumps(time, celsius)
+    noise_k = noise_of(interpolated)
     if noise_k < NOISE_K:
-        return drawn, held_s, 0.0
-    return _averaged(time, drawn), held_s, noise_k
+        return interpolated, held_s, 0.0
+    return _averaged(time, interpolated), held_s, noise_k
 
 
 def _through_jumps(time: Array, celsius: Array) -> tuple[Array, float]:

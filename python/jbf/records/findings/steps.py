@@ -52,8 +52,8 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
 def _group_levels(values: Array) -> Array:
     """Return the levels of values close to them, ascending: the middle value of each group."""
     ordered = np.sort(values)
-    near = CRUMB * float(np.ptp(ordered)) / (MOST_LEVELS * len(ordered))
-    begins = np.flatnonzero(np.concatenate(([True], np.diff(ordered) > near)))
+    tolerance = CRUMB * float(np.ptp(ordered)) / (MOST_LEVELS * len(ordered))
+    begins = np.flatnonzero(np.concatenate(([True], np.diff(ordered) > tolerance)))
     ends = np.append(begins[1:], len(ordered))
     middle: Array = ordered[(begins + ends - 1) // 2]
     return middle

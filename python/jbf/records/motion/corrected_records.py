@@ -103,23 +103,25 @@ def corrected_records(
                 problem="is missing; an angle determines no speed without the journal's radius",
                 mend="add the column, or give the rig its [bearing]",
             )
-        speed, odd = mend_speed(name, time, speed, None, quantities.speed)
-        speed, loose, ends = mend_speed_ends(name, time, speed, None, quantities.speed)
-        return CorrectedRecords(None, 0.0, speed, True, _present(odd, *ends, stamps), loose)
+        speed, speed_outliers = mend_speed(name, time, speed, None, quantities.speed)
+        speed, end_mask, ends = mend_speed_ends(name, time, speed, None, quantities.speed)
+        return CorrectedRecords(
+            None, 0.0, speed, True, _present(speed_outliers, *ends, stamps), end_mask
+        )
     step = quantum_of(position.path_m) or step_of(position.path_m)
-    position, astray = mend_position(name, time, position)
-    position, loose, ends = mend_path_ends(name, time, position)
+    position, path_outliers = mend_position(name, time, position)
+    position, end_mask, ends = mend_path_ends(name, time, position)
     if not run.speed_recorded:
-        of_position = _present(astray, *ends, stamps)
+        of_position = _present(path_outliers, *ends, stamps)
         without_speed = _without_speed(
-            name, time, position.path_m, step, of_position, loose, quantities.speed
+            name, time, position.path_m, step, of_position, end_mask, quantities.speed
         )
         return replace(without_speed, arm_m=position.arm_m)
     zero = unit = None
     hum = 0.0
     # A difference of the positions has no separate unit or zero that could be wrong.
-    aside = derived_speed(name, stamps_s, position.path_m, speed)
-    if aside is None:
+    not_measured = derived_speed(name, stamps_s, position.path_m, speed)
+    if not_measured is None:
         speed, hum, zero = speed_zero(name, time, position.path_m, speed, step, quantities.speed)
         unit = wrong_unit(name, time, position, speed, quantities)
         if unit is not None and unit.of_speed:
@@ -127,24 +129,28 @@ def corrected_records(
         elif unit is not None:
             position = position.along(position.path_m / unit.factor)
             step = step / abs(unit.factor)
-        aside = derived_speed(name, stamps_s, position.path_m, speed) or filtered_speed(
+        not_measured = derived_speed(name, stamps_s, position.path_m, speed) or filtered_speed(
             name, time, position.path_m, speed
         )
     path = position.path_m
-    odd = stale = None
-    measured = aside is None
+    speed_outliers = stale = None
+    measured = not_measured is None
     if measured:
-        speed, odd = mend_speed(name, time, speed, path, quantities.speed)
-        speed, off, more = mend_speed_ends(name, time, speed, path, quantities.speed)
-        loose, ends = loose | off, [*ends, *more]
+        speed, speed_outliers = mend_speed(name, time, speed, path, quantities.speed)
+        speed, speed_end_mask, speed_ends = mend_speed_ends(
+            name, time, speed, path, quantities.speed
+        )
+        end_mask, ends = end_mask | speed_end_mask, [*ends, *speed_ends]
         position, stale = replace_stale_positions(name, time, position, speed, quantities.mover)
         path = position.path_m
     else:
         speed = centred_speed(time, path)
-    shaken = stamps or jittered_path(name, time, path, speed)
+    jitter = stamps or jittered_path(name, time, path, speed)
     scale = None if unit is None else unit.finding
-    findings = _present(astray, *ends, zero, scale, aside, odd, stale, shaken)
-    return CorrectedRecords(path, step, speed, measured, findings, loose, position.arm_m, hum)
+    findings = _present(
+        path_outliers, *ends, zero, scale, not_measured, speed_outliers, stale, jitter
+    )
+    return CorrectedRecords(path, step, speed, measured, findings, end_mask, position.arm_m, hum)
 
 
 def _without_speed(
@@ -153,7 +159,7 @@ def _without_speed(
     path: Array,
     step: float,
     findings: tuple[Finding, ...],
-    loose: Mask,
+    end_mask: Mask,
     unit: str,
 ) -> CorrectedRecords:
     """Return the records of a motion without a recorded speed."""
@@ -162,8 +168,8 @@ def _without_speed(
     derived = Finding(
         "no_speed", "velocity_m_s", name, 0.0, unit, "derived from the position", words
     )
-    shaken = () if findings else _present(jittered_path(name, time, path, speed))
-    return CorrectedRecords(path, step, speed, False, (derived, *findings, *shaken), loose)
+    jitter = () if findings else _present(jittered_path(name, time, path, speed))
+    return CorrectedRecords(path, step, speed, False, (derived, *findings, *jitter), end_mask)
 
 
 def _present(*findings: Finding | None) -> tuple[Finding, ...]:

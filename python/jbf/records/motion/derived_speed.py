@@ -49,8 +49,8 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
             in_motion = moving[where]
             if in_motion.sum() < 50:
                 continue
-            near = np.abs(speed[where] - difference)[in_motion] <= tolerance
-            if near.mean() > ALIKE:
+            agrees = np.abs(speed[where] - difference)[in_motion] <= tolerance
+            if agrees.mean() > ALIKE:
                 return _finding(name, span, (0.5 * span - after) * median_step)
     return None
 

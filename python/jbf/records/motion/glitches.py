@@ -48,10 +48,10 @@ def mend_position(name: str, time: Array, position: Position) -> tuple[Position,
     while mask.sum() <= RARE * len(path):
         # Of two adjacent outliers, the second is detected once the first is excluded.
         valid = np.flatnonzero(~mask)
-        more = valid[_path_outliers(time[valid], path[valid], threshold)]
-        if not len(more):
+        further = valid[_path_outliers(time[valid], path[valid], threshold)]
+        if not len(further):
             break
-        mask[more] = True
+        mask[further] = True
     if not 0 < mask.sum() <= RARE * len(path):
         return position, None
     mended = _interpolated(time, path, mask)
@@ -70,11 +70,11 @@ def mend_speed(
         return speed, None
     before, after = _differences(np.diff(speed))
     typical = _local_median(np.abs(np.diff(speed)))
-    off = _smaller_difference(before, after)
-    off[off <= CHANGES * np.maximum(typical[:-1], typical[1:])] = 0.0
+    deviation = _smaller_difference(before, after)
+    deviation[deviation <= CHANGES * np.maximum(typical[:-1], typical[1:])] = 0.0
     bend = _local_median(np.abs(before + after)) / 0.6745 / np.sqrt(6.0)
-    off[off <= FAR * bend] = 0.0
-    mask = np.concatenate(([False], off != 0.0, [False]))
+    deviation[deviation <= FAR * bend] = 0.0
+    mask = np.concatenate(([False], deviation != 0.0, [False]))
     # In a record without noise, every corner would exceed the threshold.
     if np.median(np.abs(before + after)) == 0.0:
         return speed, None
@@ -98,8 +98,8 @@ def mend_path_ends(
     path = position.path_m
     mask = end_outliers(time, path, 3)
     mended = _interpolated(time, path, mask)
-    off = (path - mended) / position.arm_m
-    finding = ends_finding(position.column, "position", name, mask, off, position.unit, ASIDE)
+    deviation = (path - mended) / position.arm_m
+    finding = ends_finding(position.column, "position", name, mask, deviation, position.unit, ASIDE)
     return (position.along(mended) if finding else position), mask, [finding] if finding else []
 
 
@@ -131,15 +131,17 @@ def _path_outliers(time: Array, path: Array, threshold: float) -> Mask:
     t = np.stack([time[k : n - 4 + k] - time[2 : n - 2] for k in (0, 1, 3, 4)])
     y = np.stack([path[k : n - 4 + k] - path[2 : n - 2] for k in (0, 1, 3, 4)])
     weights = weights_at_zero(t)
-    off = -np.sum(weights * y, axis=0)
-    size = np.abs(off)
+    deviation = -np.sum(weights * y, axis=0)
+    size = np.abs(deviation)
     outlying = size > np.maximum(FAR * _local_median(size) / 0.6745, threshold)
     # An outlier causes opposite deviations at the adjacent samples, by its weight in their cubics.
     for neighbour, weight in (
-        (np.pad(off, (1, 0))[:-1], np.pad(weights[2], (1, 0))[:-1]),
-        (np.pad(off, (0, 1))[1:], np.pad(weights[1], (0, 1))[1:]),
+        (np.pad(deviation, (1, 0))[:-1], np.pad(weights[2], (1, 0))[:-1]),
+        (np.pad(deviation, (0, 1))[1:], np.pad(weights[1], (0, 1))[1:]),
     ):
-        outlying &= (-neighbour * off > BESIDE * weight * size**2) & (np.abs(neighbour) < size)
+        outlying &= (-neighbour * deviation > BESIDE * weight * size**2) & (
+            np.abs(neighbour) < size
+        )
     # At a jump of the speed, the steps on both sides differ by three times the deviation.
     outlying &= size > JUMP * np.abs((y[3] - y[2]) - (y[1] - y[0]))
     mask[2:-2] = outlying
@@ -153,14 +155,14 @@ def _differences(change: Array) -> tuple[Array, Array]:
 
 def _smaller_difference(before: Array, after: Array) -> Array:
     """Return the smaller of both differences, or zero if sign or magnitude do not match."""
-    less, more = (
+    smaller, larger = (
         np.minimum(np.abs(before), np.abs(after)),
         np.maximum(np.abs(before), np.abs(after)),
     )
-    off = np.where((before * after > 0.0) & (less > ALIKE * more), less, 0.0)
+    deviation = np.where((before * after > 0.0) & (smaller > ALIKE * larger), smaller, 0.0)
     # Samples next to an outlier deviate from it as well, so only the largest deviation is kept.
-    largest = np.maximum(np.pad(off, (1, 0))[:-1], np.pad(off, (0, 1))[1:])
-    excess: Array = np.where(off > largest, off, 0.0)
+    largest = np.maximum(np.pad(deviation, (1, 0))[:-1], np.pad(deviation, (0, 1))[1:])
+    excess: Array = np.where(deviation > largest, deviation, 0.0)
     return excess
 
 
@@ -195,8 +197,8 @@ def _interpolated(time: Array, values: Array, mask: Mask) -> Array:
     valid = np.flatnonzero(~mask)
     for i in np.flatnonzero(mask):
         k = int(np.searchsorted(valid, i))
-        near = valid[max(k - 2, 0) : k + 2]
-        t, y = time[near] - time[i], values[near]
+        support = valid[max(k - 2, 0) : k + 2]
+        t, y = time[support] - time[i], values[support]
         # A cubic within the record, a straight line at its ends.
         mended[i] = np.dot(weights_at_zero(t), y)
     return mended

@@ -41,13 +41,13 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
     """
     steps = np.diff(time)
     median_step = float(np.median(steps))
-    near = np.abs(steps - median_step) < EVEN * median_step
-    if len(steps) < 60 or near.mean() < MOSTLY:
+    regular = np.abs(steps - median_step) < EVEN * median_step
+    if len(steps) < 60 or regular.mean() < MOSTLY:
         return None
     # A sampling rate that changes smoothly is not jitter. `noise_of` takes third differences of the
     # steps, which are fourth differences of the time stamps. For white noise, the variance of the
     # fourth differences is 70 times that of the noise, and that of third differences 20 times.
-    size = noise_of(steps[near]) * float(np.sqrt(20.0 / 70.0))
+    size = noise_of(steps[regular]) * float(np.sqrt(20.0 / 70.0))
     if size < LEAST * median_step:
         return None
     words = f"the time stamps deviate from a regular clock by {1e3 * size:.3g} ms RMS"
@@ -70,7 +70,7 @@ def jittered_path(name: str, time: Array, path: Array, speed: Array) -> Finding 
     top = float(np.quantile(inner, 0.98))
     step = step_of(path)
     floor = step / np.sqrt(12.0)
-    sizes, slow = [], floor
+    sizes, slow_noise = [], floor
     for low, high in ((0.0, 0.15), (0.3, 0.6), (0.6, 1.1)):
         in_band = (inner >= low * top) & (inner < high * top) & ~spoilt
         if in_band.sum() < 60:
@@ -79,17 +79,17 @@ def jittered_path(name: str, time: Array, path: Array, speed: Array) -> Finding 
             continue
         noise = float(np.median(np.abs(rough[in_band]))) / 0.6745 / UNIT
         if low == 0.0:
-            slow = max(noise, floor)
+            slow_noise = max(noise, floor)
             continue
         pairs = in_band[1:] & in_band[:-1]
         if not np.any(pairs):
             return None
         if _correlation(rough[1:][pairs], rough[:-1][pairs]) > WHITE or noise < max(
-            BEYOND * slow, COUNTS * step
+            BEYOND * slow_noise, COUNTS * step
         ):
             return None
         mean = float(np.sqrt(np.mean(inner[in_band] ** 2)))
-        sizes.append(float(np.sqrt(noise**2 - slow**2)) / mean)
+        sizes.append(float(np.sqrt(noise**2 - slow_noise**2)) / mean)
     size = sizes[-1]
     if size < LEAST * median_step or not 1.0 / AGREE < sizes[0] / size < AGREE:
         return None

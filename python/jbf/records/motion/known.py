@@ -19,9 +19,9 @@ def known_motion(run: Run, radius_m: float | None) -> EstimatedMotion:
         Journal radius, m; None on a linear axis.
     """
     velocity = run.velocity
-    still = np.concatenate(([False], velocity == 0.0, [False]))
+    zero_speed = np.concatenate(([False], velocity == 0.0, [False]))
     # A single zero between two moving samples is a reversal or a bend, not a rest.
-    resting = still[1:-1] & (still[:-2] | still[2:])
+    resting = zero_speed[1:-1] & (zero_speed[:-2] | zero_speed[2:])
     angle = run.angle_rad
     if angle is None:
         assert run.position_m is not None

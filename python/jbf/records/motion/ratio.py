@@ -46,14 +46,18 @@ def metres_per_unit(time: Array, path: Array, speed: Array) -> float | None:
     return None
 
 
-def slope_near(time: Array, path: Array, speed: Array, near: float) -> float:
+def slope_near(time: Array, path: Array, speed: Array, estimate: float) -> float:
     """Ratio by least squares, over the windows whose ratio is close to a first estimate."""
     for c in window_comparisons(time, path, speed, WIDE):
         ratio, _ = _middle(c)
-        if abs(ratio / near - 1.0) < OFF:
-            close = np.abs(c.by_path - near * c.by_speed) < OFF * np.abs(c.by_path) + c.count
-            return float(c.by_path[close] @ c.by_speed[close] / np.sum(c.by_speed[close] ** 2))
-    return near
+        if abs(ratio / estimate - 1.0) < OFF:
+            consistent = (
+                np.abs(c.by_path - estimate * c.by_speed) < OFF * np.abs(c.by_path) + c.count
+            )
+            return float(
+                c.by_path[consistent] @ c.by_speed[consistent] / np.sum(c.by_speed[consistent] ** 2)
+            )
+    return estimate
 
 
 def _middle(c: Compared) -> tuple[float, float]:

@@ -136,15 +136,15 @@ def certain_rests(rest: Mask) -> Mask:
 
     Ends at the first or the last sample are not shortened.
     """
-    sure: Mask = rest.copy()
+    certain: Mask = rest.copy()
     edges = np.diff(np.concatenate(([0], rest.astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
         margin = min(int(end - first) // 3, STILL_SAMPLES)
         if first > 0:
-            sure[first : first + margin] = False
+            certain[first : first + margin] = False
         if end < len(rest):
-            sure[end - margin : end] = False
-    return sure
+            certain[end - margin : end] = False
+    return certain
 
 
 def rest_edges(rest: Mask, time_s: Array, velocity: Array, acceleration: Array) -> Mask:
@@ -218,13 +218,13 @@ def without_swings(rest: Mask, velocity: Array, sign_known: Mask) -> None:
     """
     edges = np.diff(np.concatenate(([0], (~rest).astype(np.int8), [0])))
     for first, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1), strict=True):
-        sure = np.flatnonzero(sign_known[first:end])
-        if not len(sure):
+        sign_known_at = np.flatnonzero(sign_known[first:end])
+        if not len(sign_known_at):
             continue
         v = velocity[first:end]
         if first > 0:
-            start = v[: sure[0]]
-            start[start * v[sure[0]] < 0.0] = 0.0
+            start = v[: sign_known_at[0]]
+            start[start * v[sign_known_at[0]] < 0.0] = 0.0
         if end < len(rest):
-            stop = v[sure[-1] + 1 :]
-            stop[stop * v[sure[-1]] < 0.0] = 0.0
+            stop = v[sign_known_at[-1] + 1 :]
+            stop[stop * v[sign_known_at[-1]] < 0.0] = 0.0

@@ -47,16 +47,16 @@ def speed_zero(
     finding : Finding or None
         The finding, if the speed was corrected.
     """
-    still = _rest_mask(path, step)
-    if step <= 0.0 or still.sum() < LEAST:
+    resting = _rest_mask(path, step)
+    if step <= 0.0 or resting.sum() < LEAST:
         return speed, 0.0, None
-    at_rest = speed[still]
+    at_rest = speed[resting]
     # Mean of the central values, since a median of quantised values is itself quantised.
     low, high = np.quantile(at_rest, [0.1, 0.9])
     inner = at_rest[(at_rest >= low) & (at_rest <= high)]
     zero = float(np.mean(inner))
     error = float(np.std(inner)) / np.sqrt(len(inner) / STILL_SAMPLES)
-    if abs(zero) < ERRORS * error or abs(zero) * _longest(time, still) < GONE * step:
+    if abs(zero) < ERRORS * error or abs(zero) * _longest(time, resting) < GONE * step:
         return speed, 0.0, None
     words = f"the speed reads {zero:.3g} {unit} at constant position"
     finding = Finding("speed_zero", "velocity_m_s", name, zero, unit, "subtracted", words)
@@ -70,17 +70,17 @@ def _rest_mask(path: Array, step: float) -> Mask:
     `STILL_STEPS` encoder steps.
     """
     n = len(path)
-    still = np.zeros(n, dtype=bool)
+    mask = np.zeros(n, dtype=bool)
     if n < STILL_SAMPLES:
-        return still
+        return mask
     windows = np.lib.stride_tricks.sliding_window_view(path, STILL_SAMPLES)
     for first in np.flatnonzero(np.ptp(windows, axis=1) <= STILL_STEPS * step):
-        still[first : first + STILL_SAMPLES] = True
-    return still
+        mask[first : first + STILL_SAMPLES] = True
+    return mask
 
 
-def _longest(time: Array, still: Mask) -> float:
+def _longest(time: Array, resting: Mask) -> float:
     """Duration of the longest standstill, s."""
-    edges = np.diff(np.concatenate(([0], still.astype(np.int8), [0])))
+    edges = np.diff(np.concatenate(([0], resting.astype(np.int8), [0])))
     firsts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return float(np.max(time[ends - 1] - time[firsts]))

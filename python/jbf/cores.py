@@ -18,14 +18,14 @@ def cap_threads() -> None:
     cores = os.cpu_count() or 1
     for name in _VARIABLES:
         try:
-            asked = int(os.environ.get(name, "0"))
+            requested = int(os.environ.get(name, "0"))
         except ValueError:
             continue  # not a number: the core uses all cores
-        if asked > cores:
+        if requested > cores:
             os.environ[name] = str(cores)
 
 
-def check_jobs(asked: int | None) -> None:
+def check_jobs(requested: int | None) -> None:
     """Check that the number of parallel jobs is at least one.
 
     Raises
@@ -33,14 +33,16 @@ def check_jobs(asked: int | None) -> None:
     InputError
         The number is less than one.
     """
-    if asked is not None and asked < 1:
-        raise InputError(file="--jobs", problem=f"{asked} campaigns at a time", mend="1 or more")
+    if requested is not None and requested < 1:
+        raise InputError(
+            file="--jobs", problem=f"{requested} campaigns at a time", mend="1 or more"
+        )
 
 
-def processes(asked: int | None, tasks: int) -> int:
+def processes(requested: int | None, tasks: int) -> int:
     """Return the number of parallel processes.
 
     The result is the requested number (None: the number of cores), limited to the number of tasks.
     All processes are started at once, even for short tasks.
     """
-    return max(min(asked or os.cpu_count() or 1, tasks), 1)
+    return max(min(requested or os.cpu_count() or 1, tasks), 1)

@@ -180,29 +180,29 @@ class Unfinished(InputError):
 
 def printable(text: str) -> str:
     """Escape control characters, which a terminal would otherwise interpret."""
-    return _CONTROLS.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
+    return _CONTROLS.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
 
 
 def quoted(text: object) -> str:
     """Return external text in double quotes, with control characters escaped, truncated if long."""
-    shown = str(text)
-    if not shown.isprintable():
-        shown = shown.encode("unicode_escape").decode("ascii")
-    if len(shown) > _LONGEST_QUOTE:
-        shown = shown[: _LONGEST_QUOTE - 3] + "..."
-    return f'"{shown}"'
+    escaped = str(text)
+    if not escaped.isprintable():
+        escaped = escaped.encode("unicode_escape").decode("ascii")
+    if len(escaped) > _LONGEST_QUOTE:
+        escaped = escaped[: _LONGEST_QUOTE - 3] + "..."
+    return f'"{escaped}"'
 
 
-def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+def closest(word: str, words: Iterable[str], cutoff: float = 0.6) -> str | None:
     """Return the known word that is most similar to `word`, ignoring case, or None."""
-    by_lower = {name.lower(): name for name in known}
-    found = get_close_matches(word.lower(), list(by_lower), n=1, cutoff=cutoff)
-    return by_lower[found[0]] if found else None
+    by_lower = {name.lower(): name for name in words}
+    matches = get_close_matches(word.lower(), list(by_lower), n=1, cutoff=cutoff)
+    return by_lower[matches[0]] if matches else None
 
 
-def did_you_mean(word: object, known: Iterable[str]) -> str:
+def did_you_mean(word: object, words: Iterable[str]) -> str:
     """Return a remedy for an unknown word: the most similar known word, or all known words."""
-    names = list(known)
+    names = list(words)
     guess = closest(word, names) if isinstance(word, str) else None
     if guess is not None:
         return f"did you mean {quoted(guess)}?"

@@ -64,17 +64,17 @@ OPTIONS = {
 """Current names of command-line options by old name."""
 
 
-def current_effect(name: str, known: Collection[str] = ()) -> str:
+def current_effect(name: str, names: Collection[str] = ()) -> str:
     """Return the current name of an effect; an unknown name is returned unchanged."""
-    return _current(name, EFFECTS, known)
+    return _current(name, EFFECTS, names)
 
 
-def current_parameter(name: str, known: Collection[str] = ()) -> str:
+def current_parameter(name: str, names: Collection[str] = ()) -> str:
     """Return the current name of a parameter (dotted); an unknown name is returned unchanged."""
-    if name in known:
+    if name in names:
         return name
     effect, dot, short = name.rpartition(".")
-    return _current(f"{EFFECTS.get(effect, effect)}{dot}{short}", PARAMETERS, known, name)
+    return _current(f"{EFFECTS.get(effect, effect)}{dot}{short}", PARAMETERS, names, name)
 
 
 def current_option(word: str) -> str:
@@ -84,11 +84,11 @@ def current_option(word: str) -> str:
 
 
 def _current(
-    name: str, table: Mapping[str, str], known: Collection[str], written: str | None = None
+    name: str, table: Mapping[str, str], names: Collection[str], written: str | None = None
 ) -> str:
     old = written or name
     new = table.get(name, name)
-    if old in known or new == old or (known and new not in known):
+    if old in names or new == old or (names and new not in names):
         return old
     # A FutureWarning is meant for users and is shown by default.
     warnings.warn(f'"{old}" is now called "{new}"', FutureWarning, stacklevel=3)

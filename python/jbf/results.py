@@ -56,10 +56,10 @@ def present(operation: Operation, result: object, *arguments: Any) -> Any:
     """
     for module in _modules.get(operation, ()):
         import_module(module)
-    known = _presenters.get(operation, {})
+    presenters = _presenters.get(operation, {})
     for kind in type(result).__mro__:
-        if kind in known:
-            return known[kind](result, *arguments)
+        if kind in presenters:
+            return presenters[kind](result, *arguments)
     raise TypeError(f"no {operation} is registered for results of type {type(result).__name__}")
 
 
@@ -128,9 +128,9 @@ class Result(Shown):
         """
         import numpy as np  # a large part of the import time of jbf
 
-        drawn = np.ravel(np.asarray(present("plot", self, axes), dtype=object))
-        single: Axes = drawn[0]
-        return drawn if len(drawn) > 1 else single
+        axes_drawn = np.ravel(np.asarray(present("plot", self, axes), dtype=object))
+        single: Axes = axes_drawn[0]
+        return axes_drawn if len(axes_drawn) > 1 else single
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result as JSON-serializable data; implemented by each subclass."""

@@ -63,8 +63,8 @@ def name_of(path: Path, depth: int = 1) -> str:
 def path_of(value: object) -> Path:
     """Convert to a path; raise an InputError if the value is not one."""
     if not isinstance(value, str | os.PathLike):
-        shown = "None" if value is None else type(value).__name__
-        raise InputError(problem=f"{shown} is not a path", mend="name a file or a folder")
+        type_name = "None" if value is None else type(value).__name__
+        raise InputError(problem=f"{type_name} is not a path", mend="name a file or a folder")
     return Path(value)
 
 

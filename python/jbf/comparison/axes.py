@@ -29,8 +29,8 @@ BOUNDARY_SHARE = 0.2
 
 def _both_directions(bins: Sequence[Bin], *, with_rest: bool = False) -> tuple[Bin, ...]:
     """Return the bins for backward motion, followed by the bins for forward motion."""
-    back = [replace(b, direction=-1, with_rest=with_rest) for b in bins]
-    return (*back, *(replace(b, direction=1) for b in bins))
+    backward = [replace(b, direction=-1, with_rest=with_rest) for b in bins]
+    return (*backward, *(replace(b, direction=1) for b in bins))
 
 
 def _signs(v: Array) -> Places:
@@ -71,8 +71,8 @@ def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
         edges = np.array([BOUNDARY_SHARE, 1.0]) * u_tr
     else:
         axis, unit = "speed range", campaign.rig.quantities.speed
-        whole = np.concatenate(speeds)
-        edges = np.quantile(whole[whole > 0.0], [1 / 3, 2 / 3])
+        all_speeds = np.concatenate(speeds)
+        edges = np.quantile(all_speeds[all_speeds > 0.0], [1 / 3, 2 / 3])
         names = (
             f"slow (to {edges[0]:.2g} {unit})",
             "medium",
@@ -122,11 +122,11 @@ def _time(campaign: Campaign, u_tr: float | None) -> Binned:
 
 def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array]) -> Binned:
     values = [measure(p) for p in campaign.prepared]
-    known = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values])
+    positive = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values])
     unit = "s" if axis == "time since a rest" else campaign.rig.quantities.length
-    if len(known) < 100:
+    if len(positive) < 100:
         return Binned(axis, (), [])
-    edges = np.unique(np.quantile(known, [0.05, 0.1, 0.2, 0.4, 0.7]))
+    edges = np.unique(np.quantile(positive, [0.05, 0.1, 0.2, 0.4, 0.7]))
     ends = [-np.inf, *edges.tolist(), np.inf]
     spans = [Bin(span=pair, unit=unit) for pair in pairwise(ends)]
     places = []
@@ -199,8 +199,10 @@ def _distinct(values: Array, edges: Array, reach: float) -> Array:
         below = np.searchsorted(values, edges)
         counts = np.diff(np.concatenate(([0], below, [len(values)])))
         smaller = np.maximum(np.minimum(counts[:-1], counts[1:]), 1)
-        near = np.searchsorted(values, edges + reach) - np.searchsorted(values, edges - reach)
-        crowded = near / smaller
+        close_samples = np.searchsorted(values, edges + reach) - np.searchsorted(
+            values, edges - reach
+        )
+        crowded = close_samples / smaller
         worst = int(np.argmax(crowded))
         if crowded[worst] <= 0.5:
             break

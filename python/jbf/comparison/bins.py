@@ -121,8 +121,8 @@ def label(axis: Axis, b: Bin) -> str:
     else:
         place = f"run {b.name}" if axis == "run" else b.name
     # The sign of the speed already gives the direction.
-    way = "" if axis == "velocity" else direction_words(b)
-    return ", ".join(words for words in (place, way) if words)
+    direction = "" if axis == "velocity" else direction_words(b)
+    return ", ".join(words for words in (place, direction) if words)
 
 
 def labels(axis: Axis, bins: tuple[Bin, ...]) -> tuple[str, ...]:

@@ -73,13 +73,15 @@ def compare(
     if not named:
         raise InputError(problem="no model was given", mend="give at least one jbf.Model")
     runs = list_of_runs(runs)
-    units = {the_model(one).rig.quantities.force for one in named.values()}
+    units = {the_model(compared_model).rig.quantities.force for compared_model in named.values()}
     if len(units) > 1:
         raise InputError(
             problem=f"the models predict friction in {' and '.join(sorted(units))}",
             mend="compare models of one machine",
         )
-    return compare_models({name: _compared(one, runs) for name, one in named.items()})
+    return compare_models(
+        {name: _compared(compared_model, runs) for name, compared_model in named.items()}
+    )
 
 
 def _compared(model: Model, runs: Sequence[Run]) -> Comparison:

@@ -138,9 +138,9 @@ def compare_models(comparisons: Mapping[str, Comparison]) -> ModelComparison:
         )
     prepared = several[0].campaign.prepared
     units = independent_units(counted, prepared)
-    sizes = np.array([np.count_nonzero(own) for _, own in units])
+    sizes = np.array([np.count_nonzero(in_unit) for _, in_unit in units])
     squares = {
-        name: np.array([np.sum(c.residuals[i][counted[i]][own] ** 2) for i, own in units])
+        name: np.array([np.sum(c.residuals[i][counted[i]][in_unit] ** 2) for i, in_unit in units])
         for name, c in comparisons.items()
     }
     rms = {

@@ -50,20 +50,20 @@ def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
     speed = samples.flat([p.motion.velocity for p in prepared])
     measured = samples.flat([p.friction - f for p, f in zip(prepared, rest, strict=True)])
     modelled = samples.flat([m - f for m, f in zip(comparison.predictions, rest, strict=True)])
-    found = []
-    for way in (1.0, -1.0):
-        own = np.flatnonzero(speed * way > 0.0)
-        if len(own) < FEWEST:
+    branches = []
+    for direction in (1.0, -1.0):
+        in_direction = np.flatnonzero(speed * direction > 0.0)
+        if len(in_direction) < FEWEST:
             continue
-        order = own[np.argsort(way * speed[own], kind="stable")]
+        order = in_direction[np.argsort(direction * speed[in_direction], kind="stable")]
         parts = np.array_split(order, max(min(BINS, len(order) // FEWEST), 1))
         rows = [
             (speed[p].mean(), measured[p].mean(), measured[p].std(), modelled[p].mean())
             for p in parts
         ]
         x, mean, scatter, model = np.array(rows).T
-        found.append(OverSpeed(way, x, mean, scatter, model))
-    return tuple(found)
+        branches.append(OverSpeed(direction, x, mean, scatter, model))
+    return tuple(branches)
 
 
 def regimes(model: Model) -> list[tuple[float, str]]:

@@ -32,9 +32,9 @@ NO_FRICTION = (
 
 def without(model: Model, effects: Collection[str]) -> Model:
     """Return the model without some of its effects, with all other parameters unchanged."""
-    kept = tuple(name for name in model.effects if name not in effects)
+    remaining = tuple(name for name in model.effects if name not in effects)
     values = {n: p for n, p in model.parameters.items() if n.rpartition(".")[0] not in effects}
-    return Model(model.rig, model.law, kept, values, model.clock)
+    return Model(model.rig, model.law, remaining, values, model.clock)
 
 
 def added_by(comparison: Comparison, effects: Collection[str]) -> list[Array]:
@@ -49,7 +49,7 @@ def added_by(comparison: Comparison, effects: Collection[str]) -> list[Array]:
         # The prediction of the full model has already issued this warning.
         warnings.simplefilter("ignore", FilmWarning)
         rest = predicted(without(model, effects), comparison.campaign)
-    return [whole - f for whole, f in zip(comparison.predictions, rest, strict=True)]
+    return [with_effects - f for with_effects, f in zip(comparison.predictions, rest, strict=True)]
 
 
 def non_friction_effects(comparison: Comparison) -> tuple[str, ...]:
@@ -75,10 +75,10 @@ def explained_residual(before: Comparison, after: Comparison) -> dict[str, list[
     stacked = np.concatenate([j[c] for j, c in zip(tangent, counted, strict=True)])
     size = np.linalg.norm(stacked, axis=0)
     scale = np.where(size > 0.0, size, 1.0)
-    found = {}
+    explained = {}
     for name in new:
         added = added_by(after, (name,))
         flat = before.samples.flat(added)
         share, *_ = np.linalg.lstsq(stacked / scale, flat, rcond=None)
-        found[name] = [a - j @ (share / scale) for a, j in zip(added, tangent, strict=True)]
-    return found
+        explained[name] = [a - j @ (share / scale) for a, j in zip(added, tangent, strict=True)]
+    return explained

@@ -78,9 +78,9 @@ def find_failures(
 def bin_means(axis: Binned, samples: Samples, residuals: Sequence[Array]) -> tuple[Array, Counts]:
     """Return the mean residual in each bin, N, and the number of samples."""
     r, places = samples.flat(residuals), samples.flat(axis.places)
-    known = places >= 0
-    counts = np.bincount(places[known], minlength=len(axis.bins))
-    sums = np.bincount(places[known], weights=r[known], minlength=len(axis.bins))
+    in_bins = places >= 0
+    counts = np.bincount(places[in_bins], minlength=len(axis.bins))
+    sums = np.bincount(places[in_bins], weights=r[in_bins], minlength=len(axis.bins))
     return sums / np.maximum(counts, 1), counts
 
 
@@ -118,26 +118,28 @@ def pattern_along(
     share = (explained - chance) / total if total > 0 else 0.0
     if share < least_share or explained < chance + significance * spread:
         return None
-    told = means if told_of is None else bin_means(axis, samples, told_of)[0]
-    words = pattern_words(axis, told, counts, found=means)
-    return Failure(axis.axis, words, share, axis.bins, told, counts)
+    described_means = means if told_of is None else bin_means(axis, samples, told_of)[0]
+    words = pattern_words(axis, described_means, counts, significant_means=means)
+    return Failure(axis.axis, words, share, axis.bins, described_means, counts)
 
 
-def pattern_words(axis: Binned, means: Array, counts: Counts, found: Array | None = None) -> str:
+def pattern_words(
+    axis: Binned, means: Array, counts: Counts, significant_means: Array | None = None
+) -> str:
     """Return the text that describes a pattern of the means.
 
-    `found` holds the means that select the bins, if they differ.
+    `significant_means` holds the means that select the bins, if they differ.
     """
-    weight = counts * (means if found is None else found) ** 2
+    weight = counts * (means if significant_means is None else significant_means) ** 2
     unit = axis.force_unit
     # With very many bins, even the largest fraction of a bin is small.
     strong = (weight > STRONG_SHARE * weight.sum()) | (weight == weight.max())
-    ways = np.array([b.direction for b in axis.bins])
-    both_ways = bool(np.all(ways != 0)) and strong.sum() > 1
-    if both_ways and np.all(np.sign(means[strong]) == ways[strong]):
+    directions = np.array([b.direction for b in axis.bins])
+    both_ways = bool(np.all(directions != 0)) and strong.sum() > 1
+    if both_ways and np.all(np.sign(means[strong]) == directions[strong]):
         size = np.average(np.abs(means[strong]), weights=counts[strong])
         lead = f"sign of v: record above the model by {size:.2g} {unit} in the direction of motion"
-    elif both_ways and np.all(np.sign(means[strong]) == -ways[strong]):
+    elif both_ways and np.all(np.sign(means[strong]) == -directions[strong]):
         size = np.average(np.abs(means[strong]), weights=counts[strong])
         lead = f"sign of v: record below the model by {size:.2g} {unit} in the direction of motion"
     elif np.all(means[strong] > 0) or np.all(means[strong] < 0):

@@ -77,8 +77,8 @@ def _held_words(why: str | None) -> str:
     """
     if why is None:
         return ""
-    said = " ".join(why.split()).replace("*/", "").replace("/*", "")
-    return f": held, {said}" if said else ": held"
+    note = " ".join(why.split()).replace("*/", "").replace("/*", "")
+    return f": held, {note}" if note else ": held"
 
 
 def constants(numbers: Numbers, language: Language) -> list[str]:

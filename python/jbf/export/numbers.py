@@ -103,9 +103,9 @@ def _units_note(model: Model) -> str:
 
 
 def _group(page: Law | Effect, model: Model, prefix: str = "") -> Group:
-    own = [model.parameters[f"{prefix}{p.name}"] for p in page.parameters]
-    held = tuple((p.note or "") if p.held else None for p in own)
-    return Group(page, tuple(p.value for p in own), held)
+    parameters = [model.parameters[f"{prefix}{p.name}"] for p in page.parameters]
+    notes = tuple((p.note or "") if p.held else None for p in parameters)
+    return Group(page, tuple(p.value for p in parameters), notes)
 
 
 def _vanishes(page: Parameter, value: float) -> bool:

@@ -14,16 +14,16 @@ from jbf.records.quantities import OF_BEARING, Quantities
 Array = npt.NDArray[np.float64]
 
 
-def _names(said: Quantities) -> dict[Axis, str]:
+def _names(quantities: Quantities) -> dict[Axis, str]:
     return {
-        "velocity": f"{said.velocity} ({said.speed})",
-        "angle": "Shaft angle (deg)" if said.motion == "bearing" else "Angle (deg)",
+        "velocity": f"{quantities.velocity} ({quantities.speed})",
+        "angle": "Shaft angle (deg)" if quantities.motion == "bearing" else "Angle (deg)",
         "time": "Time in the run (s)",
         "time since a rest": "Time since the last rest",
         "distance since a reversal": "Distance since the last reversal",
         "direction": "Direction of motion",
         "regime": "Lubrication regime",
-        "force": f"{said.noun.capitalize()} of the model ({said.force})",
+        "force": f"{quantities.noun.capitalize()} of the model ({quantities.force})",
         "speed range": "Speed range",
         "acceleration": "Phase of the motion",
         "run": "Run",
@@ -52,12 +52,12 @@ class BinAxis:
     ticks: tuple[str, ...]
 
 
-def bin_axis(failure: Failure, said: Quantities = OF_BEARING) -> BinAxis:
+def bin_axis(failure: Failure, quantities: Quantities = OF_BEARING) -> BinAxis:
     """Return the plot coordinates of a failure's bins.
 
     They are numerical if known, otherwise categorical.
     """
-    name = _names(said)[failure.axis]
+    name = _names(quantities)[failure.axis]
     series = tuple(_series(b, failure.axis) for b in failure.bins)
     positions = [b.position for b in failure.bins]
     if all(p is not None for p in positions):

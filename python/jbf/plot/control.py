@@ -72,18 +72,18 @@ def _error(ax: Axes, r: Result, stride: int, named: bool) -> None:
     title = f"RMS {r.rms:.3g}, peak {r.peak:.3g}"
     t = r.time_s[::stride]
     counts = r.time_s >= max(r.task.skip_s, 1.0)
-    shown = [r.error[counts]]
+    errors = [r.error[counts]]
     thin: dict[str, Any] = {"linewidth": 0.8, "rasterized": True}
     if not r.task.is_position:
         # The loop's own estimate differs from the motion of the shaft.
         ax.plot(t, r.true_error[::stride], color=MEASURED, label="of the shaft", **thin)
         title += f", of the shaft {r.true_rms:.3g}"
-        shown.append(r.true_error[counts])
+        errors.append(r.true_error[counts])
     ax.plot(t, r.error[::stride], color=BEFORE, label="of the estimate", **thin)
-    largest = max((float(np.quantile(np.abs(e), 0.999)) for e in shown if len(e)), default=1.0)
+    largest = max((float(np.quantile(np.abs(e), 0.999)) for e in errors if len(e)), default=1.0)
     ax.set_ylim(-1.5 * largest, 1.5 * largest)
     dress(ax, title, "Time (s)" if named else "", f"Error ({r.task.unit})" if named else "")
-    if named and len(shown) > 1:
+    if named and len(errors) > 1:
         ax.legend(loc="upper right", ncols=2, fontsize="x-small", frameon=False)
 
 

@@ -42,15 +42,17 @@ def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
     ax.set_xscale("log")
     if noise > 0.0:
         ax.axvline(noise, color=NOISE, linestyle="--", linewidth=1.5, label="noise floor")
-    fitted, held = _errors(steps)
-    ax.hlines(y, np.minimum(fitted, held), np.maximum(fitted, held), color=INK, linewidth=0.6)
+    fitted, held_out = _errors(steps)
+    ax.hlines(
+        y, np.minimum(fitted, held_out), np.maximum(fitted, held_out), color=INK, linewidth=0.6
+    )
     ax.plot(fitted, y, "o-", color=MODEL, label="fit")
-    ax.plot(held, y, "s--", color=BEFORE, markerfacecolor="white", label="held out")
+    ax.plot(held_out, y, "s--", color=BEFORE, markerfacecolor="white", label="held out")
     names = [step_words([s.effects for s in steps], i) for i in range(len(steps))]
     ax.set_yticks(y, labels=[plain(shortened(name, 44)) for name in names])
     ax.set_ylim(len(steps) - 0.5, -0.6)
-    _reach(ax, [noise, *fitted, *held])
-    for row, words in zip(y, _falls(held, unit), strict=True):
+    _reach(ax, [noise, *fitted, *held_out])
+    for row, words in zip(y, _falls(held_out, unit), strict=True):
         ax.annotate(
             words,
             (1.01, row),
@@ -68,10 +70,10 @@ def _errors(steps: Sequence[Step]) -> tuple[list[float], list[float]]:
     return [s.rms for s in steps], [s.held_out_rms for s in steps]
 
 
-def _falls(held: Sequence[float], unit: str) -> list[str]:
+def _falls(held_out: Sequence[float], unit: str) -> list[str]:
     """Format each held-out error with its relative change from the previous step."""
-    words = [f"{number(held[0])} {unit}"]
-    for last, now in pairwise(held):
+    words = [f"{number(held_out[0])} {unit}"]
+    for last, now in pairwise(held_out):
         change = 100.0 * (now / last - 1.0) if last > 0.0 else 0.0
         # The typographic minus sign has the width of the plus sign.
         words.append(f"{number(now)} {unit}  ({change:+.2g} %)".replace("-", "−"))
@@ -82,8 +84,8 @@ def _reach(ax: Axes, values: Sequence[float]) -> None:
     """Set the limits slightly beyond the values, with few round ticks."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    known = [v for v in values if v > 0.0 and np.isfinite(v)] or [1.0]
-    low, high = min(known), max(known)
+    positive = [v for v in values if v > 0.0 and np.isfinite(v)] or [1.0]
+    low, high = min(positive), max(positive)
     span = max(float(np.log(high / low)), 0.1)
     ax.set_xlim(low * float(np.exp(-0.06 * span)), high * float(np.exp(0.06 * span)))
     decades = np.log10(high / low)

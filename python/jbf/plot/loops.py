@@ -80,6 +80,6 @@ def draw_model(
     # The instant of a reversal lies between samples. A line through it would show a slope that the
     # model does not have.
     turns = np.append(np.sign(speed[1:]) * np.sign(speed[:-1]) < 0, False)
-    shown = comparison.samples.counted[index] & ~turns
-    modelled = np.where(shown, comparison.predictions[index] - rest, np.nan)
+    in_loop = comparison.samples.counted[index] & ~turns
+    modelled = np.where(in_loop, comparison.predictions[index] - rest, np.nan)
     ax.plot(speed, modelled, color=colour, linewidth=1.3, label=label, rasterized=True)

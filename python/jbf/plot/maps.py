@@ -47,16 +47,18 @@ def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None 
     modelled = samples.flat([m - f for m, f in zip(comparison.predictions, rest, strict=True)])
     edges = [_edges(speed), _edges(measured, ROWS * 2)]
     counts, across, up = np.histogram2d(speed, measured, bins=edges)
-    shown = np.where(counts > 0, counts, np.nan).T
-    most = max(float(counts.max()), 2.0)
+    drawn_counts = np.where(counts > 0, counts, np.nan).T
+    largest = max(float(counts.max()), 2.0)
     # Opacity grows with the density, so that the map works on light and dark backgrounds.
     veil = ListedColormap([(*to_rgb(MEASURED), a) for a in np.linspace(0.2, 1.0, 64)])
-    mesh = ax.pcolormesh(across, up, shown, cmap=veil, norm=LogNorm(1.0, most), rasterized=True)
+    mesh = ax.pcolormesh(
+        across, up, drawn_counts, cmap=veil, norm=LogNorm(1.0, largest), rasterized=True
+    )
     named = False
-    for way in (-1.0, 1.0):
-        own = speed * way > 0.0
-        if own.any():
-            x, mean = _means(speed[own], modelled[own])
+    for direction in (-1.0, 1.0):
+        in_direction = speed * direction > 0.0
+        if in_direction.any():
+            x, mean = _means(speed[in_direction], modelled[in_direction])
             ax.plot(x, mean, color=MODEL, linewidth=1.8, label=None if named else "model, mean")
             named = True
     ax.figure.colorbar(mesh, ax=ax, label="Samples", pad=0.01)
@@ -93,10 +95,10 @@ def residual_map(
             )
     ax = one_axes(ax, (9.0, 1.6 + min(0.22 * len(prepared), 6.0) if up == "run" else 3.6))
     x, y = (samples.flat(_values(comparison, name)) for name in (across, up))
-    left = samples.flat(comparison.residuals)
+    residual = samples.flat(comparison.residuals)
     edges = [_edges(v, n, runs=len(prepared) if name == "run" else 0)
              for v, n, name in ((x, CELLS, across), (y, ROWS, up))]  # fmt: skip
-    sums, *_ = np.histogram2d(x, y, bins=edges, weights=left)
+    sums, *_ = np.histogram2d(x, y, bins=edges, weights=residual)
     counts, *_ = np.histogram2d(x, y, bins=edges)
     noise = comparison.noise_rms or comparison.rms or 1.0
     with np.errstate(invalid="ignore"):
@@ -104,7 +106,7 @@ def residual_map(
     top = max(float(np.nanquantile(np.abs(means), 0.99)), 1.0)
     norm = TwoSlopeNorm(0.0, -top, top)
     mesh = ax.pcolormesh(edges[0], edges[1], means.T, cmap=DIVERGING, norm=norm, rasterized=True)
-    said = quantities_of(comparison)
+    quantities = quantities_of(comparison)
     ax.figure.colorbar(mesh, ax=ax, label="Residual / noise", pad=0.01, extend="both")
     for name, axis in ((across, ax.xaxis), (up, ax.yaxis)):
         if name == "run":
@@ -115,11 +117,13 @@ def residual_map(
         ax.invert_yaxis()
     words = {
         "time": "Time in the run (s)",
-        "speed": f"{said.velocity} ({said.speed})",
-        "place": f"Position ({said.length})" if said.motion == "linear" else "Angle (rad)",
+        "speed": f"{quantities.velocity} ({quantities.speed})",
+        "place": f"Position ({quantities.length})"
+        if quantities.motion == "linear"
+        else "Angle (rad)",
         "run": "",
     }
-    title = f"Mean residual / noise ({number(noise, 2)} {said.force})"
+    title = f"Mean residual / noise ({number(noise, 2)} {quantities.force})"
     dress(ax, title, words[across], words[up])
     ax.grid(visible=False)
     return ax

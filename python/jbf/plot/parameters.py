@@ -75,8 +75,8 @@ def intervals(
             continue
         percent = 100.0 * abs(p.stderr / p.value)
         if answers is not None:
-            off = 100.0 * (answers[name] / p.value - 1.0)
-            ax.plot(off, np.full(len(off), row), "|", color=MEASURED, markersize=9)
+            deviation = 100.0 * (answers[name] / p.value - 1.0)
+            ax.plot(deviation, np.full(len(deviation), row), "|", color=MEASURED, markersize=9)
         ax.errorbar(0.0, row, xerr=percent, fmt="o", color=MODEL, capsize=3, markersize=5)
         largest = max(largest, 1.5 * percent)
     labels = []

@@ -47,15 +47,15 @@ def power(
     from matplotlib.ticker import LogLocator, NullFormatter
     from scipy.special import ndtr
 
-    known = [p for p in found.power if _has_curve(p) and (effects is None or p.effect in effects)]
-    known.sort(key=lambda p: p.share_80 or 0.0)
-    if not known:
+    curves = [p for p in found.power if _has_curve(p) and (effects is None or p.effect in effects)]
+    curves.sort(key=lambda p: p.share_80 or 0.0)
+    if not curves:
         raise InputError(
             problem="the power of these effects is unknown",
             mend="see .power for the available effects",
         )
     ax = one_axes(ax, (7.0, 4.4))
-    shown = known if effects is not None else known[:MOST]
+    shown = curves if effects is not None else curves[:MOST]
     strongest = max(100.0 * (p.share_80 or 0.0) for p in shown)
     x = np.geomspace(0.3 * min(100.0 * (p.share_80 or 0.0) for p in shown), 3.0 * strongest, 400)
     for i, p in enumerate(shown):
@@ -70,7 +70,7 @@ def power(
     ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     ax.xaxis.set_minor_formatter(NullFormatter())
-    more = len(known) - len(shown)
+    more = len(curves) - len(shown)
     title = "Detection probability" + (f"; {more} more require a larger strength" if more else "")
     dress(ax, title, "Strength, share of the friction (%)", "Detection probability (%)")
     ax.legend(frameon=False, fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))

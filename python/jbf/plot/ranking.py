@@ -54,25 +54,25 @@ def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> A
             problem=f"step {step} does not exist",
             mend=f"choose one of {len(diagnosis.steps)} steps",
         )
-    found = diagnosis.steps[step]
-    trials = sorted(found.trials, key=lambda t: -t.evidence)
+    ledger_step = diagnosis.steps[step]
+    trials = sorted(ledger_step.trials, key=lambda t: -t.evidence)
     if not trials:
         raise InputError(
             problem=f"no candidates were tested at step {step}", mend="choose an earlier step"
         )
-    shown = _shown(trials)
-    ax = one_axes(ax, (7.0, ranking_height(found)))
-    y = np.arange(len(shown))
-    values = [t.evidence for t in shown]
-    colours = [COLOURS.get(t.outcome, MEASURED) for t in shown]
+    listed = _shown(trials)
+    ax = one_axes(ax, (7.0, ranking_height(ledger_step)))
+    y = np.arange(len(listed))
+    values = [t.evidence for t in listed]
+    colours = [COLOURS.get(t.outcome, MEASURED) for t in listed]
     ax.barh(y, values, color=colours, height=0.62)
     ax.axvline(0.0, color=INK, linewidth=0.8)
     ax.set_xscale("symlog", linthresh=LINEAR)
-    ax.set_yticks(y, labels=[t.effect for t in shown], fontsize="small")
-    ax.set_ylim(len(shown) - 0.4, -0.6)
+    ax.set_yticks(y, labels=[t.effect for t in listed], fontsize="small")
+    ax.set_ylim(len(listed) - 0.4, -0.6)
     low, high = min(*values, 0.0, -LINEAR), max(*values, 0.0, LINEAR)
     ax.set_xlim(1.3 * low, 12.0 * high)
-    for at, t in enumerate(shown):
+    for at, t in enumerate(listed):
         ax.annotate(
             f"{t.evidence:+.0f}  {t.outcome}".replace("-", "−"),
             (max(t.evidence, 0.0), at),
@@ -81,8 +81,8 @@ def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> A
             va="center",
             fontsize="x-small",
         )
-    rest = len(trials) - len(shown)
+    rest = len(trials) - len(listed)
     more = f"; {rest} with less evidence omitted" if rest else ""
-    beside = " + ".join([BARE, *found.effects])
-    dress(ax, f"Candidates added to the {beside}{more}", "Evidence", "")
+    model_text = " + ".join([BARE, *ledger_step.effects])
+    dress(ax, f"Candidates added to the {model_text}{more}", "Evidence", "")
     return ax

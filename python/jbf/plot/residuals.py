@@ -54,9 +54,9 @@ def means_along(comparison: Comparison, axis: str | None) -> Failure:
             return failure
     model = comparison.model
     u_tr = transition_speed(model.law, model.values.tolist())
-    found = {a.axis: a for a in all_axes(comparison.campaign, u_tr)}
-    found["force"] = force_axis(comparison.predictions, unit=quantities_of(comparison).force)
-    binned = next((a for name, a in found.items() if name == axis), found["velocity"])
+    by_axis = {a.axis: a for a in all_axes(comparison.campaign, u_tr)}
+    by_axis["force"] = force_axis(comparison.predictions, unit=quantities_of(comparison).force)
+    binned = next((a for name, a in by_axis.items() if name == axis), by_axis["velocity"])
     means, counts = patterns.bin_means(binned, comparison.samples, comparison.residuals)
     return patterns.Failure(binned.axis, "no pattern", 0.0, binned.bins, means, counts)
 
@@ -79,20 +79,24 @@ def residual_along(
         failure.
     """
     ax = one_axes(ax)
-    said = quantities_of(comparison)
-    noise_band(ax, comparison.noise_rms, unit=said.force)
-    draw_means(ax, means_along(comparison, axis), colour, said, label)
+    quantities = quantities_of(comparison)
+    noise_band(ax, comparison.noise_rms, unit=quantities.force)
+    draw_means(ax, means_along(comparison, axis), colour, quantities, label)
     legend_on_top(ax)
     return ax
 
 
-def draw_means(ax: Axes, failure: Failure, colour: str, said: Quantities, label: str = "") -> None:
+def draw_means(
+    ax: Axes, failure: Failure, colour: str, quantities: Quantities, label: str = ""
+) -> None:
     """Plot the mean residual in the bins, one line per direction of motion."""
-    place = bin_axis(failure, said)
+    place = bin_axis(failure, quantities)
     directions = list(dict.fromkeys(place.series))
     for direction, marker in zip(directions, "os", strict=False):
-        own = np.array([s == direction for s in place.series]) & (failure.counts > 0)
-        x, means = _at_places(place.x[own], failure.means_n[own], failure.counts[own])
+        in_direction = np.array([s == direction for s in place.series]) & (failure.counts > 0)
+        x, means = _at_places(
+            place.x[in_direction], failure.means_n[in_direction], failure.counts[in_direction]
+        )
         name = ", ".join(x for x in (label, direction) if x)
         ax.plot(
             x,
@@ -107,7 +111,9 @@ def draw_means(ax: Axes, failure: Failure, colour: str, said: Quantities, label:
         )
     if place.ticks:
         _ticks(ax, place.ticks)
-    dress(ax, f"Residual along {failure.axis}", place.name, f"Record minus model ({said.force})")
+    dress(
+        ax, f"Residual along {failure.axis}", place.name, f"Record minus model ({quantities.force})"
+    )
 
 
 def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[Array, Array]:
@@ -125,12 +131,12 @@ def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[A
 def _ticks(ax: Axes, ticks: tuple[str, ...]) -> None:
     """Label the bins; if there are many labels, only every n-th is shown."""
     every = -(-len(ticks) // MOST_TICKS)
-    shown = [plain(shortened(t, 24)) for t in ticks[::every]]
-    longest = max(len(line) for tick in shown for line in tick.split("\n"))
-    crowded = longest * len(shown) > 70
+    labels = [plain(shortened(t, 24)) for t in ticks[::every]]
+    longest = max(len(line) for tick in labels for line in tick.split("\n"))
+    crowded = longest * len(labels) > 70
     ax.set_xticks(
         range(0, len(ticks), every),
-        labels=shown,
+        labels=labels,
         rotation=30 if crowded else 0,
         ha="right" if crowded else "center",
         fontsize="small",
@@ -144,12 +150,12 @@ def residual_in_time(
     ax = one_axes(ax, (10.0, 3.0))
     index = index_of(comparison, run)
     p = comparison.campaign.prepared[index]
-    shown = np.where(comparison.samples.counted[index], comparison.residuals[index], np.nan)
+    residual = np.where(comparison.samples.counted[index], comparison.residuals[index], np.nan)
     unit = quantities_of(comparison).force
     noise_band(ax, comparison.noise_rms, unit=unit)
     ax.plot(
         p.run.time_s,
-        shown,
+        residual,
         ".",
         color=MODEL,
         markersize=2,
@@ -157,12 +163,12 @@ def residual_in_time(
         rasterized=True,
     )
     # Otherwise a few outliers would determine the scale.
-    size = np.abs(shown[np.isfinite(shown)])
+    size = np.abs(residual[np.isfinite(residual)])
     reach = max(1.4 * float(np.quantile(size, NEARLY_ALL)), 3.0 * comparison.noise_rms)
     if reach > 0.0:
         ax.set_ylim(-reach, reach)
-    far = int(np.sum(size > reach))
-    beyond = f"; {count_of(far, 'sample')} beyond" if far else ""
+    count_beyond = int(np.sum(size > reach))
+    beyond = f"; {count_of(count_beyond, 'sample')} beyond" if count_beyond else ""
     dress(ax, f"Residual, run {p.run.name}{beyond}", "Time (s)", f"Record minus model ({unit})")
     legend_on_top(ax)
     return ax

@@ -51,5 +51,8 @@ def quantities_of(comparison: Comparison) -> Quantities:
 
 def axes_words(comparison: Comparison) -> tuple[str, str]:
     """Return the axis labels of speed and friction."""
-    said = quantities_of(comparison)
-    return f"{said.velocity} ({said.speed})", f"{said.friction} ({said.force})"
+    quantities = quantities_of(comparison)
+    return (
+        f"{quantities.velocity} ({quantities.speed})",
+        f"{quantities.friction} ({quantities.force})",
+    )

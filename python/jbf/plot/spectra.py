@@ -43,8 +43,8 @@ def spectrum(
     p = comparison.campaign.prepared[index]
     time = p.run.time_s
     step = float(np.median(np.diff(time)))
-    left = np.where(comparison.samples.counted[index], comparison.residuals[index], 0.0)
-    even = np.interp(np.arange(time[0], time[-1] + 0.5 * step, step), time, left)
+    residual = np.where(comparison.samples.counted[index], comparison.residuals[index], 0.0)
+    even = np.interp(np.arange(time[0], time[-1] + 0.5 * step, step), time, residual)
     length = min(max(2 * len(even) // (SEGMENTS + 1), SHORTEST), len(even))
     frequency, density = welch(even, 1.0 / step, nperseg=length)
     unit = quantities_of(comparison).force

@@ -26,23 +26,23 @@ def stribeck(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
     from jbf.comparison.over_speed import friction_over_speed
 
     ax = one_axes(ax)
-    ways = friction_over_speed(comparison)
-    for number, own in enumerate(ways):
+    branches = friction_over_speed(comparison)
+    for number, branch in enumerate(branches):
         ax.errorbar(
-            own.speed_m_s,
-            own.measured_n,
-            yerr=own.scatter_n,
+            branch.speed_m_s,
+            branch.measured_n,
+            yerr=branch.scatter_n,
             fmt="o",
             color=MEASURED,
-            markerfacecolor=MEASURED if own.way > 0.0 else "white",
+            markerfacecolor=MEASURED if branch.way > 0.0 else "white",
             markersize=5,
             elinewidth=0.8,
             label=None if number else "measured, with standard deviation",
         )
         name = None if number else "model at the same samples"
-        ax.plot(own.speed_m_s, own.modelled_n, "-", color=MODEL, linewidth=1.5, label=name)
+        ax.plot(branch.speed_m_s, branch.modelled_n, "-", color=MODEL, linewidth=1.5, label=name)
     limits = ax.get_ylim()
-    _steady(ax, comparison, ways)
+    _steady(ax, comparison, branches)
     ax.set_ylim(limits)
     _regimes(ax, comparison)
     ax.axhline(0.0, color=INK, linewidth=0.6)
@@ -51,11 +51,13 @@ def stribeck(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _steady(ax: Axes, comparison: Comparison, ways: tuple[OverSpeed, ...]) -> None:
+def _steady(ax: Axes, comparison: Comparison, branches: tuple[OverSpeed, ...]) -> None:
     """Plot the steady curve of the law under the rig's load, if the rig has the required load."""
-    for number, own in enumerate(ways):
-        most = float(np.abs(own.speed_m_s).max())
-        x = own.way * np.geomspace(max(float(np.abs(own.speed_m_s).min()), 1e-4 * most), most, 300)
+    for number, branch in enumerate(branches):
+        top_speed = float(np.abs(branch.speed_m_s).max())
+        x = branch.way * np.geomspace(
+            max(float(np.abs(branch.speed_m_s).min()), 1e-4 * top_speed), top_speed, 300
+        )
         try:
             steady = comparison.model.steady_friction(x)
         except InputError:
@@ -70,9 +72,9 @@ def _regimes(ax: Axes, comparison: Comparison) -> None:
 
     left, right = ax.get_xlim()
     for speed, name in regimes(comparison.model):
-        for way in (1.0, -1.0):
-            if left < way * speed < right:
-                ax.axvline(way * speed, color=INK, linewidth=0.8, linestyle=(0, (2, 4)))
+        for direction in (1.0, -1.0):
+            if left < direction * speed < right:
+                ax.axvline(direction * speed, color=INK, linewidth=0.8, linestyle=(0, (2, 4)))
         if speed < right:
             ax.text(
                 speed, 0.02, f" {name}", transform=ax.get_xaxis_transform(), fontsize="small",

@@ -56,19 +56,19 @@ def axes_or_new(
     axes: Sequence[Axes] | None, rows: int, columns: int, size: tuple[float, float]
 ) -> list[Axes]:
     """Return the given axes, or those of a new figure."""
-    wanted = rows * columns
+    count = rows * columns
     if axes is None:
         from matplotlib.figure import Figure
 
         figure = Figure(figsize=size, layout="constrained")
-        found = list(np.ravel(figure.subplots(rows, columns)))
+        axes_list = list(np.ravel(figure.subplots(rows, columns)))
     else:
-        found = list(np.ravel(np.asarray(axes, dtype=object)))
-    if len(found) != wanted:
+        axes_list = list(np.ravel(np.asarray(axes, dtype=object)))
+    if len(axes_list) != count:
         raise InputError(
-            problem=f"{len(found)} axes were given", mend=f"this picture requires {wanted}"
+            problem=f"{len(axes_list)} axes were given", mend=f"this picture requires {count}"
         )
-    return found
+    return axes_list
 
 
 def one_axes(ax: Axes | None, size: tuple[float, float] = (6.0, 4.0)) -> Axes:

@@ -45,15 +45,15 @@ def _converted(key: str, value: object, prefix: str) -> object:
     match = _QUANTITY.fullmatch(value)
     if match is None:
         return value
-    wanted, unit = named[1], parse_unit(match["unit"])
+    target, unit = named[1], parse_unit(match["unit"])
     # Dimensions must be equal, angles included: "10 mm/rev" would become a lead of 1.6 mm.
-    if unit is None or unit.dimensions != wanted.dimensions:
+    if unit is None or unit.dimensions != target.dimensions:
         raise InputError(
             key=f"{prefix}{key}",
-            problem=f"{value!r} is not a quantity in {wanted.text}",
-            mend=f"write a number in {wanted.text}, or a number with its unit",
+            problem=f"{value!r} is not a quantity in {target.text}",
+            mend=f"write a number in {target.text}, or a number with its unit",
         )
-    return float(unit.converted(np.array([float(match["number"])]), wanted)[0])
+    return float(unit.converted(np.array([float(match["number"])]), target)[0])
 
 
 def number_in(unit: str, text: str, option: str) -> float:
@@ -89,10 +89,10 @@ def number_in(unit: str, text: str, option: str) -> float:
         ) from None
 
 
-def _in_unit(number: float, unit: str, wanted: str) -> float:
-    if unit == wanted:
+def _in_unit(number: float, unit: str, target: str) -> float:
+    if unit == target:
         return number
-    given, to = parse_unit(unit), parse_unit(wanted)
+    given, to = parse_unit(unit), parse_unit(target)
     if given is None or to is None or given.dimensions != to.dimensions:
         raise ValueError
     return float(given.converted(np.array([number]), to)[0])

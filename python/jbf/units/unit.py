@@ -67,20 +67,20 @@ class Unit:
 
     def raised(self, power: int) -> Unit:
         """Return the unit raised to an integer power."""
-        whole = tuple(a * power for a in self.dimensions)
-        return Unit(self.text, self.ratio**power, self.pi * power, whole)
+        dimensions = tuple(a * power for a in self.dimensions)
+        return Unit(self.text, self.ratio**power, self.pi * power, dimensions)
 
-    def fits(self, wanted: Unit) -> bool:
-        """Return whether values in this unit can be converted to `wanted`.
+    def fits(self, target: Unit) -> bool:
+        """Return whether values in this unit can be converted to `target`.
 
         A radian in this unit may be omitted (rad m is m) but not added.
         """
-        if self.dimensions == wanted.dimensions:
+        if self.dimensions == target.dimensions:
             return True
-        mine, other = list(self.dimensions), list(wanted.dimensions)
-        if other[_RAD] == 0:
+        mine, theirs = list(self.dimensions), list(target.dimensions)
+        if theirs[_RAD] == 0:
             mine[_RAD] = 0
-        return mine == other
+        return mine == theirs
 
     def converted(self, values: Array, to: Unit) -> Array:
         """Convert values in this unit to another unit, with one rounding where possible."""
@@ -116,22 +116,22 @@ FAHRENHEIT_UNIT = Unit("°F", Fraction(5, 9), 0, TEMPERATURE, Fraction("273.15")
 
 def parse_unit(text: str) -> Unit | None:
     """Return the unit of a text, or None if the text is not a known unit."""
-    shown = " ".join(text.split())
-    if not shown or len(shown) > _LONGEST:
+    unit_text = " ".join(text.split())
+    if not unit_text or len(unit_text) > _LONGEST:
         return None
-    low = shown.lower()
+    low = unit_text.lower()
     if low in CELSIUS:
         return CELSIUS_UNIT
     if low in FAHRENHEIT:
         return FAHRENHEIT_UNIT
-    whole = _single(shown)
-    if whole is not None:
-        return Unit(shown, *whole)
+    single = _single(unit_text)
+    if single is not None:
+        return Unit(unit_text, *single)
     try:
-        product = _Product(shown).parse()
+        product = _Product(unit_text).parse()
     except ValueError:
         return None
-    return Unit(shown, product.ratio, product.pi, product.dimensions)
+    return Unit(unit_text, product.ratio, product.pi, product.dimensions)
 
 
 def unit_of_name(name: str) -> tuple[str, Unit] | None:
@@ -143,8 +143,8 @@ def unit_of_name(name: str) -> tuple[str, Unit] | None:
     for count in (3, 2, 1):
         if len(parts) <= count:
             continue
-        found = SUFFIXES.get("_".join(parts[-count:]).lower())
-        unit = None if found is None else parse_unit(found)
+        suffix_unit = SUFFIXES.get("_".join(parts[-count:]).lower())
+        unit = None if suffix_unit is None else parse_unit(suffix_unit)
         if unit is not None:
             return "_".join(parts[:-count]), unit
     return None
@@ -158,7 +158,9 @@ def _single(name: str) -> tuple[Fraction, int, Dimensions] | None:
     if alias is not None:
         return UNITS[alias]
     # Another case is accepted if exactly one unit matches.
-    alike = {entry for known, entry in UNITS.items() if known.lower() == name.lower()}
+    alike = {
+        entry for name_in_table, entry in UNITS.items() if name_in_table.lower() == name.lower()
+    }
     return alike.pop() if len(alike) == 1 and len(name) > 1 else None
 
 
@@ -173,13 +175,13 @@ class _Product:
         self.at = 0
 
     def parse(self) -> Unit:
-        found = self._product()
+        unit = self._product()
         if self.at != len(self.text):
             raise ValueError(self.text)
-        return found
+        return unit
 
     def _product(self) -> Unit:
-        found, power = ONE, 1
+        product, power = ONE, 1
         first = True
         while True:
             self._skip()
@@ -187,12 +189,12 @@ class _Product:
                 power = -1
                 self._skip()
             elif first is False and self.at < len(self.text) and self.text[self.at] == ")":
-                return found
+                return product
             elif self.at == len(self.text):
                 if first:
                     raise ValueError(self.text)
-                return found
-            found = found.times(self._factor(), power)
+                return product
+            product = product.times(self._factor(), power)
             power, first = 1, False
 
     def _factor(self) -> Unit:

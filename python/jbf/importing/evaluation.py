@@ -28,13 +28,13 @@ class Quantity:
 
     Attributes
     ----------
-    loose
+    unit_uncertain
         Whether the value contains a factor without a unit, so that its dimensions are uncertain.
     """
 
     value: Value
     unit: Unit
-    loose: bool = False
+    unit_uncertain: bool = False
 
 
 def column_unit(reference: Reference, units: Mapping[str, str]) -> Unit:
@@ -90,7 +90,7 @@ def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str])
     """
     if isinstance(node, Number):
         if node.unit is None:
-            return Quantity(node.value, ONE, loose=True)
+            return Quantity(node.value, ONE, unit_uncertain=True)
         unit = parse_unit(node.unit)
         if unit is None:
             raise InputError(
@@ -103,7 +103,7 @@ def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str])
     if isinstance(node, Signed):
         inner = evaluate(node.of, columns, units)
         _no_zero(inner.unit)
-        return Quantity(-inner.value, inner.unit, inner.loose)
+        return Quantity(-inner.value, inner.unit, inner.unit_uncertain)
     if isinstance(node, Call):
         return _called(node, evaluate(node.of, columns, units))
     left, right = (evaluate(side, columns, units) for side in (node.left, node.right))
@@ -127,10 +127,10 @@ def converted(quantity: Quantity, target: Unit, key: str) -> Array:
     if quantity.unit.fits(target):
         return quantity.unit.converted(values, target)
     angle = target.dimensions[_RAD] - quantity.unit.dimensions[_RAD]
-    if quantity.loose and angle == 0:
+    if quantity.unit_uncertain and angle == 0:
         # A bare factor is in SI units, and supplies the dimensions that are missing.
         return values * (quantity.unit.in_si / target.in_si)
-    if quantity.unit is ONE and not quantity.loose:
+    if quantity.unit is ONE and not quantity.unit_uncertain:
         problem = f"has no unit, but {target.text} is required"
         mend = "write a unit in square brackets after each column"
     elif angle and quantity.unit.dimensions[:_RAD] == target.dimensions[:_RAD]:
@@ -145,22 +145,22 @@ def converted(quantity: Quantity, target: Unit, key: str) -> Array:
 
 
 def _product(sign: str, left: Quantity, right: Quantity) -> Quantity:
-    loose = left.loose or right.loose
+    unit_uncertain = left.unit_uncertain or right.unit_uncertain
     if sign == "*":
-        return Quantity(left.value * right.value, left.unit.times(right.unit), loose)
+        return Quantity(left.value * right.value, left.unit.times(right.unit), unit_uncertain)
     with np.errstate(divide="ignore", invalid="ignore"):
         quotient = np.divide(left.value, right.value)
-    return Quantity(quotient, left.unit.times(right.unit, -1), loose)
+    return Quantity(quotient, left.unit.times(right.unit, -1), unit_uncertain)
 
 
 def _sum(sign: str, left: Quantity, right: Quantity) -> Quantity:
     unit, value = left.unit, right.value
     if right.unit.dimensions == unit.dimensions:
         value = right.unit.converted(np.asarray(value, dtype=np.float64), unit)
-    elif right.loose and right.unit.dimensions == NONE:
+    elif right.unit_uncertain and right.unit.dimensions == NONE:
         # A bare number added to a column with a unit has the unit of the column.
         pass
-    elif left.loose and left.unit.dimensions == NONE:
+    elif left.unit_uncertain and left.unit.dimensions == NONE:
         unit = right.unit
     else:
         raise InputError(
@@ -168,17 +168,17 @@ def _sum(sign: str, left: Quantity, right: Quantity) -> Quantity:
             mend="give each its unit in square brackets, such as [bar]",
         )
     total = left.value + value if sign == "+" else left.value - value
-    return Quantity(total, unit, left.loose and right.loose)
+    return Quantity(total, unit, left.unit_uncertain and right.unit_uncertain)
 
 
 def _called(node: Call, inner: Quantity) -> Quantity:
     _no_zero(inner.unit)
     if node.function == "abs":
-        return Quantity(np.abs(inner.value), inner.unit, inner.loose)
+        return Quantity(np.abs(inner.value), inner.unit, inner.unit_uncertain)
     if node.function == "sign":
         return Quantity(np.sign(inner.value), ONE)
     if node.function == "sqrt":
-        return Quantity(_root(inner), ONE, loose=True)
+        return Quantity(_root(inner), ONE, unit_uncertain=True)
     if inner.unit.dimensions[:_RAD] != NONE[:_RAD] or inner.unit.dimensions[_RAD] not in (0, 1):
         raise InputError(
             problem=f"{node.function} requires an angle, not {inner.unit.text}",
@@ -202,7 +202,7 @@ def _root(inner: Quantity) -> Value:
 def _refuse_double_conversion(node: Binary, left: Quantity, right: Quantity) -> None:
     """Raise an error if a bare factor would repeat the conversion of a unit."""
     for this, other, power in ((left, right, 1), (right, left, 1 if node.sign == "*" else 0)):
-        if not (other.loose and isinstance(other.value, float) and power):
+        if not (other.unit_uncertain and isinstance(other.value, float) and power):
             continue
         size = this.unit.in_si
         if this.unit.dimensions == NONE or size == 1.0 or other.unit is not ONE:

@@ -166,11 +166,11 @@ def test_deviating_end_of_the_speed_is_an_outlier_only_if_the_path_lacks_it() ->
     speed[-1] += 1.0
     path = PATH_M.copy()
     path[-1] += 0.5 * STEP_S
-    mended, loose, findings = mend_speed_ends("a", TIME_S, speed, path, "m/s")
-    assert (loose.any(), findings) == (False, [])
+    mended, outliers, findings = mend_speed_ends("a", TIME_S, speed, path, "m/s")
+    assert (outliers.any(), findings) == (False, [])
     np.testing.assert_array_equal(mended, speed)
-    mended, loose, findings = mend_speed_ends("a", TIME_S, speed, PATH_M, "m/s")
-    assert loose.sum() == len(findings) == 1
+    mended, outliers, findings = mend_speed_ends("a", TIME_S, speed, PATH_M, "m/s")
+    assert outliers.sum() == len(findings) == 1
     assert mended[-1] == pytest.approx(SPEED_M_S[-1], abs=2e-3)
 
 

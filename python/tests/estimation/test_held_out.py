@@ -111,7 +111,7 @@ def test_single_run_is_held_out_in_alternate_parts_that_predict_each_other() -> 
 
 
 def test_fourteen_runs_are_held_out_in_twelve_groups_whatever_their_order() -> None:
-    plan = [{"way": (-1.0) ** k, "rate": 10.0 + k, "seed": k} for k in range(14)]
+    plan = [{"direction": (-1.0) ** k, "rate": 10.0 + k, "seed": k} for k in range(14)]
     runs = [wandering(f"{p['seed']:02d}", coulomb, noise_rms=NOISE_N, **p) for p in plan]
     groups = []
     for some in (runs, runs[::-1]):

@@ -75,8 +75,8 @@ def _time(node: Node, values: Mapping[str, Values], units: Mapping[str, str]) ->
 
 
 def _is_since_1970(time: Array) -> bool:
-    known = time[np.isfinite(time)]
-    return bool(known.size) and bool(EPOCH_S[0] < known[0] < EPOCH_S[1])
+    finite = time[np.isfinite(time)]
+    return bool(finite.size) and bool(EPOCH_S[0] < finite[0] < EPOCH_S[1])
 
 
 def _column_since_1970(

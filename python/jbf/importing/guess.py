@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.importing.columns import KINDS, Header, parse_header
+from jbf.importing.candidates import Candidate, candidates_of, choose, is_unambiguous
+from jbf.importing.columns import parse_header
 from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.registry import format_of
 from jbf.importing.formats.table import Column, Source, Table, Values
@@ -21,53 +22,16 @@ from jbf.importing.guess_rig import (
     guess_rig,
     redundant_motor_columns,
 )
-from jbf.importing.guess_time import guess_time, is_doubtful_time, time_by_motion
+from jbf.importing.guess_time import guess_time, time_by_motion
 from jbf.importing.guessed import Entry, Guess, Question
 from jbf.importing.joints import JointNotChosen, with_units_of_joint_states
 from jbf.importing.names import qualified
 from jbf.importing.plausible import contradictions
 from jbf.importing.side_by_side import file_of
-from jbf.importing.targets import FRICTION, KNOWN, MOTION, wanted_unit
-from jbf.units.table import ANGLE, ASK, COUNT, NONE, SPEED, TORQUE
-from jbf.units.unit import parse_unit
+from jbf.importing.targets import FRICTION, KNOWN, MOTION
 
 HEAD = 5_000
 """Number of rows that are inspected."""
-NEVER = ("index", "acceleration", "coefficient", "run")
-"""Quantities that never become a column of a run."""
-_TURNS = tuple(unit.in_si for unit in map(parse_unit, ("rpm", "rps")) if unit is not None)
-_EXAMPLES = {
-    "m": "[mm]",
-    "m/s": "[mm/s]",
-    "rad": "[deg], [rad], or [counts] / 4096 [counts/rev]",
-    "rad/s": "[rad/s] or [deg/s]",
-    "rpm": "[rpm], [rad/s] or [deg/s]",
-}
-"""Usual units of a column of a run without a unit in the file, by the unit of the column."""
-_BY_UNIT = ("temperature", "pressure", "current", "time", "speed", "force", "torque", "place")
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A column of the file and the column of a run that it may provide."""
-
-    key: str
-    column: Column
-    header: Header
-    sure: bool
-    why: str
-    question: str | None = None
-    called: str = ""
-
-    @property
-    def expression(self) -> str:
-        """Expression for the map: name and, unless it is in the name, unit; `[?]` if open."""
-        name = written(self.called or self.column.name)
-        if self.question is not None:
-            return f"{name} [{OPEN}]"
-        in_name = parse_header(self.column.name).unit
-        unit = "" if in_name or self.column.kind == "instant" else self.column.unit
-        return f"{name} [{unit}]" if unit else name
 
 
 def guess(source: Source, joint: str | None = None) -> Guess:
@@ -95,7 +59,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     occurrences = Counter(column.name for table in tables for column in table.columns)
     joints = _joints(tables)
     by_voltage = not any(
-        c.key in FRICTION and c.key != "voltage_v" for table in tables for c in _candidates(table)
+        c.key in FRICTION and c.key != "voltage_v" for table in tables for c in candidates_of(table)
     )
     if joints and joint not in joints:
         raise JointNotChosen(source.path, joints, joint)
@@ -109,7 +73,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         heads |= {qualified(table, name, occurrences): values for name, values in head.items()}
         candidates = [
             replace(c, called=qualified(table, c.column.name, occurrences))
-            for c in _candidates(table)
+            for c in candidates_of(table)
             if (c.header.label not in joints or c.header.label == joint)
             and (by_voltage or c.key != "voltage_v")
         ]
@@ -124,11 +88,11 @@ def guess(source: Source, joint: str | None = None) -> Guess:
         chosen = {} if time is None else {time.key: time}
         for key in dict.fromkeys(c.key for c in candidates):
             rivals = [c for c in candidates if c.key == key]
-            if key in ("temperature_c", "pressure_pa") and not _is_unambiguous(rivals, key):
+            if key in ("temperature_c", "pressure_pa") and not is_unambiguous(rivals, key):
                 # Columns that no model requires are left out without a question.
                 ignored |= {c.column.name: f"several columns may be {key}" for c in rivals}
                 continue
-            entry, rest, open_questions = _choose(key, rivals)
+            entry, rest, open_questions = choose(key, rivals)
             chosen[key] = entry
             ignored |= dict.fromkeys(rest, f"another column is used for {key}")
             file = made_in.get(key, file_of(source, table))
@@ -194,7 +158,7 @@ def _joints(tables: Sequence[Table]) -> list[str]:
     """Return the labels of joints if several joints have both a friction and a motion."""
     labels: dict[bool, list[str]] = {True: [], False: []}
     for table in tables:
-        for candidate in _candidates(table):
+        for candidate in candidates_of(table):
             if candidate.key in (*FRICTION, *MOTION) and candidate.header.label:
                 labels[candidate.key in FRICTION].append(candidate.header.label)
     both = [label for label in dict.fromkeys(labels[False]) if label in labels[True]]
@@ -218,138 +182,6 @@ def _qualify_names(expression: str, table: Table, occurrences: Counter[str]) -> 
 
 def _order(key: str) -> int:
     return KNOWN.index(key) if key in KNOWN else len(KNOWN)
-
-
-def _candidates(table: Table) -> list[Candidate]:
-    candidates = [c for column in table.columns if (c := _candidate(column, table)) is not None]
-    return [c for c in candidates if c.key != "time_s"]
-
-
-def _candidate(column: Column, table: Table) -> Candidate | None:
-    if column.kind != "number":
-        return None
-    if column.name in KNOWN:
-        header = parse_header(column.name)
-        if column.unit and not _fits(column.unit, column.name):
-            question = (
-                f"its unit {column.unit} contradicts its name ({wanted_unit(column.name).text})"
-            )
-            return Candidate(column.name, column, header, False, "by name", question)
-        return Candidate(column.name, column, header, True, "name of a jbf column")
-    header = parse_header(column.name, column.unit)
-    if header.kind is None and not header.setpoint:
-        # `force/value`: the name of the group applies, unless another column has its quantity.
-        by_group = parse_header(f"{table.name} {column.name}", column.unit)
-        if by_group.kind not in {parse_header(c.name, c.unit).kind for c in table.columns}:
-            header = by_group
-    if header.setpoint or header.modelled or header.kind in NEVER or is_doubtful_time(header):
-        return None
-    unit = None if header.unit in ASK else parse_unit(header.unit)
-    kind, why = header.kind, "by name"
-    if kind == "force" and unit is not None and unit.dimensions == TORQUE:
-        kind = "torque"  # a friction in N m
-    if unit is not None and (kind is None or unit.dimensions not in KINDS[kind]):
-        # A name of at most two letters does not contradict a unit.
-        if kind == "time":
-            return None  # a time without a unit of time: the time is searched for elsewhere
-        if kind is not None and header.sure:
-            question = f"{header.unit} is not a unit of {kind}; write its unit"
-            return Candidate(_key(kind, header), column, header, False, why, question)
-        kind = next((k for k in _BY_UNIT if unit.dimensions in KINDS[k]), None)
-        if kind == "torque" and unit.dimensions == NONE:
-            kind = None
-        why = "by unit"
-    if kind is None or kind == "time":
-        return None
-    key = _key(kind, header)
-    if header.unit in ASK:
-        question = (
-            f"the unit {header.unit} is ambiguous: {ASK[header.unit]}; write one of "
-            "them after the column"
-        )
-        return Candidate(key, column, header, False, why, question)
-    if kind == "voltage" and not header.motor:
-        question = (
-            "is this the motor's voltage? If so, replace [?] by [V]; results are then in volts"
-        )
-        return Candidate(key, column, header, False, why, question)
-    if unit is None:
-        problem = f"the unit {header.unit!r} is not known" if header.unit else "it has no unit"
-        target = wanted_unit(key).text
-        question = (
-            f"{problem}; write it after the column, such as {_EXAMPLES.get(target, f'[{target}]')}"
-        )
-        return Candidate(key, column, header, False, why, question)
-    if unit.dimensions == COUNT:
-        question = (
-            "how many counts per revolution (or metre)? Write / 4096 [counts/rev] after the column"
-        )
-        return Candidate(key, column, header, False, why, question)
-    certain = why == "by name" or len(header.name) <= 2
-    return Candidate(key, column, header, certain, "by name and unit" if why == "by name" else why)
-
-
-def _fits(unit: str, key: str) -> bool:
-    stated = parse_unit(unit)
-    return stated is not None and stated.in_si == wanted_unit(key).in_si
-
-
-def _key(kind: str, header: Header) -> str:
-    """Return the column of a run for a quantity with the unit of its header."""
-    unit = parse_unit(header.unit)
-    size = NONE if unit is None else unit.dimensions
-    motor = "motor_" if header.motor else ""
-    if kind == "place":
-        turning = size in (ANGLE, COUNT) or (unit is None and header.turning)
-        return f"{motor}angle_rad" if turning else "position_m"
-    if kind == "speed":
-        if size == SPEED or (unit is None and not header.turning and not header.motor):
-            return "velocity_m_s"
-        turns = header.unit in ASK or unit is None or unit.in_si in _TURNS
-        return f"{motor}speed_rpm" if turns else f"{motor}velocity_rad_s"
-    if kind == "torque":
-        if unit is not None and size != TORQUE:
-            return "torque_percent"
-        return f"{motor}torque_n_m"
-    if kind == "force" and unit is not None and size == NONE:
-        return "force_percent"
-    names = {
-        "force": "friction_n",
-        "load": "load_n_m" if size == TORQUE else "load_n",
-        "current": "current_a",
-        "temperature": "temperature_c",
-        "pressure": "pressure_pa",
-        "voltage": "voltage_v",
-    }
-    return names[kind]
-
-
-def _is_unambiguous(rivals: list[Candidate], key: str) -> bool:
-    """Return whether the choice among the candidates is unambiguous."""
-    exact = [c for c in rivals if c.column.name == key]
-    return len(exact) == 1 or (len(rivals) == 1 and rivals[0].sure)
-
-
-def _choose(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
-    """Return the column for `key`, the rejected columns and the open questions."""
-    certain = [c for c in rivals if c.sure]
-    named = [c for c in rivals if c.why != "by unit"]
-    if named and len(named) < len(rivals):
-        # A candidate identified by its name takes precedence over those identified by unit only.
-        entry, rest, open_questions = _choose(key, named)
-        return entry, [*rest, *(c.called for c in rivals if c not in named)], open_questions
-    exact = [c for c in rivals if c.column.name == key]
-    if exact or len(certain) == 1 or len(rivals) == 1:
-        best = (exact or certain or rivals)[0]
-        questions = [] if best.question is None else [Question(best.column.name, best.question)]
-        if not best.sure and best.question is None and key in (*FRICTION, *MOTION):
-            question = f"is it {key}? Only its unit indicates this; write it into the map"
-            questions = [Question(best.column.name, question)]
-        rest = [c.column.name for c in rivals if c is not best]
-        return Entry(key, best.expression, best.why, not questions), rest, questions
-    names = ", ".join(c.called for c in rivals)
-    entry = Entry(key, OPEN, f"one of: {names}", sure=False)
-    return entry, [], [Question(key, f"which of these is it: {names}?")]
 
 
 def _is_used(column: Column, entries: Mapping[str, Entry]) -> bool:

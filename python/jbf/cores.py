@@ -35,7 +35,7 @@ def check_jobs(requested: int | None) -> None:
     """
     if requested is not None and requested < 1:
         raise InputError(
-            file="--jobs", problem=f"{requested} campaigns at a time", mend="1 or more"
+            file="--jobs", problem=f"{requested} campaigns at a time", remedy="1 or more"
         )
 
 

@@ -69,7 +69,7 @@ class InputError(JbfError, ValueError):
     ----------
     problem : str
         The problem, as a clause that follows the place: ``"abc" is not a number``.
-    mend : str, optional
+    remedy : str, optional
         The remedy, in the imperative.
     file : path, optional
         The file, or the name of the object if there is no file.
@@ -80,8 +80,9 @@ class InputError(JbfError, ValueError):
 
     Examples
     --------
-    >>> problem, mend = '"abc" is not a number', "correct the cell"
-    >>> print(jbf.InputError(file="a.csv", row=17, column="friction_n", problem=problem, mend=mend))
+    >>> problem, remedy = '"abc" is not a number', "correct the cell"
+    >>> place = {"file": "a.csv", "row": 17, "column": "friction_n"}
+    >>> print(jbf.InputError(**place, problem=problem, remedy=remedy))
     a.csv, row 17, column friction_n: "abc" is not a number; correct the cell
     """
 
@@ -89,7 +90,7 @@ class InputError(JbfError, ValueError):
         self,
         *,
         problem: str,
-        mend: str | None = None,
+        remedy: str | None = None,
         file: str | os.PathLike[str] | None = None,
         row: int | None = None,
         column: str | None = None,
@@ -100,7 +101,7 @@ class InputError(JbfError, ValueError):
         self.column = column
         self.key = key
         self.problem = problem
-        self.mend = mend
+        self.remedy = remedy
         super().__init__(str(self))
 
     def __str__(self) -> str:
@@ -112,8 +113,8 @@ class InputError(JbfError, ValueError):
         ]
         head = ", ".join(part for part in place if part is not None)
         line = f"{head}: {self.problem}" if head else self.problem
-        if self.mend:
-            line = f"{line}; {self.mend}"
+        if self.remedy:
+            line = f"{line}; {self.remedy}"
         # A file name or a quoted cell may contain a line break, but the message must be one line.
         return printable(" ".join(line.split()))
 
@@ -135,7 +136,7 @@ class InputError(JbfError, ValueError):
         return InputError(**fields)
 
     def _fields(self) -> dict[str, Any]:
-        names = ("problem", "mend", "file", "row", "column", "key")
+        names = ("problem", "remedy", "file", "row", "column", "key")
         return {name: getattr(self, name) for name in names}
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -169,7 +170,7 @@ class Unfinished(InputError):
             best = f"the best so far is {model}, RMS {fit.rms:.3g} {unit}, not finished"
         super().__init__(
             problem=f"not finished after {steps:.1g} steps of the model; {best}",
-            mend="check the unit of time, or use a law without memory, such as stribeck, or a "
+            remedy="check the unit of time, or use a law without memory, such as stribeck, or a "
             "higher sampling rate",
             file=file,
         )

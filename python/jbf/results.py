@@ -86,7 +86,7 @@ def optional(module: str, what: str) -> Any:
         return import_module(module)
     except ImportError:
         raise InputError(
-            problem=f"{what} needs {module}, which is not installed", mend=f"pip install {module}"
+            problem=f"{what} needs {module}, which is not installed", remedy=f"pip install {module}"
         ) from None
 
 

@@ -37,17 +37,17 @@ def os_error(path: Path, error: OSError, doing: str) -> InputError:
             guess = closest(path.name, (entry.name for entry in path.parent.iterdir()), 0.8)
         except OSError:
             return InputError(
-                file=path, problem="its folder does not exist", mend="correct the path"
+                file=path, problem="its folder does not exist", remedy="correct the path"
             )
-        mend = f"did you mean {quoted(guess)}?" if guess else "correct the path"
-        return InputError(file=path, problem="the file does not exist", mend=mend)
+        remedy = f"did you mean {quoted(guess)}?" if guess else "correct the path"
+        return InputError(file=path, problem="the file does not exist", remedy=remedy)
     if isinstance(error, IsADirectoryError):
-        return InputError(file=path, problem="is a folder", mend="name a file in it")
+        return InputError(file=path, problem="is a folder", remedy="name a file in it")
     reason = (error.strerror or type(error).__name__).lower()
     return InputError(
         file=path,
         problem=f"cannot be {doing} ({reason})",
-        mend="check the path and its permissions",
+        remedy="check the path and its permissions",
     )
 
 
@@ -64,7 +64,7 @@ def path_of(value: object) -> Path:
     """Convert to a path; raise an InputError if the value is not one."""
     if not isinstance(value, str | os.PathLike):
         type_name = "None" if value is None else type(value).__name__
-        raise InputError(problem=f"{type_name} is not a path", mend="name a file or a folder")
+        raise InputError(problem=f"{type_name} is not a path", remedy="name a file or a folder")
     return Path(value)
 
 
@@ -74,7 +74,7 @@ def real_path(path: str | os.PathLike[str]) -> Path:
         return Path(os.path.realpath(path))
     except ValueError:  # a null character in the name itself
         raise InputError(
-            file=quoted(path), problem="is not a file name", mend="correct it"
+            file=quoted(path), problem="is not a file name", remedy="correct it"
         ) from None
 
 
@@ -92,14 +92,14 @@ def check_readable(path: Path, *, pipes: bool = True) -> None:
         raise os_error(path, error, "read") from None
     except ValueError:  # a null character in the name itself
         raise InputError(
-            file=quoted(path), problem="is not a file name", mend="correct it"
+            file=quoted(path), problem="is not a file name", remedy="correct it"
         ) from None
     if stat.S_ISCHR(kind) or stat.S_ISBLK(kind):
-        raise InputError(file=path, problem="is a device, not a file", mend="name a file")
+        raise InputError(file=path, problem="is a device, not a file", remedy="name a file")
     if stat.S_ISFIFO(kind):
         if not pipes:
-            mend = "write what comes out of it to a file"
-            raise InputError(file=path, problem="is a pipe, not a file", mend=mend)
+            remedy = "write what comes out of it to a file"
+            raise InputError(file=path, problem="is a pipe, not a file", remedy=remedy)
         return
     try:
         path.open("rb").close()
@@ -124,7 +124,7 @@ def read_bytes(path: Path) -> bytes:
                 file=path,
                 problem=f"has {size / 1e9:.2g} GB; what is read whole may have "
                 f"{LARGEST_BYTES / 1e9:.2g} GB",
-                mend="cut it into runs: jbf import reads files of any size",
+                remedy="cut it into runs: jbf import reads files of any size",
             )
         return _from_pipe(path) if path.is_fifo() else path.read_bytes()
     except OSError as error:
@@ -139,7 +139,7 @@ def _from_pipe(path: Path) -> bytes:
             raise InputError(
                 file=path,
                 problem=f"nothing comes out of this pipe within {PIPE_S:g} s",
-                mend="start what fills it first",
+                remedy="start what fills it first",
             )
         os.set_blocking(pipe, True)
         parts, size = [], 0
@@ -147,9 +147,9 @@ def _from_pipe(path: Path) -> bytes:
             parts.append(part)
             size += len(part)
             if size > PIPE_BYTES:
-                mend = "write it to a file"
+                remedy = "write it to a file"
                 problem = f"is longer than {PIPE_BYTES} bytes and still comes"
-                raise InputError(file=path, problem=problem, mend=mend)
+                raise InputError(file=path, problem=problem, remedy=remedy)
         return b"".join(parts)
     finally:
         os.close(pipe)
@@ -166,12 +166,12 @@ def read_text(path: str | os.PathLike[str]) -> str:
     path = path_of(path)
     data = read_bytes(path)
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise InputError(file=path, problem="is UTF-16 text", mend="save it as UTF-8")
-    for first, (problem, mend) in _PACKED.items():
+        raise InputError(file=path, problem="is UTF-16 text", remedy="save it as UTF-8")
+    for first, (problem, remedy) in _PACKED.items():
         if data.startswith(first):
-            raise InputError(file=path, problem=problem, mend=mend)
+            raise InputError(file=path, problem=problem, remedy=remedy)
     if b"\0" in data:
-        raise InputError(file=path, problem="is binary, not text", mend="name a text file")
+        raise InputError(file=path, problem="is binary, not text", remedy="name a text file")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -179,7 +179,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
             file=path,
             row=error.object[: error.start].count(b"\n") + 1,
             problem="is not UTF-8 text",
-            mend="save the file as UTF-8",
+            remedy="save the file as UTF-8",
         ) from None
 
 

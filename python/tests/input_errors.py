@@ -12,5 +12,5 @@ def input_error(call: Callable[..., Any], *arguments: Any, **named: Any) -> Inpu
     with pytest.raises(InputError) as caught:
         call(*arguments, **named)
     assert "\n" not in str(caught.value)
-    assert caught.value.mend
+    assert caught.value.remedy
     return caught.value

@@ -209,7 +209,7 @@ def _without_command() -> int:
     width = max(len(line) for line, _ in BEGIN)
     lines = [f"  {line:<{width}}  {does}" for line, does in BEGIN]
     outputs.say("\n".join(["Commands to begin with:", *lines]), {})
-    return _refuse(InputError(problem="COMMAND is missing", mend="jbf --help lists all commands"))
+    return _refuse(InputError(problem="COMMAND is missing", remedy="jbf --help lists all commands"))
 
 
 def _check_command(arguments: list[str]) -> None:
@@ -217,5 +217,5 @@ def _check_command(arguments: list[str]) -> None:
     first = arguments[0]
     if not first.startswith("-") and first not in COMMANDS:
         raise InputError(
-            problem=f'there is no command "{first}"', mend=did_you_mean(first, COMMANDS)
+            problem=f'there is no command "{first}"', remedy=did_you_mean(first, COMMANDS)
         )

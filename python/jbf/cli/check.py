@@ -128,14 +128,17 @@ def _stored_answers(file: Path, name: str) -> Sequence[Answer]:
                 write_text(file, "".join(f"{complete}\n" for complete in lines[:-1]))
                 break
             raise InputError(
-                file=file, row=row, problem="is not a result of jbf check", mend="name another file"
+                file=file,
+                row=row,
+                problem="is not a result of jbf check",
+                remedy="name another file",
             ) from None
         if campaign != name:
             raise InputError(
                 file=file,
                 row=row,
                 problem="belongs to another model, other runs or another level",
-                mend="name another file, or remove this one",
+                remedy="name another file, or remove this one",
             )
         answers.append(answer)
     if len(answers) == len(lines) and lines and not text.endswith("\n"):

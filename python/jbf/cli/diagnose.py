@@ -103,23 +103,23 @@ def run(options: DiagnoseOptions) -> int:
         ):
             if given:
                 raise InputError(
-                    file=name, problem="applies to a single rig", mend="leave out --many"
+                    file=name, problem="applies to a single rig", remedy="leave out --many"
                 )
         return diagnose_many.run(options, options.many)
     if options.rig is not None and not os.path.exists(options.rig):
-        raise InputError(file=options.rig, problem="does not exist", mend="name the rig file")
+        raise InputError(file=options.rig, problem="does not exist", remedy="name the rig file")
     if options.rig is not None and options.rig.lower().endswith(".csv"):
         raise InputError(
             file=options.rig,
             problem="is a CSV file where RIG should be",
-            mend=f"name a rig file first, or import it: jbf import {options.rig} --folder FOLDER",
+            remedy=f"name a rig file first, or import it: jbf import {options.rig} --folder FOLDER",
         )
     folder_only = options.rig is not None and os.path.isdir(options.rig)
     if options.rig is None or not (options.runs or folder_only):
         raise InputError(
             file="jbf diagnose",
             problem="RIG and RUN are missing",
-            mend="name the rig file and its runs, or --many FOLDER",
+            remedy="name the rig file and its runs, or --many FOLDER",
         )
     targets = {"--out": options.out, "--json": options.json, "--report": options.report}
     targets["--next-run"] = options.next_run

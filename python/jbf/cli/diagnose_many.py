@@ -44,7 +44,7 @@ def run(options: DiagnoseOptions, folder: str) -> int:
         raise InputError(
             file="jbf diagnose --many",
             problem="excludes RIG, RUN and --next-run",
-            mend="each subfolder contains its own rig.toml and runs",
+            remedy="each subfolder contains its own rig.toml and runs",
         )
     check_jobs(options.jobs)
     campaigns = campaigns_in(folder)

@@ -37,7 +37,7 @@ def run(options: ExportOptions) -> int:
     """Run `jbf export` and return its exit code."""
     targets = {"--rust": options.rust, "--c": options.c}
     if not any(targets.values()):
-        raise InputError(problem="no output is given", mend="add --rust FILE.rs or --c FILE.h")
+        raise InputError(problem="no output is given", remedy="add --rust FILE.rs or --c FILE.h")
     outputs.check(targets, [options.model])
     model = inputs.model(options.model)
     name = Path(options.model).name

@@ -85,7 +85,7 @@ def run(options: FitOptions) -> int:
     targets = {"--out": options.out}
     if not options.runs and not os.path.isdir(options.rig):
         raise InputError(
-            file="jbf fit", problem="RUN is missing", mend="name the runs after the rig"
+            file="jbf fit", problem="RUN is missing", remedy="name the runs after the rig"
         )
     outputs.check(targets, outputs.inputs_in(options.rig, options.runs, options.effects_from))
     effects = in_chain_order(name.strip() for name in options.effects.split(",") if name.strip())
@@ -153,7 +153,7 @@ def _values(
         name, equals, text = item.partition("=")
         place = f"{option} {item}"
         if not equals:
-            raise InputError(file=place, problem="has no value", mend="write NAME=VALUE")
+            raise InputError(file=place, problem="has no value", remedy="write NAME=VALUE")
         try:
             full = find_parameter(name.strip(), parameters)
         except InputError as error:
@@ -162,16 +162,16 @@ def _values(
             value = float(text)
         except ValueError:
             raise InputError(
-                file=place, problem=f"{quoted(text)} is not a number", mend="write NAME=VALUE"
+                file=place, problem=f"{quoted(text)} is not a number", remedy="write NAME=VALUE"
             ) from None
         if full in values:
-            raise InputError(file=place, problem=f"{full} is given twice", mend="give it once")
+            raise InputError(file=place, problem=f"{full} is given twice", remedy="give it once")
         page = parameters[full]
         if not (page.lower <= value <= page.upper or value == page.null):
             raise InputError(
                 file=place,
                 problem="is out of range",
-                mend=f"choose a value from {page.lower:g} to {page.upper:g}",
+                remedy=f"choose a value from {page.lower:g} to {page.upper:g}",
             )
         values[full] = value
     return values

@@ -46,7 +46,7 @@ def split(runs: Sequence[Run], patterns: Sequence[str]) -> tuple[list[Run], list
             raise InputError(
                 file=f"{OPTION} {pattern}",
                 problem="matches no run",
-                mend=f"the runs are {listed(run.name for run in runs)}",
+                remedy=f"the runs are {listed(run.name for run in runs)}",
             )
     held_out = [run for run in runs if any(_fits(run, pattern) for pattern in patterns)]
     used = [run for run in runs if not any(_fits(run, pattern) for pattern in patterns)]
@@ -54,7 +54,7 @@ def split(runs: Sequence[Run], patterns: Sequence[str]) -> tuple[list[Run], list
         raise InputError(
             file=f"{OPTION} {patterns[0]}",
             problem="matches every run",
-            mend="leave some runs for the fit",
+            remedy="leave some runs for the fit",
         )
     return used, held_out
 

@@ -91,7 +91,7 @@ def run(options: ImportOptions) -> int:
         raise InputError(
             file="--joint",
             problem="cannot be combined with --map",
-            mend="the map names the columns of a joint",
+            remedy="the map names the columns of a joint",
         )
     if options.map is None and options.folder is None:
         return _inspect(options)
@@ -107,15 +107,17 @@ def _each_joint(options: ImportOptions) -> int:
     from jbf.importing.joints import JointNotChosen
 
     if options.folder is None or options.plot is not None:
-        mend = "add --folder FOLDER, and leave out --plot"
-        raise InputError(file="--joint", problem="all writes a folder for each joint", mend=mend)
+        remedy = "add --folder FOLDER, and leave out --plot"
+        raise InputError(
+            file="--joint", problem="all writes a folder for each joint", remedy=remedy
+        )
     try:
         look(options.files[0], beside=options.beside or ())
     except JointNotChosen as several:
         joints = several.joints
     else:
-        mend = "leave out --joint"
-        raise InputError(file=options.files[0], problem="contains a single joint", mend=mend)
+        remedy = "leave out --joint"
+        raise InputError(file=options.files[0], problem="contains a single joint", remedy=remedy)
     out = Path(options.folder)
     check_folder(out, replace=options.force, holding=joints)
     out.mkdir(exist_ok=True)
@@ -165,20 +167,20 @@ def _inspect(options: ImportOptions) -> int:
             raise InputError(
                 file=option,
                 problem="requires --map or --folder",
-                mend="jbf import FILE alone inspects the file",
+                remedy="jbf import FILE alone inspects the file",
             )
     file = Path(options.files[0])
     if options.beside and len(options.files) > 1:
-        mend = "name one FILE, and the others with --beside"
-        raise InputError(file="--beside", problem="requires a single FILE", mend=mend)
+        remedy = "name one FILE, and the others with --beside"
+        raise InputError(file="--beside", problem="requires a single FILE", remedy=remedy)
     target, exists = _map_path(file, options.joint, replace=options.force)
     shown_path = file.parent / target.name
     if not exists:
         outputs.check({shown_path.name: str(target)}, options.inputs())
     if exists and options.beside:
         problem = f"{shown_path.name} exists and may name other files"
-        mend = f"replace it with --force, or use it with --map {shown_path}"
-        raise InputError(file=shown_path, problem=problem, mend=mend)
+        remedy = f"replace it with --force, or use it with --map {shown_path}"
+        raise InputError(file=shown_path, problem=problem, remedy=remedy)
     proposal = look(file, options.joint, options.beside or ())
     if not exists:
         write_text(target, map_text(proposal, str(shown_path)))

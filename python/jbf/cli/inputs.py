@@ -98,7 +98,9 @@ def rig(path: str, law: str | None) -> Rig:
             raise InputError(
                 file=path,
                 problem="is a model file, not a rig",
-                mend="name the rig's TOML with [bearing], [lubricant] and [load], or with [drive]",
+                remedy=(
+                    "name the rig's TOML with [bearing], [lubricant] and [load], or with [drive]"
+                ),
             ) from None
         raise error.within(file=path) from None
     return content
@@ -115,7 +117,7 @@ def model(path: str) -> Model:
             raise InputError(
                 file=path,
                 problem="is a rig, not a model file",
-                mend=f"make a model first: jbf fit {path} RUN... --out model.toml",
+                remedy=f"make a model first: jbf fit {path} RUN... --out model.toml",
             ) from None
         raise
 
@@ -148,7 +150,7 @@ def _refuse_csv(path: str, argument: str) -> None:
         raise InputError(
             file=path,
             problem=f"is a CSV file where {argument} should be",
-            mend=f"name the TOML file first, then the runs: {argument} RUN...",
+            remedy=f"name the TOML file first, then the runs: {argument} RUN...",
         )
 
 
@@ -157,5 +159,5 @@ def _refuse_toml(path: str, first: str) -> None:
         raise InputError(
             file=path,
             problem="is a TOML file where a run should be",
-            mend=f"name one {first} and then CSV files",
+            remedy=f"name one {first} and then CSV files",
         )

@@ -73,7 +73,7 @@ class LevelOptions:
                 raise InputError(
                     file=FALSE_ALARM_RATE,
                     problem=f"{rate:g} is not a probability",
-                    mend="choose a number between 0 and 1",
+                    remedy="choose a number between 0 and 1",
                 )
             policy = replace(policy, false_alarm_rate=rate)
         if self.no_artefact_margin:
@@ -84,7 +84,7 @@ class LevelOptions:
                 raise InputError(
                     file=MIN_EFFECT,
                     problem=f"{size:g} is not an effect size",
-                    mend="choose zero or a positive number",
+                    remedy="choose zero or a positive number",
                 )
             policy = replace(policy, min_effect_share=0.0, min_effect=size)
         return policy

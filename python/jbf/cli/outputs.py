@@ -55,7 +55,7 @@ def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[
         target = Path(path) if path == STDOUT else real_path(path)
         if target in conflicts:
             raise InputError(
-                file=f"{option} {path}", problem=conflicts[target], mend="choose another file"
+                file=f"{option} {path}", problem=conflicts[target], remedy="choose another file"
             )
         conflicts[target] = "is also the file of another option"
         if path != STDOUT:
@@ -63,8 +63,8 @@ def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[
 
 
 def _check_writable(option: str, path: str) -> None:
-    def wrong(problem: str, mend: str) -> InputError:
-        return InputError(file=f"{option} {path}", problem=problem, mend=mend)
+    def wrong(problem: str, remedy: str) -> InputError:
+        return InputError(file=f"{option} {path}", problem=problem, remedy=remedy)
 
     target = Path(path)
     if not path:
@@ -104,20 +104,20 @@ def check_folder(argument: str, path: Path) -> None:
         path.mkdir(exist_ok=True)
     except FileExistsError:
         raise InputError(
-            file=f"{argument} {path}", problem="is a file, not a folder", mend="name a folder"
+            file=f"{argument} {path}", problem="is a file, not a folder", remedy="name a folder"
         ) from None
     except FileNotFoundError:
         raise InputError(
             file=f"{argument} {path}",
             problem="its parent folder does not exist",
-            mend="create it or correct the path",
+            remedy="create it or correct the path",
         ) from None
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise InputError(
             file=f"{argument} {path}",
             problem=f"cannot be created ({reason})",
-            mend="check the path and its permissions",
+            remedy="check the path and its permissions",
         ) from None
     _check_writable(argument, str(path / "report.html"))
 
@@ -183,7 +183,7 @@ def write(texts: Mapping[str, str]) -> None:
     if STDOUT in texts:
         if sys.stdout is None:
             raise InputError(
-                file="standard output", problem="is closed", mend="name a file in place of -"
+                file="standard output", problem="is closed", remedy="name a file in place of -"
             )
         _print(texts[STDOUT], data=True)
 
@@ -232,5 +232,5 @@ def _print(text: str, *, data: bool = False) -> None:
         raise InputError(
             file="standard output",
             problem=f"cannot be written ({(error.strerror or type(error).__name__).lower()})",
-            mend="redirect the output to another place",
+            remedy="redirect the output to another place",
         ) from None

@@ -82,7 +82,7 @@ def noise_of(option: str | None, model: Model) -> float:
         return number_in(model.rig.quantities.force, option, "--noise")
     residual = model.fit.get("rms", model.fit.get("rms_n"))  # "rms_n" before version 0.1.0
     if residual is None or isinstance(residual, str):
-        raise InputError(problem="--noise is missing", mend="give the expected noise")
+        raise InputError(problem="--noise is missing", remedy="give the expected noise")
     return float(residual)
 
 
@@ -111,7 +111,7 @@ def model_of(path: str, law_options: LawOptions) -> Model:
             raise InputError(
                 file="--law",
                 problem="applies to a rig, and a model has its own law",
-                mend="leave it out",
+                remedy="leave it out",
             )
         return inputs.model(path)
     rig = inputs.rig(path, law_options.law)

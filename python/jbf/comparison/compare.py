@@ -71,13 +71,13 @@ def compare(
     else:
         return _compared(the_model(model), list_of_runs(runs))
     if not named:
-        raise InputError(problem="no model was given", mend="give at least one jbf.Model")
+        raise InputError(problem="no model was given", remedy="give at least one jbf.Model")
     runs = list_of_runs(runs)
     units = {the_model(compared_model).rig.quantities.force for compared_model in named.values()}
     if len(units) > 1:
         raise InputError(
             problem=f"the models predict friction in {' and '.join(sorted(units))}",
-            mend="compare models of one machine",
+            remedy="compare models of one machine",
         )
     return compare_models(
         {name: _compared(compared_model, runs) for name, compared_model in named.items()}

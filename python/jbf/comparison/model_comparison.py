@@ -134,7 +134,7 @@ def compare_models(comparisons: Mapping[str, Comparison]) -> ModelComparison:
     nobs = int(sum(np.count_nonzero(mask) for mask in masks))
     if not nobs:
         raise InputError(
-            problem="no sample is common to all of these models", mend="compare fewer models"
+            problem="no sample is common to all of these models", remedy="compare fewer models"
         )
     prepared = several[0].campaign.prepared
     units = independent_units(counted, prepared)

@@ -89,7 +89,7 @@ class Bench:
 
 
 def _wrong(name: str, value: float, rule: str) -> InputError:
-    return InputError(key=name, problem=f"{value} must be {rule}", mend="correct the value")
+    return InputError(key=name, problem=f"{value} must be {rule}", remedy="correct the value")
 
 
 def check_rotary(model: Model) -> None:
@@ -104,7 +104,7 @@ def check_rotary(model: Model) -> None:
     if drive is not None and drive.motion == "linear":
         raise InputError(
             problem="the model is of a linear drive, and the simulated bench is rotary",
-            mend="use the model in your own loop: jbf export MODEL",
+            remedy="use the model in your own loop: jbf export MODEL",
         )
 
 
@@ -122,7 +122,7 @@ def core_model(model: Model) -> dict[str, Any]:
     if isinstance(catalogue.find_law(model.law), UserLaw):
         raise InputError(
             problem=f"{model.law} is a user-defined law in Python, which cannot run in a loop",
-            mend="write it in Rust: cargo run --example user_law shows how",
+            remedy="write it in Rust: cargo run --example user_law shows how",
         )
     user_effects = [name for name in model.effects if isinstance(pages.get(name), UserEffect)]
     if user_effects:
@@ -130,7 +130,7 @@ def core_model(model: Model) -> dict[str, Any]:
             problem=(
                 f"{user_effects[0]} is a user-defined effect in Python, which cannot run in a loop"
             ),
-            mend="fit a model without it, or write it in Rust (ARCHITECTURE.md)",
+            remedy="fit a model without it, or write it in Rust (ARCHITECTURE.md)",
         )
     values = [p.value for p in model.parameters.values()]
     names = list(model.parameters)

@@ -58,7 +58,7 @@ def follow(
             raise InputError(
                 file=recorded.path,
                 problem="has no angle to follow",
-                mend="add angle_rad, or follow its speed: --control velocity",
+                remedy="add angle_rad, or follow its speed: --control velocity",
             )
         values = where - where[0]
     time_s = recorded.time_s - recorded.time_s[0]
@@ -66,7 +66,7 @@ def follow(
     value = np.interp(steps, time_s, values)
     if not np.ptp(value) > 0.0:
         raise InputError(
-            file=recorded.path, problem="the angle is constant", mend="name a run with motion"
+            file=recorded.path, problem="the angle is constant", remedy="name a run with motion"
         )
     rate = np.interp(steps, time_s, np.gradient(values, time_s))
     load = None if recorded.load_n is None else np.interp(steps, time_s, recorded.load_n)

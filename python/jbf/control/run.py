@@ -201,7 +201,9 @@ def run(
     chosen = _scheme(scheme, model if carried is None else carried, settings)
     assumed_bench = bench if assumed is None else assumed
     if assumed_bench.dt_s != bench.dt_s:
-        raise InputError(problem="the two benches have different steps", mend="give both one dt_s")
+        raise InputError(
+            problem="the two benches have different steps", remedy="give both one dt_s"
+        )
     n = max(round(task.seconds / bench.dt_s), 1)
     value, rate = _reference(task, bench, n, reference)
     n = len(value)
@@ -237,8 +239,8 @@ def _scheme(given: str | Scheme, carried: Model | None, settings: Settings | Non
     if isinstance(given, str):
         return scheme(given, carried, settings)
     if not hasattr(given, "core"):
-        mend = f"name one of {', '.join(SCHEMES)}"
-        raise InputError(problem=f"the scheme is {described(given)}", mend=mend)
+        remedy = f"name one of {', '.join(SCHEMES)}"
+        raise InputError(problem=f"the scheme is {described(given)}", remedy=remedy)
     return given
 
 
@@ -253,7 +255,7 @@ def _reference(
     task: Task, bench: Bench, n: int, given: tuple[npt.ArrayLike, npt.ArrayLike] | None
 ) -> tuple[Array, Array]:
     if given is None and task.wave == RECORDED:
-        raise InputError(problem="a recorded task has no wave", mend="give its reference")
+        raise InputError(problem="a recorded task has no wave", remedy="give its reference")
     if given is None:
         return _core.control_reference(
             task.wave, task.low, task.high, task.frequency_rad_s, bench.dt_s, n
@@ -262,7 +264,7 @@ def _reference(
     if value.ndim != 1 or value.shape != rate.shape or not len(value):
         raise InputError(
             problem=f"the reference has shapes {value.shape} and {rate.shape}",
-            mend="give two arrays of equal length",
+            remedy="give two arrays of equal length",
         )
     return value, rate
 
@@ -271,5 +273,5 @@ def _load(model: Model, given: float | npt.ArrayLike | None, n: int) -> Array:
     of_rig = core_load_n(model.rig) or 1.0
     load = np.full(n, of_rig) if given is None else np.array(np.broadcast_to(given, n), dtype=float)
     if not np.all(np.isfinite(load)):
-        raise InputError(problem="a load is not finite", mend="give finite values, N")
+        raise InputError(problem="a load is not finite", remedy="give finite values, N")
     return load

@@ -49,7 +49,7 @@ class Settings:
                 raise InputError(
                     key=name,
                     problem=f"{value} is negative or not finite",
-                    mend="correct the value",
+                    remedy="correct the value",
                 )
 
     def to_toml(self) -> str:
@@ -81,7 +81,7 @@ class Settings:
             for name in names:
                 if name not in content:
                     raise InputError(
-                        key=name, problem="is missing", mend="add it, or run the tuning again"
+                        key=name, problem="is missing", remedy="add it, or run the tuning again"
                     )
             return cls(**{name: number(content[name], name) for name in names})
         except InputError as error:

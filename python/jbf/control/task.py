@@ -35,26 +35,26 @@ class Task:
         if self.control not in ("position", "velocity"):
             raise InputError(
                 problem=f'control "{self.control}" is not known',
-                mend="write position or velocity",
+                remedy="write position or velocity",
             )
         if self.wave not in (*WAVES, RECORDED):
             raise InputError(
-                problem=f'wave "{self.wave}" is not known', mend=did_you_mean(self.wave, WAVES)
+                problem=f'wave "{self.wave}" is not known', remedy=did_you_mean(self.wave, WAVES)
             )
         if not -_FARTHEST <= self.low < self.high <= _FARTHEST:
             raise InputError(
                 problem=f"low {self.low} and high {self.high} are not a valid range",
-                mend="give low < high, both within one million",
+                remedy="give low < high, both within one million",
             )
         if not 0.0 < self.frequency_rad_s < math.inf:
             raise InputError(
                 problem=f"frequency {self.frequency_rad_s} rad/s is not positive",
-                mend="correct the value",
+                remedy="correct the value",
             )
         if not 0.0 <= self.skip_s < self.seconds <= 1e5:
             raise InputError(
                 problem=f"{self.seconds} s with {self.skip_s} s omitted is not a valid duration",
-                mend="give up to 100,000 s, and omit less than the whole",
+                remedy="give up to 100,000 s, and omit less than the whole",
             )
 
     @property

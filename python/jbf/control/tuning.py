@@ -89,7 +89,7 @@ def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
                 f"the model's friction is {level_v:.3g} V, the limit of the drive "
                 f"{bench.limit_v:g} V"
             ),
-            mend="correct --volts-per-n",
+            remedy="correct --volts-per-n",
         )
     count_rad = 1.0 / bench.counts_per_rad
     noise_rad = count_rad * math.sqrt(1.0 / 12.0 + bench.encoder_noise_counts**2)

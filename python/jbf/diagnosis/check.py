@@ -247,7 +247,7 @@ def check(
     check_callable(progress, "progress")
     if checked_integer(campaigns, "campaigns") < 1:
         raise InputError(
-            problem=f"{campaigns} campaigns determine no rate", mend="use at least one"
+            problem=f"{campaigns} campaigns determine no rate", remedy="use at least one"
         )
     every = tuple(list_of_runs(runs))
     answers = list(done)

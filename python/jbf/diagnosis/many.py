@@ -76,7 +76,7 @@ def diagnose_many(
     if not isinstance(campaigns, Mapping):
         raise InputError(
             problem=f"campaigns is {described(campaigns)}",
-            mend="give a dict of names to (rig, runs), or to a folder",
+            remedy="give a dict of names to (rig, runs), or to a folder",
         )
     results: dict[str, Diagnosis | JbfError] = {}
 
@@ -104,7 +104,8 @@ def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError
         pair = given if isinstance(given, tuple) else read_campaign(given)
         if len(pair) != 2:
             raise InputError(
-                problem=f"a campaign has {len(pair)} elements", mend="give a rig and a list of runs"
+                problem=f"a campaign has {len(pair)} elements",
+                remedy="give a rig and a list of runs",
             )
         rig, runs = pair
         return diagnose(rig, runs, **options)

@@ -78,7 +78,7 @@ class Policy:
     def __post_init__(self) -> None:
         for name, value in self.to_dict().items():
             if isinstance(value, float) and math.isnan(value):
-                raise InputError(problem=f"the policy's {name} is nan", mend="give a number")
+                raise InputError(problem=f"the policy's {name} is nan", remedy="give a number")
         for name, value, most in (
             ("false_alarm_rate", self.false_alarm_rate, 1.0),
             ("selection.min_weight", self.selection.min_weight, 0.5),
@@ -86,7 +86,7 @@ class Policy:
             if not 0.0 < value < most:
                 raise InputError(
                     problem=f"the policy's {name} = {value:g}",
-                    mend=f"must be above zero and below {most:g}",
+                    remedy=f"must be above zero and below {most:g}",
                 )
 
     def least_share(self, motion_share: float) -> float:
@@ -118,7 +118,7 @@ class Policy:
         for name, value in values.items():
             if name not in changed.to_dict():
                 raise InputError(
-                    problem=f"the policy has no value {name}", mend="see jbf.Policy().to_dict()"
+                    problem=f"the policy has no value {name}", remedy="see jbf.Policy().to_dict()"
                 )
             changed = _replaced(changed, name.split("."), value)
         return changed

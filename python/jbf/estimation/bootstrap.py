@@ -94,11 +94,11 @@ def check_repeats(repeats: int, name: str = "repeats") -> None:
     if checked_integer(repeats, name) < LEAST_REPEATS:
         raise InputError(
             problem=f"{name} {repeats} is too small for standard errors",
-            mend=f"use at least {LEAST_REPEATS}; 40 is more precise",
+            remedy=f"use at least {LEAST_REPEATS}; 40 is more precise",
         )
     if repeats > MOST_REPEATS:
         raise InputError(
-            problem=f"{name} {repeats} is too large", mend=f"use at most {MOST_REPEATS}"
+            problem=f"{name} {repeats} is too large", remedy=f"use at most {MOST_REPEATS}"
         )
 
 

@@ -41,7 +41,7 @@ def checked_bounds(
             raise InputError(
                 key=f"bounds.{full}",
                 problem=f"is {described(given)}",
-                mend="give a pair: (low, high)",
+                remedy="give a pair: (low, high)",
             )
         page = pages[full]
         low = max(number(pair[0], f"bounds.{full}"), page.lower)
@@ -51,7 +51,7 @@ def checked_bounds(
                 key=f"bounds.{full}",
                 problem=f"({pair[0]:g}, {pair[1]:g}) does not overlap {page.lower:g} "
                 f"to {page.upper:g}",
-                mend="give low < high; `fixed` holds a parameter at a value",
+                remedy="give low < high; `fixed` holds a parameter at a value",
             )
         checked[full] = (low, high)
     return checked

@@ -110,7 +110,7 @@ class Campaign:
         """
         runs = list_of_runs(runs)
         if not runs:
-            raise InputError(problem="no run was given", mend="name at least one CSV file")
+            raise InputError(problem="no run was given", remedy="name at least one CSV file")
         check_weight_angles(rig, runs)
         originals = copies(runs)
         ready, without_motion = _each(
@@ -125,7 +125,7 @@ class Campaign:
                 file=prepared[0].run.path or prepared[0].run.name,
                 column="friction_n",
                 problem="is zero in every sample of every run",
-                mend="check the force sensor and its scale",
+                remedy="check the force sensor and its scale",
             )
         samples = Samples.of(prepared, settings)
         work = Work.of(sum(len(p.friction) for p in prepared))

@@ -66,7 +66,7 @@ class Estimates(Result):
         """
         if not 0.0 < number(level, "level") < 1.0:
             raise InputError(
-                key="level", problem=f"{level:g} is not a probability", mend="try 0.95"
+                key="level", problem=f"{level:g} is not a probability", remedy="try 0.95"
             )
         z = NormalDist().inv_cdf(0.5 + 0.5 * level)
         errors = self.stderr

@@ -189,7 +189,7 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
         if reason is not None:
             raise InputError(
                 problem=f"the effect {name} is not identifiable in these runs: {reason}",
-                mend="omit it, or record the missing motion or data",
+                remedy="omit it, or record the missing motion or data",
             )
 
 

@@ -172,13 +172,13 @@ class Prepared:
                 file=run.path or run.name,
                 column="velocity_m_s",
                 problem="the direction of motion is undetermined at every sample",
-                mend="leave this run out, or record a smoother speed",
+                remedy="leave this run out, or record a smoother speed",
             )
         if np.all(motion.resting):
             raise NoMotion(
                 file=run.path or run.name,
                 problem=f"{run.quantities.mover} never moves",
-                mend="leave this run out, or record one with motion",
+                remedy="leave this run out, or record one with motion",
             )
         more = (
             *run.reading,

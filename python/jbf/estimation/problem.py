@@ -307,7 +307,7 @@ def named_values(
         if not (page.lower <= value <= page.upper or value == page.null):
             raise InputError(
                 problem=f"{full} = {value} is out of range",
-                mend=f"choose from {page.lower:g} to {page.upper:g}",
+                remedy=f"choose from {page.lower:g} to {page.upper:g}",
             )
         named[full] = value
     return named

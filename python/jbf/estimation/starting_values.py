@@ -83,7 +83,7 @@ def scales(campaign: Campaign) -> Scales:
             file=campaign.prepared[0].run.path or campaign.prepared[0].run.name,
             column="velocity_m_s",
             problem="the direction of motion is undetermined at every usable sample",
-            mend="record strokes of many samples each, or check the unit of time",
+            remedy="record strokes of many samples each, or check the unit of time",
         )
     v = np.concatenate([p.motion.velocity[m] for p, m in moving])
     f = np.concatenate([p.friction[m] for p, m in moving])

@@ -155,7 +155,7 @@ def fit_trajectories(
     if isinstance(friction_coefficient, str) or not isinstance(friction_coefficient, Iterable):
         description = described(friction_coefficient)
         raise InputError(
-            problem=f"the friction is {description}", mend="give a list, one array per run"
+            problem=f"the friction is {description}", remedy="give a list, one array per run"
         )
     measured = [numbers(f, f"the friction of run {i}") for i, f in enumerate(friction_coefficient)]
     keep = _usable(runs, measured)
@@ -163,7 +163,7 @@ def fit_trajectories(
     if len(data) <= len(first):
         raise InputError(
             problem=f"{len(data)} usable samples are too few for {len(first)} parameters",
-            mend="give more samples with motion",
+            remedy="give more samples with motion",
         )
     evaluations = 0
     last: tuple[bytes, Array, Array] | None = None
@@ -248,7 +248,7 @@ def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np
     if len(runs) != len(measured):
         raise InputError(
             problem=f"{len(runs)} runs and {len(measured)} frictions",
-            mend="give one array of friction coefficients per run",
+            remedy="give one array of friction coefficients per run",
         )
     usable = []
     for i, ((time, motion), friction) in enumerate(zip(runs, measured, strict=True)):
@@ -256,7 +256,7 @@ def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np
         if friction.shape != t.shape:
             raise InputError(
                 problem=f"run {i}: friction of shape {friction.shape}, times of {t.shape}",
-                mend="give one friction coefficient per time (NaN where missing)",
+                remedy="give one friction coefficient per time (NaN where missing)",
             )
         if is_record(motion):
             speed = np.asarray(motion, dtype=float)
@@ -266,5 +266,5 @@ def _usable(runs: Sequence[Motion], measured: Sequence[Array]) -> npt.NDArray[np
         top = float(np.max(np.abs(speed), initial=0.0))
         usable.append(np.isfinite(friction) & (np.abs(speed) > REST_SHARE * top))
     if not usable:
-        raise InputError(problem="no run was given", mend="give at least one")
+        raise InputError(problem="no run was given", remedy="give at least one")
     return np.concatenate(usable)

@@ -72,7 +72,7 @@ def check_film_rate(
         column="time_s",
         problem=f"the film of the law {law} responds within {1.0 / rate:.1g} s, but "
         f"the sampling interval is {interval_s:.2g} s: it is not identifiable",
-        mend="check the unit of time, the bearing and the load, or use a law without a "
+        remedy="check the unit of time, the bearing and the load, or use a law without a "
         "film, such as stribeck",
     )
 

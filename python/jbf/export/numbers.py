@@ -60,7 +60,7 @@ class Numbers:
         if isinstance(law, UserLaw):
             raise InputError(
                 problem=f"the law {law.name} is written in Python and cannot be exported",
-                mend="write it in Rust: cargo run --example user_law shows how",
+                remedy="write it in Rust: cargo run --example user_law shows how",
             )
         effects = []
         for name in model.effects:
@@ -68,7 +68,7 @@ class Numbers:
             if isinstance(page, UserEffect):
                 raise InputError(
                     problem=f"the effect {name} is written in Python and cannot be exported",
-                    mend="write it in Rust: cargo run --example user_effect shows how",
+                    remedy="write it in Rust: cargo run --example user_effect shows how",
                 )
             group = _group(page, model, f"{name}.")
             if not any(map(_vanishes, page.parameters, group.values)):

@@ -145,12 +145,12 @@ def _check_keys(source: SideBySide, mapping: Map) -> None:
     stems = [stem_of(file) for file in source.files[1:]]
     for key in mapping.align:
         if key not in stems:
-            mend = f"the further files are: {', '.join(stems)}"
+            remedy = f"the further files are: {', '.join(stems)}"
             raise InputError(
                 file=mapping.path,
                 key=f"align.{key}",
                 problem="is not one of the further files",
-                mend=mend,
+                remedy=remedy,
             )
 
 
@@ -173,11 +173,11 @@ def _aligned(
     if requested is None:
         if dates_s is None:
             problem = f"its clock is separate from that of {main.name}"
-            mend = (
+            remedy = (
                 f'write {stem} = "A ~ B" (a common signal) under [align] in the map, or the offset '
                 "in seconds"
             )
-            raise InputError(problem=problem, mend=mend)
+            raise InputError(problem=problem, remedy=remedy)
         return Alignment(file, main, "dates", dates_s, dates_s=dates_s)
     if not isinstance(requested, str):
         clock.offset_s += requested
@@ -188,7 +188,7 @@ def _aligned(
         fit = refine(*streams, find_offset(*streams))
     except InputError as error:
         raise InputError(
-            file=file, key=f"align.{stem}", problem=error.problem, mend=error.mend
+            file=file, key=f"align.{stem}", problem=error.problem, remedy=error.remedy
         ) from None
     finally:
         for stream in streams:
@@ -217,10 +217,10 @@ def _signals(
     """Return the records of a common signal in the main file and in the other file."""
     key = f"align.{stem_of(file)}"
     sides = _SIDES.fullmatch(text)
-    mend = f'write such as "{stem_of(source.path)}/trigger ~ {stem_of(file)}/trigger"'
+    remedy = f'write such as "{stem_of(source.path)}/trigger ~ {stem_of(file)}/trigger"'
     if sides is None:
         problem = f"{text!r} is not a pair of signals"
-        raise InputError(file=mapping.path, key=key, problem=problem, mend=mend)
+        raise InputError(file=mapping.path, key=key, problem=problem, remedy=remedy)
     tables = tables_of(source, mapping.options)
     names, places = column_names(tables), columns_by_name(tables)
     all_columns = [f"{table.name}/{column.name}" for table in tables for column in table.columns]
@@ -230,7 +230,7 @@ def _signals(
             node = parse_expression(side.strip(), names, all_columns)
         except InputError as error:
             raise InputError(
-                file=mapping.path, key=key, problem=error.problem, mend=error.mend
+                file=mapping.path, key=key, problem=error.problem, remedy=error.remedy
             ) from None
         used = {places[reference.column][0].name for reference in references(node)}
         if len(used) == 1:
@@ -240,7 +240,7 @@ def _signals(
             channel_of_file[path] = Channel(SIGNAL_COLUMN, side.strip(), node, table, clock, ONE)
     if source.path not in channel_of_file or file not in channel_of_file:
         problem = f"needs a signal of {source.path.name} and one of {file.name}"
-        raise InputError(file=mapping.path, key=key, problem=problem, mend=mend)
+        raise InputError(file=mapping.path, key=key, problem=problem, remedy=remedy)
     return channel_of_file[source.path], channel_of_file[file]
 
 

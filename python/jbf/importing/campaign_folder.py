@@ -38,8 +38,8 @@ def check_folder(path: Path, *, replace: bool, holding: Sequence[str] = ()) -> N
         With the name of the folder.
     """
 
-    def wrong(problem: str, mend: str) -> InputError:
-        return InputError(file=path, problem=problem, mend=mend)
+    def wrong(problem: str, remedy: str) -> InputError:
+        return InputError(file=path, problem=problem, remedy=remedy)
 
     if os.path.exists(path) and not os.path.isdir(path):
         raise wrong("is a file, not a folder", "name a folder")
@@ -99,8 +99,8 @@ def write_campaign(
     except OSError as error:
         reason = (error.strerror or type(error).__name__).lower()
         problem = f"cannot be written ({reason})"
-        mend = "check the path and its permissions"
-        raise InputError(file=path, problem=problem, mend=mend) from None
+        remedy = "check the path and its permissions"
+        raise InputError(file=path, problem=problem, remedy=remedy) from None
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 

@@ -58,14 +58,14 @@ def channels_of(source: Source, mapping: Map) -> list[Channel]:
         try:
             node = parse_expression(text, names, all_columns)
         except InputError as error:
-            raise InputError(key=section, problem=error.problem, mend=error.mend) from None
+            raise InputError(key=section, problem=error.problem, remedy=error.remedy) from None
         of_tables = {places[r.column][0].name for r in references(node)}
         if len(of_tables) != 1:
             problem = (
                 "combines columns with different clocks" if of_tables else "contains no column"
             )
-            mend = "use columns of one group; columns are not resampled here"
-            raise InputError(key=section, problem=f"{text} {problem}", mend=mend)
+            remedy = "use columns of one group; columns are not resampled here"
+            raise InputError(key=section, problem=f"{text} {problem}", remedy=remedy)
         (table_name,) = of_tables
         table = next(t for t in tables if t.name == table_name)
         clock = clock_of(key, table, tables, mapping, names, places)
@@ -83,7 +83,7 @@ def tables_of(source: Source, options: Options) -> tuple[Table, ...]:
             return (table,)
     names = ", ".join(table.name for table in source.tables)
     problem = f'contains no "{options.table}"'
-    raise InputError(file=source.path, problem=problem, mend=f"it contains: {names}")
+    raise InputError(file=source.path, problem=problem, remedy=f"it contains: {names}")
 
 
 def clock_of(
@@ -105,7 +105,7 @@ def clock_of(
         if key in mapping.clocks:
             problem = "is in another group than its column"
             raise InputError(
-                key=f"clocks.{key}", problem=problem, mend="give a time of the same group"
+                key=f"clocks.{key}", problem=problem, remedy="give a time of the same group"
             )
     if table.clock is not None:
         return f"`{table.name}/{table.clock}`"
@@ -114,10 +114,10 @@ def clock_of(
     if text is not None:
         problem = f"has no clock: time_s is in another group than [{table.name}]"
         raise InputError(
-            key=f"columns.{key}", problem=problem, mend=f"give its time under [clocks] as {key}"
+            key=f"columns.{key}", problem=problem, remedy=f"give its time under [clocks] as {key}"
         )
     raise InputError(
         key="columns.time_s",
         problem="is missing",
-        mend="give the column of times, or rate_hz under [file]",
+        remedy="give the column of times, or rate_hz under [file]",
     )

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jbf.errors import InputError
-from jbf.importing.clock_offset import MEND, Offset, span, usual_step
+from jbf.importing.clock_offset import REMEDY, Offset, span, usual_step
 from jbf.importing.spool import Stream
 
 Array = npt.NDArray[np.float64]
@@ -167,7 +167,7 @@ class _Problem:
                 "the common signal agrees in slow changes only (correlation "
                 f"{abs(within):.2f} within windows)"
             )
-            raise InputError(problem=problem, mend=MEND)
+            raise InputError(problem=problem, remedy=REMEDY)
         covariance = self._covariance((offset, solution[1]), with_drift=False)
         sampling = self._sampling_error(self._effective_windows())
         middle = 0.5 * (self.first_s + self.last_s)

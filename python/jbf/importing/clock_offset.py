@@ -41,7 +41,7 @@ PIECE_S = 600.0
 """Duration of the pieces used if drift blurs the correlation of a long record, s."""
 PIECES = 8
 """Largest number of such pieces."""
-MEND = "name another common signal under [align], or the offset in seconds"
+REMEDY = "name another common signal under [align], or the offset in seconds"
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,9 @@ def _offset_of(main: Stream, other: Stream, begin_s: float, end_s: float) -> Off
     b, in_b = _on_grid(other, begin_s, end_s, step, fill=not quick)
     r, allowed = _correlations(a, in_a, b, in_b)
     if not allowed.any():
-        raise InputError(problem="the common signal is constant or has too few samples", mend=MEND)
+        raise InputError(
+            problem="the common signal is constant or has too few samples", remedy=REMEDY
+        )
     offsets: Array = main_s - begin_s + step * np.arange(-len(b) + 1.0, len(a))
     best, low, high = _clear_peak(r, allowed, offsets)
     lobe = step * (max(best - low, high - best) + 2)
@@ -145,11 +147,11 @@ def _on_grid(
     has_samples = number > 0
     cells = np.flatnonzero(has_samples)
     if len(cells) < LEAST_SAMPLES:
-        raise InputError(problem="the common signal has too few samples", mend=MEND)
+        raise InputError(problem="the common signal has too few samples", remedy=REMEDY)
     values = total[cells] / number[cells]
     deviation = float(values.std())
     if deviation <= 1e-9 * float(np.abs(values).max()):
-        raise InputError(problem="the common signal is constant", mend=MEND)
+        raise InputError(problem="the common signal is constant", remedy=REMEDY)
     values = (values - values.mean()) / deviation
     signal = np.zeros(count)
     if fill:
@@ -210,7 +212,7 @@ def _clear_peak(r: Array, allowed: Mask, offsets: Array) -> tuple[int, int, int]
     best = int(np.argmax(np.abs(r)))
     if abs(r[best]) < WEAKEST:
         problem = f"the signals are not proportional at any offset (correlation {abs(r[best]):.2f})"
-        raise InputError(problem=problem, mend=MEND)
+        raise InputError(problem=problem, remedy=REMEDY)
     unexplained = 1.0 - r**2
     alike = allowed & (unexplained < RIVAL * max(float(unexplained[best]), FLOOR))
     places = np.flatnonzero(alike)
@@ -228,12 +230,12 @@ def _clear_peak(r: Array, allowed: Mask, offsets: Array) -> tuple[int, int, int]
             f"{offsets[rival]:.4g} s fit equally (correlation {abs(r[best]):.3f} and "
             f"{abs(r[rival]):.3f})"
         )
-        raise InputError(problem=problem, mend=MEND)
+        raise InputError(problem=problem, remedy=REMEDY)
     admissible = np.flatnonzero(allowed)
     if low <= admissible[0] + 1 or high >= admissible[-1] - 1:
         problem = (
             f"the common signal does not determine the offset: {offsets[low]:.4g} s to "
             f"{offsets[high]:.4g} s fit equally"
         )
-        raise InputError(problem=problem, mend=MEND)
+        raise InputError(problem=problem, remedy=REMEDY)
     return best, low, high

@@ -55,20 +55,20 @@ def column_unit(reference: Reference, units: Mapping[str, str]) -> Unit:
         raise InputError(
             column=reference.column,
             problem="its unit is open",
-            mend="replace the ? in the map by the unit, such as [mm]",
+            remedy="replace the ? in the map by the unit, such as [mm]",
         )
     if reference.unit is None and text in ASK:
         raise InputError(
             column=reference.column,
             problem=f"the unit {quoted(text)} is ambiguous: {ASK[text]}",
-            mend="write one of them after the column in the map, in square brackets",
+            remedy="write one of them after the column in the map, in square brackets",
         )
     unit = parse_unit(text) if text else ONE
     if unit is None:
         raise InputError(
             column=reference.column,
             problem=f"the unit {quoted(text)} is not known",
-            mend="write one such as [N m], [mm/s], [rpm] after the column in the map",
+            remedy="write one such as [N m], [mm/s], [rpm] after the column in the map",
         )
     return unit
 
@@ -95,7 +95,7 @@ def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str])
         if unit is None:
             raise InputError(
                 problem=f"the unit {quoted(node.unit)} of {node.value:g} is not known",
-                mend="write one such as [mm] or [N m/A]",
+                remedy="write one such as [mm] or [N m/A]",
             )
         return Quantity(node.value, unit)
     if isinstance(node, Reference):
@@ -132,16 +132,16 @@ def converted(quantity: Quantity, target: Unit, key: str) -> Array:
         return values * (quantity.unit.in_si / target.in_si)
     if quantity.unit is ONE and not quantity.unit_uncertain:
         problem = f"has no unit, but {target.text} is required"
-        mend = "write a unit in square brackets after each column"
+        remedy = "write a unit in square brackets after each column"
     elif angle and quantity.unit.dimensions[:_RAD] == target.dimensions[:_RAD]:
-        problem, mend = (
+        problem, remedy = (
             "the unit is ambiguous: revolutions, degrees or radians",
             "give a factor its unit: [mm/rev], [counts/rev]",
         )
     else:
         problem = f"has the unit {quantity.unit.text}, but {target.text} is required"
-        mend = "give columns and factors their units in square brackets"
-    raise InputError(key=f"columns.{key}", problem=problem, mend=mend)
+        remedy = "give columns and factors their units in square brackets"
+    raise InputError(key=f"columns.{key}", problem=problem, remedy=remedy)
 
 
 def _product(sign: str, left: Quantity, right: Quantity) -> Quantity:
@@ -165,7 +165,7 @@ def _sum(sign: str, left: Quantity, right: Quantity) -> Quantity:
     else:
         raise InputError(
             problem=f"{left.unit.text} and {right.unit.text} cannot be added",
-            mend="give each its unit in square brackets, such as [bar]",
+            remedy="give each its unit in square brackets, such as [bar]",
         )
     total = left.value + value if sign == "+" else left.value - value
     return Quantity(total, unit, left.unit_uncertain and right.unit_uncertain)
@@ -182,7 +182,7 @@ def _called(node: Call, inner: Quantity) -> Quantity:
     if inner.unit.dimensions[:_RAD] != NONE[:_RAD] or inner.unit.dimensions[_RAD] not in (0, 1):
         raise InputError(
             problem=f"{node.function} requires an angle, not {inner.unit.text}",
-            mend="use an angle as its argument",
+            remedy="use an angle as its argument",
         )
     angle = np.asarray(inner.value) * inner.unit.in_si
     return Quantity(np.sin(angle) if node.function == "sin" else np.cos(angle), ONE)
@@ -192,7 +192,7 @@ def _root(inner: Quantity) -> Value:
     if inner.unit.dimensions != NONE:
         raise InputError(
             problem=f"the square root of {inner.unit.text} has no unit",
-            mend="divide by a unit first",
+            remedy="divide by a unit first",
         )
     with np.errstate(invalid="ignore"):
         root: Value = np.sqrt(np.asarray(inner.value) * inner.unit.in_si)
@@ -211,7 +211,7 @@ def _refuse_double_conversion(node: Binary, left: Quantity, right: Quantity) -> 
         if math.isclose(factor, size, rel_tol=_SAME):
             raise InputError(
                 problem=f"the factor {other.value:g} converts {this.unit.text} a second time",
-                mend="remove it: units are converted automatically",
+                remedy="remove it: units are converted automatically",
             )
 
 
@@ -219,5 +219,5 @@ def _no_zero(unit: Unit) -> None:
     if unit.zero:
         raise InputError(
             problem=f"{unit.text} has an offset zero and cannot be used in a calculation",
-            mend="use the temperature column alone",
+            remedy="use the temperature column alone",
         )

@@ -220,11 +220,11 @@ class _Parser:
 
     def _no_column(self, word: str) -> InputError:
         problem = f"{quoted(self.text)}: the file has no column {quoted(word.strip())}"
-        return InputError(problem=problem, mend=did_you_mean(word, self.columns))
+        return InputError(problem=problem, remedy=did_you_mean(word, self.columns))
 
     def _wrong(self, problem: str) -> InputError:
-        mend = "write columns and numbers with + - * / and brackets, units as [N m] after them"
-        return InputError(problem=f"{quoted(self.text)} {problem}", mend=mend)
+        remedy = "write columns and numbers with + - * / and brackets, units as [N m] after them"
+        return InputError(problem=f"{quoted(self.text)} {problem}", remedy=remedy)
 
 
 def _is_word(sign: str) -> bool:

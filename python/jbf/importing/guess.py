@@ -64,7 +64,9 @@ def guess(source: Source, joint: str | None = None) -> Guess:
     if joints and joint not in joints:
         raise JointNotChosen(source.path, joints, joint)
     if joint is not None and not joints:
-        raise InputError(file=source.path, problem="contains only one joint", mend="omit the joint")
+        raise InputError(
+            file=source.path, problem="contains only one joint", remedy="omit the joint"
+        )
     for table in tables:
         questions += [
             Question(f"[{table.name}]" if several else "file", q) for q in table.questions

@@ -49,7 +49,7 @@ def with_alignment(guess: Guess, source: SideBySide) -> Guess:
                 notes[stem] = note or "the only common column"
                 continue
             notes[stem] = note.problem
-            questions.append(Question(f"align.{stem}", f"{note.problem}; {note.mend}"))
+            questions.append(Question(f"align.{stem}", f"{note.problem}; {note.remedy}"))
             continue
         align[stem] = OPEN
         notes[stem] = f"common to both files: {', '.join(shared)}" if shared else "no common column"

@@ -132,8 +132,8 @@ def import_files(
     if folder is not None:
         check_folder(folder, replace=replace_folder)
     if joint is not None and map is not None:
-        mend = "omit one of them: the map names the columns"
-        raise InputError(problem="both a joint and a map are given", mend=mend)
+        remedy = "omit one of them: the map names the columns"
+        raise InputError(problem="both a joint and a map are given", remedy=remedy)
     mapping, text = _map(map, paths, joint, _readable_paths(beside or ()))
     if beside is not None:
         mapping = replace(mapping, beside=_readable_paths(beside))
@@ -208,13 +208,13 @@ def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
         files = [path_of(files)]
     paths = [path_of(file) for file in files]
     if not paths:
-        raise InputError(problem="no file is given", mend="name at least one recording")
+        raise InputError(problem="no file is given", remedy="name at least one recording")
     for at, path in enumerate(paths):
         if not os.path.isdir(path):
             check_readable(path, pipes=False)
         if path.name in [earlier.name for earlier in paths[:at]]:
             raise InputError(
-                file=path, problem="another file has the same name", mend="rename one of them"
+                file=path, problem="another file has the same name", remedy="rename one of them"
             )
     return paths
 
@@ -229,11 +229,11 @@ def _check_further_files(paths: Sequence[Path], mapping: Map) -> None:
     """Raise an error for several recordings with further files, or for missing further files."""
     if mapping.beside and len(paths) > 1:
         problem = f"{len(paths)} files are given together with further files of one recording"
-        mend = f"name one main file: {paths[0].name}, or omit the others"
-        raise InputError(problem=problem, mend=mend)
+        remedy = f"name one main file: {paths[0].name}, or omit the others"
+        raise InputError(problem=problem, remedy=remedy)
     if mapping.align and not mapping.beside:
-        mend = 'name the further files: beside = ["force.csv"] under [file]'
-        raise InputError(file=mapping.path, key="align", problem="contains no files", mend=mend)
+        remedy = 'name the further files: beside = ["force.csv"] under [file]'
+        raise InputError(file=mapping.path, key="align", problem="contains no files", remedy=remedy)
     _readable_paths(mapping.beside)
 
 
@@ -252,9 +252,9 @@ def _map(
     proposal = look(paths[0], joint, beside)
     if not proposal.sure:
         lines = [f"{proposal.path}, {question}" for question in proposal.questions]
-        mend = "give a map: jbf import FILE"
+        remedy = "give a map: jbf import FILE"
         raise OpenQuestions(
-            lines, file=proposal.path, problem=str(proposal.questions[0]), mend=mend
+            lines, file=proposal.path, problem=str(proposal.questions[0]), remedy=remedy
         )
     return proposal.map(), map_text(proposal)
 
@@ -278,7 +278,7 @@ def _pieces(recordings: Sequence[Recording], mapping: Map) -> list[Piece]:
         raise InputError(
             file=recordings[0].path,
             problem=f"no run remains: {why}",
-            mend="correct [cut] in the map, or the trims",
+            remedy="correct [cut] in the map, or the trims",
         )
     return pieces
 

@@ -35,8 +35,8 @@ class JointNotChosen(InputError):
         self.joints = tuple(joints)
         contents = f"contains the joints {', '.join(joints)}"
         problem = contents if named is None else f"{contents}, but not {named}"
-        mend = f"choose one: --joint {joints[0]}, or --joint all with --folder"
-        super().__init__(file=path, problem=problem, mend=mend)
+        remedy = f"choose one: --joint {joints[0]}, or --joint all with --folder"
+        super().__init__(file=path, problem=problem, remedy=remedy)
 
     def __reduce__(self) -> tuple[object, ...]:
         return partial(InputError, **self._fields()), ()

@@ -104,7 +104,7 @@ class Map:
                         file=self.path,
                         key=f"{section}.{key}",
                         problem="is open",
-                        mend="replace the ? by its value",
+                        remedy="replace the ? by its value",
                     )
 
     def check(self) -> Rig:
@@ -123,7 +123,7 @@ class Map:
                 problem=first.problem,
                 file=first.file,
                 key=first.key,
-                mend=first.mend,
+                remedy=first.remedy,
             )
         try:
             for key in (*self.columns, *self.clocks):
@@ -131,8 +131,8 @@ class Map:
             for key in self.clocks:
                 if key not in self.columns or key == "time_s":
                     problem = "has a separate clock but is not a column"
-                    mend = "add it under [columns]"
-                    raise InputError(key=f"clocks.{key}", problem=problem, mend=mend)
+                    remedy = "add it under [columns]"
+                    raise InputError(key=f"clocks.{key}", problem=problem, remedy=remedy)
             self._complete()
             return Rig.from_mapping(self.rig)
         except InputError as error:
@@ -147,13 +147,13 @@ class Map:
                 raise InputError(
                     key="columns",
                     problem=f"contains no column for {noun}",
-                    mend=f"give one of {', '.join(keys)}",
+                    remedy=f"give one of {', '.join(keys)}",
                 )
         if not self.rig:
             raise InputError(
                 key="drive",
                 problem="the map does not describe the machine",
-                mend='add [drive] with motion = "linear" or "rotary" and friction, or [bearing]',
+                remedy='add [drive] with motion = "linear" or "rotary" and friction, or [bearing]',
             )
 
 
@@ -192,8 +192,8 @@ def read_map(path: PathLike) -> Map:
 def _map_of(content: Mapping[str, Any], path: Path) -> Map:
     refuse_unknown(content, SECTIONS)
     if "columns" not in content:
-        mend = 'add [columns] with lines such as friction_n = "Force [N]"'
-        raise InputError(key="columns", problem="is missing", mend=mend)
+        remedy = 'add [columns] with lines such as friction_n = "Force [N]"'
+        raise InputError(key="columns", problem="is missing", remedy=remedy)
     file = dict(table(content.get("file", {}), "file"))
     beside = _further_paths(file.pop("beside", []), path.parent)
     return Map(
@@ -211,8 +211,10 @@ def _map_of(content: Mapping[str, Any], path: Path) -> Map:
 def _further_paths(names: object, folder: Path) -> tuple[Path, ...]:
     """Return the further files; their paths are relative to the folder of the map."""
     if not isinstance(names, list) or not all(isinstance(n, str) and n for n in names):
-        mend = 'write a list of files, such as ["force.csv"]'
-        raise InputError(key="file.beside", problem=f"{names!r} is not a list of files", mend=mend)
+        remedy = 'write a list of files, such as ["force.csv"]'
+        raise InputError(
+            key="file.beside", problem=f"{names!r} is not a list of files", remedy=remedy
+        )
     return tuple(folder / name for name in names)
 
 
@@ -228,9 +230,9 @@ def _align(section: Mapping[str, Any]) -> dict[str, str | float]:
         except InputError:
             fits = False
         if not fits:
-            mend = f'write a common signal, such as "drive/pos ~ {key}/pos", or seconds'
+            remedy = f'write a common signal, such as "drive/pos ~ {key}/pos", or seconds'
             raise InputError(
-                key=f"align.{key}", problem=f"{value!r} is not a signal or an offset", mend=mend
+                key=f"align.{key}", problem=f"{value!r} is not a signal or an offset", remedy=remedy
             )
         offsets[key] = seconds
     return offsets
@@ -243,7 +245,7 @@ def _texts(content: Mapping[str, Any], section: str) -> dict[str, str]:
             raise InputError(
                 key=f"{section}.{key}",
                 problem=f"{value!r} is not text",
-                mend='write an expression in quotes, such as "Force [N] / 2"',
+                remedy='write an expression in quotes, such as "Force [N] / 2"',
             )
         texts[key] = value
     return texts
@@ -284,7 +286,7 @@ def _options(section: Mapping[str, Any]) -> Options:
             valid = valid and all(isinstance(word, str) for word in value)
         if not valid:
             raise InputError(
-                key=f"file.{key}", problem=f"{value!r} is not valid", mend=f"write {expected}"
+                key=f"file.{key}", problem=f"{value!r} is not valid", remedy=f"write {expected}"
             )
     if "empty" in given:
         given["empty"] = tuple(given["empty"])

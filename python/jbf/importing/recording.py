@@ -123,7 +123,7 @@ def _read_stream(
         raise error.within(file=path) from None
     if isinstance(source, SideBySide) and len(recording.streams[-1].segments) > 1:
         problem = "its time restarts, but files recorded together need one stretch each"
-        raise InputError(file=path, problem=problem, mend="save its stretches as separate files")
+        raise InputError(file=path, problem=problem, remedy="save its stretches as separate files")
 
 
 def _spool(
@@ -175,7 +175,7 @@ def _spool(
     stream.segments = line.segments(stream.rows)
     if stream.rows == 0:
         raise InputError(
-            problem="contains no samples", mend="name another file, or correct the map"
+            problem="contains no samples", remedy="name another file, or correct the map"
         )
     dropped = [Dropped(*skipped) for skipped in source.skipped_rows()] + line.dropped()
     if stream.needed:
@@ -203,8 +203,8 @@ def _values(
     if channel.key in (*OF_CUTTING, SIGNAL_COLUMN):
         read = [values[reference.column] for reference in references(channel.node)]
         if channel.key == KEPT_COLUMN and any(column.dtype == object for column in read):
-            mend = "use a numeric column in the comparison"
-            raise InputError(key="cut.keep", problem="is a column of words", mend=mend)
+            remedy = "use a numeric column in the comparison"
+            raise InputError(key="cut.keep", problem="is a column of words", remedy=remedy)
         if isinstance(channel.node, Reference):
             column = values[channel.node.column]
             return words.codes(column) if column.dtype == object else column
@@ -214,14 +214,14 @@ def _values(
             raise InputError(
                 column=reference.column,
                 problem="contains words, not numbers",
-                mend="name another column",
+                remedy="name another column",
             )
     try:
         return converted(evaluate(channel.node, values, units), channel.unit, channel.key)
     except InputError as error:
         if error.column is None and error.key is None:
             key = f"columns.{channel.key}"
-            raise InputError(key=key, problem=error.problem, mend=error.mend) from None
+            raise InputError(key=key, problem=error.problem, remedy=error.remedy) from None
         raise
 
 
@@ -247,7 +247,7 @@ def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
         raise InputError(
             key=f"columns.{columns[column]}",
             problem=f"{rows[row, column]:g} is not plausible",
-            mend="correct the unit, or the expression",
+            remedy="correct the unit, or the expression",
         )
 
 
@@ -277,7 +277,7 @@ def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> 
                 file=recording.path,
                 key="columns.load_n",
                 problem=f"a load of {load:g} N at {time:g} s is not above zero",
-                mend=f"keep = '{condition}' under [cut] removes such rows; otherwise "
+                remedy=f"keep = '{condition}' under [cut] removes such rows; otherwise "
                 "correct its sign or zero",
             )
 
@@ -340,8 +340,8 @@ def keep_common_span(recording: Recording) -> None:
             f"it begins {begin - end:.4g} s after the end of {_name(early)}: their "
             "times do not overlap"
         )
-        mend = "correct the offset or the signal under [align], or omit a file"
-        raise InputError(file=last_to_start.source, problem=problem, mend=mend)
+        remedy = "correct the offset or the signal under [align], or omit a file"
+        raise InputError(file=last_to_start.source, problem=problem, remedy=remedy)
     for stream in recording.streams:
         low, high = stream.rows_between(0, begin, end)
         skipped = stream.rows - (high - low)
@@ -349,7 +349,7 @@ def keep_common_span(recording: Recording) -> None:
             problem = (
                 f"it has no samples from {begin:.4g} s to {end:.4g} s, where the files overlap"
             )
-            raise InputError(file=stream.source, problem=problem, mend="omit it")
+            raise InputError(file=stream.source, problem=problem, remedy="omit it")
         if skipped:
             stream.segments = [(low, high)]
             why = "another file does not cover their time"
@@ -365,5 +365,5 @@ def _check_segments(recording: Recording) -> None:
     if len(counts) > 1:
         raise InputError(
             problem="time restarts in some channels only",
-            mend="give the channels one clock, or import the stretches as separate files",
+            remedy="give the channels one clock, or import the stretches as separate files",
         )

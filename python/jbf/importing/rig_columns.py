@@ -20,7 +20,9 @@ def check_rig_columns(rig: Rig, mapping: Map) -> None:
             columns.refuse_foreign_columns(file, 0, keys)
         except InputError as error:
             key = f"columns.{error.column}"
-            raise InputError(file=file, key=key, problem=error.problem, mend=error.mend) from None
+            raise InputError(
+                file=file, key=key, problem=error.problem, remedy=error.remedy
+            ) from None
         required = columns.required(keys, True)
     else:
         motion = [k for k in ("velocity_m_s", "position_m", "angle_rad") if k in keys]
@@ -31,5 +33,5 @@ def check_rig_columns(rig: Rig, mapping: Map) -> None:
                 file=file,
                 key=f"columns.{key}",
                 problem="is missing, but the rig requires it",
-                mend="add it under [columns], or correct the rig's section",
+                remedy="add it under [columns], or correct the rig's section",
             )

@@ -104,15 +104,15 @@ def open_recording(
     if not beside:
         return open_source(path, options)
     if options.steady:
-        mend = "omit the other files, or steady"
-        raise InputError(key="file.steady", problem="steady states have no clock", mend=mend)
+        remedy = "omit the other files, or steady"
+        raise InputError(key="file.steady", problem="steady states have no clock", remedy=remedy)
     with ExitStack() as stack:
         sources = [stack.enter_context(open_source(file, options)) for file in (path, *beside)]
         stems = [stem_of(source.path) for source in sources]
         for at, source in enumerate(sources):
             if stems[at] in stems[:at]:
                 problem = f"another file also has the name {stems[at]}"
-                raise InputError(file=source.path, problem=problem, mend="rename one of them")
+                raise InputError(file=source.path, problem=problem, remedy="rename one of them")
         return SideBySide(sources, stack.pop_all(), options)
 
 
@@ -124,8 +124,8 @@ def _select_tables(sources: Sequence[Source], name: str | None) -> list[tuple[Ta
     if not any(named):
         available = ", ".join(t.name for source in sources for t in source.tables if t.name)
         problem = f'no file contains "{name}"'
-        mend = f"they contain: {available}" if available else "omit it"
-        raise InputError(key="file.table", problem=problem, mend=mend)
+        remedy = f"they contain: {available}" if available else "omit it"
+        raise InputError(key="file.table", problem=problem, remedy=remedy)
     return [
         named_tables or source.tables for named_tables, source in zip(named, sources, strict=True)
     ]

@@ -41,14 +41,14 @@ def wanted_unit(key: str) -> Unit:
             raise InputError(
                 key=f"columns.{key}",
                 problem="is not known",
-                mend=f"did you mean {quoted(suggestion)}?",
+                remedy=f"did you mean {quoted(suggestion)}?",
             )
     stem_and_unit = unit_of_name(key)
     if stem_and_unit is None:
         raise InputError(
             key=f"columns.{key}",
             problem="is not known, and its name ends in no unit",
-            mend=(
+            remedy=(
                 f"{did_you_mean(key, KNOWN)}; name your own columns with a unit, such "
                 "as setpoint_rpm"
             ),

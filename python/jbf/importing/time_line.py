@@ -78,7 +78,7 @@ class TimeLine:
                         row=self._row_of(self.seen + row),
                         problem=f"sample {self.seen + row + 1}: time decreases from "
                         f"{self._last:.12g} s to {now:.12g} s",
-                        mend="sort the rows, or import the later part as a separate file",
+                        remedy="sort the rows, or import the later part as a separate file",
                     )
                 self._starts.append(count)
                 self._first = now
@@ -99,7 +99,7 @@ class TimeLine:
                 problem=(
                     f"is constant in {self._repeats} of {self.seen} rows: the clock is too coarse"
                 ),
-                mend="name a finer one, or omit time_s and set rate_hz under [file]",
+                remedy="name a finer one, or omit time_s and set rate_hz under [file]",
             )
         return list(zip(self._starts, [*self._starts[1:], rows], strict=True))
 

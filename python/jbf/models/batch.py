@@ -20,8 +20,8 @@ Array = npt.NDArray[Any]
 METHODS = ("euler", "rk4")
 
 
-def _refuse(key: str, problem: str, mend: str) -> InputError:
-    return InputError(key=key, problem=problem, mend=mend)
+def _refuse(key: str, problem: str, remedy: str) -> InputError:
+    return InputError(key=key, problem=problem, remedy=remedy)
 
 
 def _column(value: npt.ArrayLike, key: str) -> npt.NDArray[np.float64]:
@@ -134,10 +134,10 @@ def batch(
     if rig.bearing is None or rig.lubricant is None:
         raise InputError(
             problem="the rig has no [bearing] or no [lubricant]",
-            mend="the law journal requires both: add them",
+            remedy="the law journal requires both: add them",
         )
     if load_n is None and rig.load is None:
-        raise InputError(problem="the rig has no [load]", mend="add [load], or give load_n")
+        raise InputError(problem="the rig has no [load]", remedy="add [load], or give load_n")
     load = rig.load.normal_n if load_n is None and rig.load is not None else load_n
     assert load is not None
     sets = _sets({"f_m": f_m, "U_tr_m_s": U_tr_m_s, "K0": K0, "gamma": gamma, "load_n": load})

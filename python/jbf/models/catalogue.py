@@ -287,7 +287,7 @@ def find_effect(name: str) -> Effect:
     if not isinstance(name, str) or name not in catalogue:
         raise InputError(
             problem=f'effect "{name}" is not known',
-            mend=f"{did_you_mean(name, catalogue)} (`jbf effects` lists them)",
+            remedy=f"{did_you_mean(name, catalogue)} (`jbf effects` lists them)",
         )
     return catalogue[name]
 
@@ -323,7 +323,7 @@ def check_applies(law: str, names: Iterable[str]) -> None:
         if reason is not None:
             raise InputError(
                 problem=f"the effect {name} does not apply: the law {page.name} {reason}",
-                mend=f"omit it (`jbf effects --law {page.name}` lists what applies)",
+                remedy=f"omit it (`jbf effects --law {page.name}` lists what applies)",
             )
 
 
@@ -374,7 +374,7 @@ def find_parameter(name: str, names: Collection[str]) -> str:
     longer = [full for full in names if full.startswith(f"{name}_")]
     if len(longer) == 1:
         return longer[0]
-    raise InputError(problem=f'parameter "{name}" is not known', mend=did_you_mean(name, names))
+    raise InputError(problem=f'parameter "{name}" is not known', remedy=did_you_mean(name, names))
 
 
 @cache

@@ -47,12 +47,12 @@ The core ends a step at every reversal, and reduces the step if the law or an ef
 
 
 @contextmanager
-def core_refusals(mend: str | Callable[[str], str] = "correct the value") -> Iterator[None]:
+def core_refusals(remedy: str | Callable[[str], str] = "correct the value") -> Iterator[None]:
     """Convert exceptions of the core to an InputError.
 
     Parameters
     ----------
-    mend
+    remedy
         The remedy, or a function that maps the message of the core to the remedy.
     """
     try:
@@ -62,7 +62,7 @@ def core_refusals(mend: str | Callable[[str], str] = "correct the value") -> Ite
     except (ValueError, OverflowError) as error:
         problem = str(error)
         raise InputError(
-            problem=problem, mend=mend if isinstance(mend, str) else mend(problem)
+            problem=problem, remedy=remedy if isinstance(remedy, str) else remedy(problem)
         ) from None
 
 
@@ -79,12 +79,12 @@ def check_rig(rig: Rig, law: str) -> None:
         if content is None and rig.drive is not None:
             raise InputError(
                 problem=f"the rig is a drive, but the law {law} requires a journal bearing",
-                mend="choose another law: --law coulomb, stribeck or lugre (`jbf.laws()`)",
+                remedy="choose another law: --law coulomb, stribeck or lugre (`jbf.laws()`)",
             )
         if content is None:
             raise InputError(
                 problem=f"the rig has no [{section}]",
-                mend=f"the law {law} requires it: add [{section}]",
+                remedy=f"the law {law} requires it: add [{section}]",
             )
 
 

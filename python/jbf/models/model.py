@@ -258,12 +258,12 @@ class Model(Shown):
 
 def the_model(given: object) -> Model:
     """Return the value if it is a model; otherwise raise an InputError with a remedy."""
-    mend = "give a jbf.Model"
+    remedy = "give a jbf.Model"
     if isinstance(given, str | os.PathLike):
-        mend = f"read it: jbf.Model.load({quoted(os.fspath(given))})"
+        remedy = f"read it: jbf.Model.load({quoted(os.fspath(given))})"
     elif isinstance(getattr(given, "model", None), Model):
-        mend = "give its .model"
-    return of_kind(given, Model, "the model", mend)
+        remedy = "give its .model"
+    return of_kind(given, Model, "the model", remedy)
 
 
 def _with_error(name: str, value: float | ParameterValue) -> ParameterValue:

@@ -30,7 +30,7 @@ def _text(content: Mapping[str, Any], key: str, default: str | None = None) -> s
     value = content.get(key, default)
     if not isinstance(value, str):
         problem = "is missing" if value is None else "is not text"
-        raise InputError(key=key, problem=problem, mend=f'write {key} = "NAME"')
+        raise InputError(key=key, problem=problem, remedy=f'write {key} = "NAME"')
     return value
 
 
@@ -38,7 +38,7 @@ def _parameter(entry: object, key: str) -> ParameterValue:
     entry = entry if isinstance(entry, Mapping) else {"value": entry}
     refuse_unknown(entry, sorted(_FIELDS), f"{key}.")
     if "value" not in entry:
-        raise InputError(key=f"{key}.value", problem="is missing", mend="write { value = 0.26 }")
+        raise InputError(key=f"{key}.value", problem="is missing", remedy="write { value = 0.26 }")
     try:
         return ParameterValue(**entry)
     except InputError as error:
@@ -64,12 +64,12 @@ def _parameters(content: Mapping[str, Any], effects: Collection[str]) -> dict[st
 def _from_mapping(content: Mapping[str, Any]) -> ModelFile:
     if repr(content.get("format")) != repr(FORMAT):
         problem = "is not supported by this version of jbf" if "format" in content else "is missing"
-        raise InputError(key="format", problem=problem, mend=f"write format = {FORMAT}")
+        raise InputError(key="format", problem=problem, remedy=f"write format = {FORMAT}")
     refuse_unknown(content, _KEYS)
     effects = content.get("effects", [])
     if not isinstance(effects, list) or not all(isinstance(name, str) for name in effects):
-        mend = 'write effects = ["coulomb_drag"]'
-        raise InputError(key="effects", problem="is not a list of names", mend=mend)
+        remedy = 'write effects = ["coulomb_drag"]'
+        raise InputError(key="effects", problem="is not a list of names", remedy=remedy)
     effects = [current_effect(name) for name in effects]
     return ModelFile(
         law=_text(content, "law"),

@@ -46,20 +46,20 @@ class ParameterValue:
     def __post_init__(self) -> None:
         value = number(self.value, "value")
         if math.isnan(value):
-            raise InputError(key="value", problem="nan is not a value", mend="write a number")
+            raise InputError(key="value", problem="nan is not a value", remedy="write a number")
         object.__setattr__(self, "value", value)
         if self.stderr is not None:
             stderr = number(self.stderr, "stderr")
             if stderr < 0.0:
-                raise InputError(key="stderr", problem="is negative", mend="remove the sign")
+                raise InputError(key="stderr", problem="is negative", remedy="remove the sign")
             object.__setattr__(self, "stderr", None if math.isnan(stderr) else stderr)
         if self.note is not None and not isinstance(self.note, str):
-            raise InputError(key="note", problem="is not text", mend="put it in quotation marks")
+            raise InputError(key="note", problem="is not text", remedy="put it in quotation marks")
         if not isinstance(self.held, bool):
-            raise InputError(key="held", problem="is not true or false", mend="write held = true")
+            raise InputError(key="held", problem="is not true or false", remedy="write held = true")
         if self.held and self.stderr is not None:
             problem = "is given with held = true, but a held parameter has no standard error"
-            raise InputError(key="stderr", problem=problem, mend="remove one of them")
+            raise InputError(key="stderr", problem=problem, remedy="remove one of them")
 
     def to_dict(self) -> dict[str, Any]:
         """Return the parameter for JSON; a held parameter has no `stderr` entry."""

@@ -40,7 +40,7 @@ def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
                 file=run.path or run.name,
                 column="position_m",
                 problem=f"makes this a linear axis, but the effect {name} requires a shaft angle",
-                mend="remove position_m, or give the rig its [bearing]",
+                remedy="remove position_m, or give the rig its [bearing]",
             )
         if "temperatures" in needs:
             require(run, "temperature_c", f"the effect {name}")

@@ -139,7 +139,7 @@ def trajectory(
     """
     if (velocity is None) == (sine is None):
         raise InputError(
-            problem="a motion is either velocity_m_s or sine", mend="give one of the two"
+            problem="a motion is either velocity_m_s or sine", remedy="give one of the two"
         )
     motion: npt.ArrayLike | tuple[float, float, float]
     if sine is not None:
@@ -205,7 +205,7 @@ def trajectories(
     the_rig(rig)
     for section in ("bearing", "lubricant", "load"):
         if getattr(rig, section) is None:
-            raise InputError(problem=f"the rig has no [{section}]", mend="add the section")
+            raise InputError(problem=f"the rig has no [{section}]", remedy="add the section")
     assert rig.bearing is not None
     assert rig.lubricant is not None
     assert rig.load is not None
@@ -214,18 +214,18 @@ def trajectories(
         if name not in _NAMES:
             raise InputError(
                 problem=f"{quoted(name)} is not a parameter of the law",
-                mend=did_you_mean(name, list(_NAMES)),
+                remedy=did_you_mean(name, list(_NAMES)),
             )
     for name in _NAMES:
         if name not in given:
-            raise InputError(problem=f"the parameter {name} is missing", mend="give its value")
+            raise InputError(problem=f"the parameter {name} is missing", remedy="give its value")
     values = {core: number(given[name], f"parameters.{name}") for name, core in _NAMES.items()}
     pairs = motions_of(runs)
     times = [time for time, _ in pairs]
     starts = [float(time[0]) for time, motion in pairs if is_record(motion) and len(time)]
     if len(set(starts)) > 1 or (starts and len(starts) < len(pairs) and starts[0] != 0.0):
         raise InputError(
-            problem="the runs start at different times", mend="shift them to start at zero"
+            problem="the runs start at different times", remedy="shift them to start at zero"
         )
     b = rig.bearing
     with core_refusals():
@@ -261,7 +261,7 @@ def motions_of(
     """Return pairs of times and motion, converted to arrays and numbers; errors name the run."""
     if isinstance(runs, str) or not isinstance(runs, Iterable):
         raise InputError(
-            problem=f"runs is {described(runs)}", mend="give a list of pairs (times, motion)"
+            problem=f"runs is {described(runs)}", remedy="give a list of pairs (times, motion)"
         )
     return [_pair(i, run) for i, run in enumerate(runs)]
 
@@ -270,7 +270,7 @@ def _pair(place: int, run: object) -> tuple[Array, npt.ArrayLike | tuple[float, 
     """Return times and motion of one run, the times as an array."""
     if not (isinstance(run, tuple | list) and len(run) == 2):
         raise InputError(
-            problem=f"run {place} is {described(run)}", mend="give a pair (times, motion)"
+            problem=f"run {place} is {described(run)}", remedy="give a pair (times, motion)"
         )
     time, motion = run
     times = numbers(time, f"the times of run {place}", flat=True)
@@ -284,7 +284,7 @@ def _sine(given: object) -> tuple[float, float, float]:
     if not (isinstance(given, tuple | list) and len(given) in (2, 3)):
         raise InputError(
             problem=f"sine is {described(given)}",
-            mend="give (amplitude in m/s, omega in rad/s), optionally with a bias",
+            remedy="give (amplitude in m/s, omega in rad/s), optionally with a bias",
         )
     amplitude, omega, *bias = (number(x, "sine") for x in given)
     return amplitude, omega, bias[0] if bias else 0.0

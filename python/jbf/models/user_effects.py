@@ -151,7 +151,7 @@ class UserEffect(Effect):
                 raise InputError(
                     column=name,
                     problem=f"is missing, and the {self.called} {self.name} requires it",
-                    mend="add the column",
+                    remedy="add the column",
                 )
         try:
             return self.function(**self._arguments(columns, values))
@@ -160,14 +160,14 @@ class UserEffect(Effect):
         except (Exception, SystemExit) as error:
             raise InputError(
                 problem=f"the {self.called} {self.name} fails: {type(error).__name__}: {error}",
-                mend="correct its function",
+                remedy="correct its function",
             ) from error
 
     def _checked(self, returned: Any, n: int, values: Sequence[float]) -> Array:
         def wrong(problem: str) -> InputError:
             return InputError(
                 problem=f"the {self.called} {self.name} {problem}",
-                mend="its function must return one finite force (N) per sample",
+                remedy="its function must return one finite force (N) per sample",
             )
 
         array = np.asarray(returned)
@@ -284,7 +284,7 @@ def forget_effect(name: str) -> None:
     """
     if not catalogue.drop(name):
         raise InputError(
-            problem=f"{quoted(name)} is not a user-defined effect", mend="check the name"
+            problem=f"{quoted(name)} is not a user-defined effect", remedy="check the name"
         )
 
 
@@ -316,7 +316,7 @@ def load_effects(path: PathLike) -> None:
     before = dict(catalogue.user_effects()) | dict(catalogue.user_laws())
     file = Path(path)
     if not file.is_file():
-        raise InputError(file=file, problem="is not a file", mend="name a Python file")
+        raise InputError(file=file, problem="is not a file", remedy="name a Python file")
     try:
         runpy.run_path(str(file))
     except InputError as error:
@@ -328,14 +328,14 @@ def load_effects(path: PathLike) -> None:
             file=file,
             row=_line_in(error, file),
             problem=f"fails: {type(error).__name__}: {error}",
-            mend="correct the file",
+            remedy="correct the file",
         ) from None
     after = {**catalogue.user_effects(), **catalogue.user_laws()}
     if all(before.get(name) is page for name, page in after.items()):
         raise InputError(
             file=file,
             problem="registers no effect and no law",
-            mend="call jbf.register_effect or jbf.register_law in it",
+            remedy="call jbf.register_effect or jbf.register_law in it",
         )
 
 

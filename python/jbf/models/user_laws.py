@@ -145,4 +145,6 @@ def forget_law(name: str) -> None:
     False
     """
     if not catalogue.drop_law(name):
-        raise InputError(problem=f"{quoted(name)} is not a user-defined law", mend="check the name")
+        raise InputError(
+            problem=f"{quoted(name)} is not a user-defined law", remedy="check the name"
+        )

@@ -59,17 +59,19 @@ class ModelFile:
         object.__setattr__(self, "effects", tuple(self.effects))
         object.__setattr__(self, "fit", {k: _plain(v, f"fit.{k}") for k, v in self.fit.items()})
         if len(set(self.effects)) < len(self.effects):
-            raise InputError(key="effects", problem="contains a name twice", mend="name each once")
+            raise InputError(
+                key="effects", problem="contains a name twice", remedy="name each once"
+            )
         for name in self.parameters:
             effect, dot, parameter = name.partition(".")
             if dot and effect not in self.effects:
                 problem = f"the effect {quoted(effect)} is not in the list of effects"
-                mend = "add it to effects or remove its parameters"
+                remedy = "add it to effects or remove its parameters"
             elif (dot and not parameter) or name in self.effects or "." in parameter:
-                problem, mend = "is not the name of a parameter", "write NAME or EFFECT.NAME"
+                problem, remedy = "is not the name of a parameter", "write NAME or EFFECT.NAME"
             else:
                 continue
-            raise InputError(key=f"parameters.{name}", problem=problem, mend=mend)
+            raise InputError(key=f"parameters.{name}", problem=problem, remedy=remedy)
 
 
 Bounds = tuple[float, float]
@@ -100,10 +102,10 @@ class Vocabulary:
         for key, word, valid in named:
             if word not in valid:
                 problem = f"{quoted(word)} is not known"
-                mend = did_you_mean(word, valid)
+                remedy = did_you_mean(word, valid)
                 if key == "effects":
-                    mend += "; register a user-defined one first: --effects-from FILE.py"
-                raise InputError(key=key, problem=problem, mend=mend)
+                    remedy += "; register a user-defined one first: --effects-from FILE.py"
+                raise InputError(key=key, problem=problem, remedy=remedy)
         for name, parameter in model.parameters.items():
             effect, dot, short_name = name.rpartition(".")
             bounds = self.effects[effect] if dot else self.law_parameters.get(model.law, {})
@@ -111,5 +113,5 @@ class Vocabulary:
             lower, upper = bounds[short_name]
             if not lower <= parameter.value <= upper:
                 problem = f"{parameter.value} is out of range"
-                mend = f"choose from {lower} to {upper}"
-                raise InputError(key=f"parameters.{name}", problem=problem, mend=mend)
+                remedy = f"choose from {lower} to {upper}"
+                raise InputError(key=f"parameters.{name}", problem=problem, remedy=remedy)

@@ -44,7 +44,7 @@ def control_trace(
     """
     if what not in TRACES:
         raise InputError(
-            problem=f"trace {what} is not available", mend=f"known: {', '.join(TRACES)}"
+            problem=f"trace {what} is not available", remedy=f"known: {', '.join(TRACES)}"
         )
     ax = one_axes(ax, (7.0, 2.6))
     draw = {

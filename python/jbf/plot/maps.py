@@ -91,7 +91,7 @@ def residual_map(
         if name not in ("time", "speed", "place", "run"):
             raise InputError(
                 problem=f"a map over {name} is not available",
-                mend="choose time, speed, place or run",
+                remedy="choose time, speed, place or run",
             )
     ax = one_axes(ax, (9.0, 1.6 + min(0.22 * len(prepared), 6.0) if up == "run" else 3.6))
     x, y = (samples.flat(_values(comparison, name)) for name in (across, up))

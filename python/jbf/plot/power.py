@@ -52,7 +52,7 @@ def power(
     if not curves:
         raise InputError(
             problem="the power of these effects is unknown",
-            mend="see .power for the available effects",
+            remedy="see .power for the available effects",
         )
     ax = one_axes(ax, (7.0, 4.4))
     shown = curves if effects is not None else curves[:MOST]

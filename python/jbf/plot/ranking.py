@@ -52,13 +52,13 @@ def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> A
     if not -len(diagnosis.steps) <= step < len(diagnosis.steps):
         raise InputError(
             problem=f"step {step} does not exist",
-            mend=f"choose one of {len(diagnosis.steps)} steps",
+            remedy=f"choose one of {len(diagnosis.steps)} steps",
         )
     ledger_step = diagnosis.steps[step]
     trials = sorted(ledger_step.trials, key=lambda t: -t.evidence)
     if not trials:
         raise InputError(
-            problem=f"no candidates were tested at step {step}", mend="choose an earlier step"
+            problem=f"no candidates were tested at step {step}", remedy="choose an earlier step"
         )
     listed = _shown(trials)
     ax = one_axes(ax, (7.0, ranking_height(ledger_step)))

@@ -41,7 +41,7 @@ def index_of(comparison: Comparison, run: int | str | None) -> int:
         return names.index(run)
     if isinstance(run, int) and -len(names) <= run < len(names):
         return run % len(names)
-    raise InputError(problem=f"run {run} does not exist", mend=f"known: {', '.join(names)}")
+    raise InputError(problem=f"run {run} does not exist", remedy=f"known: {', '.join(names)}")
 
 
 def quantities_of(comparison: Comparison) -> Quantities:

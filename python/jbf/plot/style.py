@@ -66,7 +66,7 @@ def axes_or_new(
         axes_list = list(np.ravel(np.asarray(axes, dtype=object)))
     if len(axes_list) != count:
         raise InputError(
-            problem=f"{len(axes_list)} axes were given", mend=f"this picture requires {count}"
+            problem=f"{len(axes_list)} axes were given", remedy=f"this picture requires {count}"
         )
     return axes_list
 
@@ -121,4 +121,4 @@ def save(ax: AxesOrArray, path: str | os.PathLike[str]) -> None:
             cast("Figure", first.figure).savefig(path, dpi=PIXELS_PER_INCH)
     except (OSError, ValueError) as error:
         problem = f"cannot be written ({str(error).splitlines()[0].lower()})"
-        raise InputError(file=path, problem=problem, mend="name a .png, .svg or .pdf") from None
+        raise InputError(file=path, problem=problem, remedy="name a .png, .svg or .pdf") from None

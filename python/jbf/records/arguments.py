@@ -36,29 +36,29 @@ def described(value: object) -> str:
     return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
 
 
-def of_kind(value: object, kind: type[Kind], what: str, mend: str) -> Kind:
+def of_kind(value: object, kind: type[Kind], what: str, remedy: str) -> Kind:
     """Return the value if it has the given type; otherwise raise an InputError about `what`."""
     if not isinstance(value, kind):
-        raise InputError(problem=f"{what} is {described(value)}", mend=mend)
+        raise InputError(problem=f"{what} is {described(value)}", remedy=remedy)
     return value
 
 
 def the_rig(value: object) -> Rig:
     """Return the value if it is a rig; otherwise raise an InputError with a remedy."""
-    mend = "give a jbf.Rig, first of all (jbf.Rig() for a law in newtons)"
+    remedy = "give a jbf.Rig, first of all (jbf.Rig() for a law in newtons)"
     if isinstance(value, str | os.PathLike):
-        mend = f"read it: jbf.read_rig({quoted(os.fspath(value))})"
-    return of_kind(value, Rig, "the rig", mend)
+        remedy = f"read it: jbf.read_rig({quoted(os.fspath(value))})"
+    return of_kind(value, Rig, "the rig", remedy)
 
 
 def one_run(value: object) -> Run:
     """Return the value if it is a run; otherwise raise an InputError with a remedy."""
-    mend = "give a jbf.Run"
+    remedy = "give a jbf.Run"
     if isinstance(value, str | os.PathLike):
-        mend = f"read it: jbf.read_run({quoted(os.fspath(value))})"
+        remedy = f"read it: jbf.read_run({quoted(os.fspath(value))})"
     elif isinstance(value, list | tuple):
-        mend = "give one of them"
-    return of_kind(value, Run, "the run", mend)
+        remedy = "give one of them"
+    return of_kind(value, Run, "the run", remedy)
 
 
 def check_run(run: Run) -> None:
@@ -73,7 +73,7 @@ def check_run(run: Run) -> None:
                 file=run.name,
                 column=column,
                 problem="is not an array of float64 of shape (N,)",
-                mend="make the run with jbf.Run.from_arrays, which converts and checks",
+                remedy="make the run with jbf.Run.from_arrays, which converts and checks",
             )
     check_columns(run.name, run.columns(), None, None)
 
@@ -86,22 +86,22 @@ def list_of_runs(value: object) -> list[Run]:
     InputError
         The value is a single run, a path, a rig, or not an iterable of runs.
     """
-    mend = "give a list of jbf.Run"
+    remedy = "give a list of jbf.Run"
     if isinstance(value, Run):
-        raise InputError(problem="runs is a single run", mend="write a list of one: [run]")
+        raise InputError(problem="runs is a single run", remedy="write a list of one: [run]")
     if isinstance(value, str | os.PathLike):
-        mend = f"read them: jbf.read_runs({quoted(os.fspath(value))})"
+        remedy = f"read them: jbf.read_runs({quoted(os.fspath(value))})"
     elif isinstance(value, Rig):
-        mend = "give the rig first, then the list of runs"
+        remedy = "give the rig first, then the list of runs"
     if isinstance(value, str | Mapping) or not isinstance(value, Iterable):
-        raise InputError(problem=f"runs is {described(value)}", mend=mend)
+        raise InputError(problem=f"runs is {described(value)}", remedy=remedy)
     runs = list(value)
     for i, run in enumerate(runs):
         if not isinstance(run, Run):
-            mend = "give a list of jbf.Run"
+            remedy = "give a list of jbf.Run"
             if isinstance(run, str | os.PathLike):
-                mend = f"read it: jbf.read_run({quoted(os.fspath(run))})"
-            raise InputError(problem=f"runs holds {described(run)} at index {i}", mend=mend)
+                remedy = f"read it: jbf.read_run({quoted(os.fspath(run))})"
+            raise InputError(problem=f"runs holds {described(run)} at index {i}", remedy=remedy)
         check_run(run)
     return runs
 
@@ -117,17 +117,17 @@ def names(value: object, what: str) -> tuple[str, ...]:
     if isinstance(value, str):
         raise InputError(
             problem=f"{what} is a string, but a list of names is required",
-            mend=f"write {what}=[{quoted(value) if value else ''}]",
+            remedy=f"write {what}=[{quoted(value) if value else ''}]",
         )
     if not isinstance(value, Iterable):
         raise InputError(
-            problem=f"{what} is {described(value)}", mend=f"write a list of names: {what}=[]"
+            problem=f"{what} is {described(value)}", remedy=f"write a list of names: {what}=[]"
         )
     entries = tuple(value)
     for name in entries:
         if not isinstance(name, str):
             raise InputError(
-                problem=f"{what} holds {described(name)}", mend="write names as strings"
+                problem=f"{what} holds {described(name)}", remedy="write names as strings"
             )
     return entries
 
@@ -137,7 +137,7 @@ def checked_integer(value: object, what: str, minimum: int = 0) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral) or value < minimum:
         shown = str(value) if isinstance(value, Real) else described(value)
         raise InputError(
-            problem=f"{what} is {shown}", mend=f"give an integer of at least {minimum}"
+            problem=f"{what} is {shown}", remedy=f"give an integer of at least {minimum}"
         )
     return int(value)
 
@@ -145,7 +145,7 @@ def checked_integer(value: object, what: str, minimum: int = 0) -> int:
 def check_callable(value: object, what: str) -> None:
     """Raise an InputError if the value is neither None nor callable."""
     if value is not None and not callable(value):
-        raise InputError(problem=f"{what} is {described(value)}", mend="give a function, or None")
+        raise InputError(problem=f"{what} is {described(value)}", remedy="give a function, or None")
 
 
 def one_of(value: object, choices: Iterable[Word], what: str) -> Word:
@@ -156,19 +156,21 @@ def one_of(value: object, choices: Iterable[Word], what: str) -> Word:
             return word
     if isinstance(value, str):
         raise InputError(
-            problem=f"{what} {quoted(value)} is not known", mend=did_you_mean(value, words)
+            problem=f"{what} {quoted(value)} is not known", remedy=did_you_mean(value, words)
         )
-    raise InputError(problem=f"the {what} is {described(value)}", mend=f"known: {', '.join(words)}")
+    raise InputError(
+        problem=f"the {what} is {described(value)}", remedy=f"known: {', '.join(words)}"
+    )
 
 
 def by_name(value: object, what: str) -> dict[str, Any]:
     """Return a mapping with string keys as a new dict."""
-    mend = f'write them by name: {what}={{"NAME": VALUE}}'
+    remedy = f'write them by name: {what}={{"NAME": VALUE}}'
     if not isinstance(value, Mapping):
-        raise InputError(problem=f"{what} is {described(value)}", mend=mend)
+        raise InputError(problem=f"{what} is {described(value)}", remedy=remedy)
     for name in value:
         if not isinstance(name, str):
-            raise InputError(problem=f"{what} names {described(name)}", mend=mend)
+            raise InputError(problem=f"{what} names {described(name)}", remedy=remedy)
     return dict(value)
 
 
@@ -178,7 +180,7 @@ def numbers(
     """Return a contiguous array of numbers; with `flat`, its shape must be (N,)."""
 
     def wrong(shown: str) -> InputError:
-        return InputError(problem=f"{what} {shown}", mend="give numbers, one per sample")
+        return InputError(problem=f"{what} {shown}", remedy="give numbers, one per sample")
 
     if value is None:
         raise wrong("is None")

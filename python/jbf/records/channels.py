@@ -58,7 +58,7 @@ def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[
             file=name,
             column="velocity_m_s",
             problem="is missing, and no position is given",
-            mend=f"give one of {', '.join(MOTION)}",
+            remedy=f"give one of {', '.join(MOTION)}",
         )
     first, last = max(c[0] for c in moving), min(c[-1] for c in moving)
     instants = np.unique(np.concatenate(list(clocks.values())))
@@ -95,8 +95,8 @@ def of_motion(read: Mapping[str, Mask]) -> Mask | None:
 
 
 def _check_clock(clock: Array, values: Array, column: str, name: str) -> None:
-    def wrong(problem: str, mend: str) -> InputError:
-        return InputError(file=name, column=column, problem=problem, mend=mend)
+    def wrong(problem: str, remedy: str) -> InputError:
+        return InputError(file=name, column=column, problem=problem, remedy=remedy)
 
     if len(clock) != len(values):
         raise wrong(

@@ -83,7 +83,10 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
 
     def wrong(problem: str) -> InputError:
         return InputError(
-            file=name, column=column, problem=problem, mend="give one number per sample, shape (N,)"
+            file=name,
+            column=column,
+            problem=problem,
+            remedy="give one number per sample, shape (N,)",
         )
 
     items = values if isinstance(values, list | tuple) else ()
@@ -92,7 +95,7 @@ def as_array(values: npt.ArrayLike, column: str, name: str) -> Array:
             file=name,
             column=column,
             problem="has masked samples",
-            mend="remove them, or give Run.from_channels the readings with their instants",
+            remedy="remove them, or give Run.from_channels the readings with their instants",
         )
     try:
         array = np.asarray(values)
@@ -135,19 +138,19 @@ def check_columns(
     """
     file = path if rows is not None and path is not None else name
 
-    def wrong(column: str, index: int, problem: str, mend: str) -> InputError:
+    def wrong(column: str, index: int, problem: str, remedy: str) -> InputError:
         if rows is None:
             return InputError(
-                file=file, column=column, problem=f"sample {index}: {problem}", mend=mend
+                file=file, column=column, problem=f"sample {index}: {problem}", remedy=remedy
             )
-        return InputError(file=file, row=rows[index], column=column, problem=problem, mend=mend)
+        return InputError(file=file, row=rows[index], column=column, problem=problem, remedy=remedy)
 
     samples = len(columns["time_s"])
     if samples < MIN_SAMPLES:
         raise InputError(
             file=file,
             problem=f"has {count_of(samples, 'sample')}",
-            mend=f"a run needs at least {MIN_SAMPLES}",
+            remedy=f"a run needs at least {MIN_SAMPLES}",
         )
     for column, values in columns.items():
         if len(values) != samples:
@@ -155,7 +158,7 @@ def check_columns(
                 file=file,
                 column=column,
                 problem=f"has {count_of(len(values), 'sample')} where time_s has {samples}",
-                mend="give every column one value per sample",
+                remedy="give every column one value per sample",
             )
         bad = np.flatnonzero(~np.isfinite(values))
         if column == SLOW and np.isfinite(values).any():
@@ -218,7 +221,7 @@ def selection(selector: slice | npt.ArrayLike, count: int, name: str) -> Any:
             raise InputError(
                 file=name,
                 problem="a selection cannot be reversed",
-                mend="use a step > 0",
+                remedy="use a step > 0",
             )
         return selector
     index = np.asarray(selector)
@@ -226,6 +229,6 @@ def selection(selector: slice | npt.ArrayLike, count: int, name: str) -> Any:
         raise InputError(
             file=name,
             problem=f"a mask of {index.dtype} and shape {index.shape} cannot select",
-            mend=f"give a slice or a boolean mask of shape ({count},)",
+            remedy=f"give a slice or a boolean mask of shape ({count},)",
         )
     return index

@@ -99,8 +99,8 @@ def _checked_header(
 ) -> None:
     known_columns = COLUMNS if of_drive is None else of_drive.known
 
-    def wrong(column: str | None, problem: str, mend: str) -> InputError:
-        return InputError(file=path, row=row, column=column, problem=problem, mend=mend)
+    def wrong(column: str | None, problem: str, remedy: str) -> InputError:
+        return InputError(file=path, row=row, column=column, problem=problem, remedy=remedy)
 
     if all(_is_number(cell) for cell in header):
         raise wrong(
@@ -124,13 +124,13 @@ def _checked_header(
     for name in required:
         if name in absent:
             if name in misses:
-                mend = f"did you mean {quoted(misses[name])}? rename it to {name}"
+                remedy = f"did you mean {quoted(misses[name])}? rename it to {name}"
             else:
-                mend = f"add it; the header has {listed(header)}"
+                remedy = f"add it; the header has {listed(header)}"
                 of_drives = [heading for heading in OF_DRIVES if heading in header]
                 if of_drive is None and of_drives:
-                    mend += f"; a rig with [drive] defines {of_drives[0]}"
-            raise wrong(name, "is missing", mend)
+                    remedy += f"; a rig with [drive] defines {of_drives[0]}"
+            raise wrong(name, "is missing", remedy)
     for name, near_miss in misses.items():
         raise wrong(
             near_miss,
@@ -149,14 +149,14 @@ def _is_number(cell: str) -> bool:
 
 def _bad_cell(path: Path, row: int, column: str, cell: str) -> InputError:
     if not cell.strip():
-        problem, mend = "the cell is empty", "fill it or remove the row"
+        problem, remedy = "the cell is empty", "fill it or remove the row"
     elif re.fullmatch(r"\s*[+-]?\d*,\d+(e[+-]?\d+)?\s*", cell, re.IGNORECASE):
         problem = f"{quoted(cell.strip())} has a decimal comma"
-        mend = "write every number with a decimal point"
+        remedy = "write every number with a decimal point"
     else:
         problem = f"{quoted(cell.strip())} is not a number"
-        mend = "correct the cell or remove the row"
-    return InputError(file=path, row=row, column=column, problem=problem, mend=mend)
+        remedy = "correct the cell or remove the row"
+    return InputError(file=path, row=row, column=column, problem=problem, remedy=remedy)
 
 
 def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]:
@@ -173,7 +173,7 @@ def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]
         first += 1
     if first == len(lines):
         raise InputError(
-            file=path, problem="is empty", mend=f"start with a header such as {_HEADER_EXAMPLE}"
+            file=path, problem="is empty", remedy=f"start with a header such as {_HEADER_EXAMPLE}"
         )
     reader = csv.reader(lines[first:], delimiter=max(",;\t", key=lines[first].count))
     records: list[list[str]] = []
@@ -181,8 +181,8 @@ def _read_table(path: Path) -> tuple[list[str], int, list[list[str]], list[int]]
     line = first
 
     def wrong(row: int, problem: str) -> InputError:
-        mend = "correct the row; one line is one row"
-        return InputError(file=path, row=row, problem=problem, mend=mend)
+        remedy = "correct the row; one line is one row"
+        return InputError(file=path, row=row, problem=problem, remedy=remedy)
 
     try:
         for cells in reader:
@@ -253,14 +253,14 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
         required = [POINT if name == "time_s" else name for name in required]
     _checked_header(path, header_row, header, required, of_drive)
     if not rows:
-        raise InputError(file=path, problem="has a header but no samples", mend="add the samples")
+        raise InputError(file=path, problem="has a header but no samples", remedy="add the samples")
     if set(map(len, rows)) != {len(header)}:
         at = next(i for i, cells in enumerate(rows) if len(cells) != len(header))
         raise InputError(
             file=path,
             row=numbers[at],
             problem=f"has {count_of(len(rows[at]), 'cell')} where the header has {len(header)}",
-            mend="give every row one cell per column, with a decimal point",
+            remedy="give every row one cell per column, with a decimal point",
         )
     columns: dict[str, Array] = {}
     gaps: dict[str, Mask] = {}

@@ -117,8 +117,8 @@ class Drive:
             turning = self.friction == "torque" or self._of_motor is not None
             if turning or self.gear_ratio != 1.0:
                 problem = "is missing, and is required to convert the motor's torque to a force"
-                mend = "write the travel per revolution of the screw, m"
-                raise _wrong("pitch_m", problem, mend)
+                remedy = "write the travel per revolution of the screw, m"
+                raise _wrong("pitch_m", problem, remedy)
 
     def _check_constants(self) -> None:
         required = _CONSTANTS[self.motion, self.friction]
@@ -129,8 +129,8 @@ class Drive:
                 raise _wrong(name, problem, "remove it, or correct friction")
         if required and len(given) != 1:
             problem = "are both given" if given else "is missing"
-            mend = "keep one of them" if given else f'friction = "{self.friction}" needs it'
-            raise _wrong(" or ".join(required), problem, mend)
+            remedy = "keep one of them" if given else f'friction = "{self.friction}" needs it'
+            raise _wrong(" or ".join(required), problem, remedy)
 
     @property
     def moved(self) -> float | None:
@@ -190,5 +190,5 @@ def _check_word(key: str, word: object, words: Sequence[str], context: str = "")
         raise _wrong(key, f"{shown} is not a valid {key}{context}", did_you_mean(word, words))
 
 
-def _wrong(key: str, problem: str, mend: str) -> InputError:
-    return InputError(key=key, problem=problem, mend=mend)
+def _wrong(key: str, problem: str, remedy: str) -> InputError:
+    return InputError(key=key, problem=problem, remedy=remedy)

@@ -108,12 +108,12 @@ class DriveColumns:
     def refuse_foreign_columns(self, path: Path, row: int, header: Sequence[str]) -> None:
         """Raise an InputError if the file has a column of another kind of machine."""
         section = f'the rig\'s [drive] has motion = "{self.drive.motion}"'
-        for name, mend in _foreign_columns(self).items():
+        for name, remedy in _foreign_columns(self).items():
             if name in header:
                 problem = f"does not match the rig: {section}"
                 if name in ("friction_n", "velocity_m_s", "position_m"):
                     problem += f', friction = "{self.drive.friction}"'
-                raise InputError(file=path, row=row, column=name, problem=problem, mend=mend)
+                raise InputError(file=path, row=row, column=name, problem=problem, remedy=remedy)
 
     def converted(
         self, name: str, columns: Mapping[str, Array]

@@ -26,7 +26,7 @@ def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
         raise InputError(
             file=folder,
             problem="contains no rig.toml",
-            mend="put the rig file into the folder of its runs",
+            remedy="put the rig file into the folder of its runs",
         )
     rig = read_rig(path)
     return rig, read_runs(folder, rig)
@@ -50,6 +50,6 @@ def campaigns_in(folder: PathLike) -> dict[str, Path]:
         raise InputError(
             file=folder,
             problem="contains no campaign",
-            mend="give each campaign a subfolder with rig.toml and the runs as CSV",
+            remedy="give each campaign a subfolder with rig.toml and the runs as CSV",
         )
     return campaigns

@@ -35,7 +35,7 @@ def columns_of(frame: object, name: str) -> dict[str, Array]:
         raise InputError(
             file=name,
             problem=f"{type(frame).__name__} has no named columns",
-            mend="give a pandas or polars frame, an Arrow table or a dict of arrays",
+            remedy="give a pandas or polars frame, an Arrow table or a dict of arrays",
         )
     table: Any = frame
     columns = {column: _numbers(table[column]) for column in names}
@@ -73,7 +73,7 @@ def columns_of_dataset(dataset: Any) -> tuple[dict[str, Any], str]:
     if variables is None or not hasattr(dataset, "data_vars"):
         raise InputError(
             problem=f"{type(dataset).__name__} is not an xarray.Dataset",
-            mend="give a Dataset, or a frame to Run.from_frame",
+            remedy="give a Dataset, or a frame to Run.from_frame",
         )
     columns = {str(n): v.to_numpy() for n, v in variables.items() if v.dims == ("time_s",)}
     return columns, str(dataset.attrs.get("name", "run"))
@@ -99,7 +99,7 @@ def _by_arrow(frame: object, name: str) -> Any:
         raise InputError(
             file=name,
             problem=f"{type(frame).__name__} requires pyarrow, which is not installed",
-            mend="pip install pyarrow, or give a frame or a dict of arrays",
+            remedy="pip install pyarrow, or give a frame or a dict of arrays",
         ) from None
     return pyarrow.table(frame)
 

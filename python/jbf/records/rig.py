@@ -65,19 +65,19 @@ class Bearing:
             raise InputError(
                 key="clearance_m",
                 problem=f"{self.clearance_m} m is not below the radius of {self.radius_m} m",
-                mend="give both in metres",
+                remedy="give both in metres",
             )
         if isinstance(self.count, bool) or not isinstance(self.count, int) or self.count < 1:
             raise InputError(
                 key="count",
                 problem=f"{self.count!r} is not an integer of at least 1",
-                mend="write the number of bearings on the shaft, such as 4",
+                remedy="write the number of bearings on the shaft, such as 4",
             )
         if self.count > MOST_BEARINGS:
             raise InputError(
                 key="count",
                 problem=f"{self.count} bearings exceed the limit",
-                mend=f"write at most {MOST_BEARINGS}",
+                remedy=f"write at most {MOST_BEARINGS}",
             )
 
 
@@ -116,7 +116,7 @@ class Lubricant:
             raise InputError(
                 key="temperature_c",
                 problem=f"{celsius} is outside {COLDEST_C:g} to {WARMEST_C:g}",
-                mend="give it in degrees Celsius",
+                remedy="give it in degrees Celsius",
             )
         object.__setattr__(self, "temperature_c", celsius)
 
@@ -157,7 +157,7 @@ def _section(
             raise InputError(
                 key=f"{prefix}{name}.{key}",
                 problem="is missing",
-                mend=f"add it to [{prefix}{name}]",
+                remedy=f"add it to [{prefix}{name}]",
             )
     try:
         return kind(**content)
@@ -211,13 +211,13 @@ class Rig:
                 raise InputError(
                     key=name,
                     problem=f"the {name} is not a jbf.{kind.__name__} but a {type(value).__name__}",
-                    mend=f"give jbf.{kind.__name__}(...), or read a file: jbf.read_rig(PATH)",
+                    remedy=f"give jbf.{kind.__name__}(...), or read a file: jbf.read_rig(PATH)",
                 )
         if self.bearing is not None and self.drive is not None:
             raise InputError(
                 key="drive",
                 problem="cannot be combined with [bearing]: both define the friction",
-                mend="keep one: [bearing] for journal bearings, [drive] for any other machine",
+                remedy="keep one: [bearing] for journal bearings, [drive] for any other machine",
             )
         warn_of_unusual_sizes(self.to_mapping())
 
@@ -280,7 +280,7 @@ class Rig:
         if table not in loads_n:
             raise InputError(
                 problem=f"{quoted(table)} is not a parameter table of the thesis",
-                mend=f"choose from {', '.join(loads_n)}",
+                remedy=f"choose from {', '.join(loads_n)}",
             )
         sizes = _core.thesis_bearing()
         lubricant = Lubricant(viscosity_pa_s=sizes.pop("viscosity_pa_s"))

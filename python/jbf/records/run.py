@@ -205,11 +205,11 @@ class Run(Shown):
                     file=name,
                     column=column,
                     problem="is a known column, not an extra one",
-                    mend="pass it as its own argument",
+                    remedy="pass it as its own argument",
                 )
         if time_s is None:
             raise InputError(
-                file=name, column="time_s", problem="is None", mend="give the instants, s"
+                file=name, column="time_s", problem="is None", remedy="give the instants, s"
             )
         arrays = {
             column: as_array(values, column, name)
@@ -221,7 +221,7 @@ class Run(Shown):
                 file=name,
                 column="velocity_m_s",
                 problem="is missing, and no position is given",
-                mend=f"give one of {', '.join(MOTION)}",
+                remedy=f"give one of {', '.join(MOTION)}",
             )
         check_columns(name, arrays, None, None)
         return cls.of_columns(name, arrays, None if path is None else Path(path))
@@ -268,7 +268,7 @@ class Run(Shown):
                 file=name,
                 column="time_s",
                 problem="is missing",
-                mend=f"rename a column (it has {listed(columns)})",
+                remedy=f"rename a column (it has {listed(columns)})",
             )
         channels = {column: recorded_samples(time_s, values) for column, values in columns.items()}
         if any(len(clock) < len(time_s) for clock, _ in channels.values()):

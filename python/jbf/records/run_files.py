@@ -21,13 +21,13 @@ def _expanded(item: PathLike) -> list[Path]:
         files = sorted(p for p in path.iterdir() if p.suffix.lower() == ".csv")
         if not files:
             raise InputError(
-                file=path, problem="the folder contains no .csv file", mend="name another folder"
+                file=path, problem="the folder contains no .csv file", remedy="name another folder"
             )
         return files
     if not os.path.lexists(path) and glob.has_magic(str(path)):
         files = sorted(Path(p) for p in glob.glob(str(path), recursive=True) if Path(p).is_file())
         if not files:
-            raise InputError(file=path, problem="no file matches", mend="correct the pattern")
+            raise InputError(file=path, problem="no file matches", remedy="correct the pattern")
         return files
     return [path]
 
@@ -92,11 +92,11 @@ def read_runs(
         items = list(map(path_of, paths))
     files = [file for item in items for file in _expanded(item)]
     if not files:
-        raise InputError(problem="no run is given", mend="name at least one CSV file or folder")
+        raise InputError(problem="no run is given", remedy="name at least one CSV file or folder")
     read_files: set[Path] = set()
     for file in files:
         if real_path(file) in read_files:
-            raise InputError(file=file, problem="is given twice", mend="name each run once")
+            raise InputError(file=file, problem="is given twice", remedy="name each run once")
         read_files.add(real_path(file))
     runs = [read_run(file, rig, need_friction=need_friction) for file in files]
     return [_named(run, name) for run, name in zip(runs, _unique_names(files), strict=True)]

@@ -37,7 +37,7 @@ def require(run: Run, columns: str | Iterable[str], why: str) -> None:
                 file=run.path or run.name,
                 column=column,
                 problem=f"is missing, and {why} needs it",
-                mend=f"add the column (it has {listed(available)})",
+                remedy=f"add the column (it has {listed(available)})",
             )
 
 
@@ -56,12 +56,12 @@ def run_on(rig: Rig, run: Run) -> Run:
         raise InputError(
             file=run.path or run.name,
             problem=f"was read for a {run.quantities.motion} drive, but the rig is not one",
-            mend="give the rig with which it was read",
+            remedy="give the rig with which it was read",
         )
     if run.quantities == OF_BEARING and quantities.motion == "rotary" and run.path is not None:
         raise InputError(
             file=run.path,
             problem="was read without the rig, whose [drive] defines its columns",
-            mend="read it with the rig: jbf.read_run(path, rig)",
+            remedy="read it with the rig: jbf.read_run(path, rig)",
         )
     return replace(run, quantities=quantities)

@@ -28,11 +28,11 @@ def number(value: object, key: str) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         shown = quoted(value) if isinstance(value, str) else f"a {type(value).__name__}"
-        raise InputError(key=key, problem=f"{shown} is not a number", mend="write a plain number")
+        raise InputError(key=key, problem=f"{shown} is not a number", remedy="write a plain number")
     try:
         return float(value)
     except OverflowError:
-        raise InputError(key=key, problem="is too large", mend="correct the value") from None
+        raise InputError(key=key, problem="is too large", remedy="correct the value") from None
 
 
 LEAST, MOST = 1e-12, 1e12
@@ -47,17 +47,17 @@ def positive(value: object, key: str) -> float:
     size = number(value, key)
     if not (0.0 < size < math.inf):
         raise InputError(
-            key=key, problem=f"{size} is not above zero and finite", mend="correct the value"
+            key=key, problem=f"{size} is not above zero and finite", remedy="correct the value"
         )
     if not LEAST <= size <= MOST:
-        raise InputError(key=key, problem=f"{size} is not plausible", mend="give it in SI units")
+        raise InputError(key=key, problem=f"{size} is not plausible", remedy="give it in SI units")
     return size
 
 
 def table(value: object, key: str) -> Mapping[str, Any]:
     """Return a TOML table as a mapping; raise an `InputError` if it is not a table."""
     if not isinstance(value, Mapping):
-        raise InputError(key=key, problem="is not a table", mend=f"write it as [{key}] with keys")
+        raise InputError(key=key, problem="is not a table", remedy=f"write it as [{key}] with keys")
     return value
 
 
@@ -75,7 +75,7 @@ def refuse_unknown(keys: Iterable[str], valid: Iterable[str], prefix: str = "") 
             raise InputError(
                 key=prefix + str(key),
                 problem="is not known",
-                mend=did_you_mean(str(key), valid),
+                remedy=did_you_mean(str(key), valid),
             )
 
 
@@ -100,5 +100,5 @@ def read_toml(path: PathLike) -> dict[str, Any]:
             file=path,
             row=getattr(error, "line", None),
             problem=f"is not TOML ({reason[:1].lower()}{reason[1:]})",
-            mend="correct it; TOML is written key = value, each key once",
+            remedy="correct it; TOML is written key = value, each key once",
         ) from None

@@ -46,8 +46,8 @@ def _message(place: str, value: float, least: float, most: float) -> str:
     unit = named[1]
     others = [other for text in _OTHER_UNITS if (other := parse_unit(text)) and other.fits(unit)]
     likely = [other.text for other in others if least <= value * other.in_si / unit.in_si <= most]
-    mend = (
+    remedy = (
         f'for {value:g} {likely[0]} write "{value:g} {likely[0]}"' if likely else "check its unit"
     )
     usual = f"{least:g} to {most:g} {unit.text}"
-    return f"{place}: {value:g} {unit.text} is outside the usual {usual}; {mend}"
+    return f"{place}: {value:g} {unit.text} is outside the usual {usual}; {remedy}"

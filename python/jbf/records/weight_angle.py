@@ -42,5 +42,5 @@ def check_weight_angles(rig: Rig, runs: Sequence[Run]) -> None:
             file=missing[0].path or missing[0].name,
             column=WEIGHT_ANGLE,
             problem=f"is missing, but {having[0].name} has it",
-            mend="record it in every run, or in none",
+            remedy="record it in every run, or in none",
         )

@@ -51,7 +51,7 @@ def _converted(key: str, value: object, prefix: str) -> object:
         raise InputError(
             key=f"{prefix}{key}",
             problem=f"{value!r} is not a quantity in {target.text}",
-            mend=f"write a number in {target.text}, or a number with its unit",
+            remedy=f"write a number in {target.text}, or a number with its unit",
         )
     return float(unit.converted(np.array([float(match["number"])]), target)[0])
 
@@ -85,7 +85,7 @@ def number_in(unit: str, text: str, option: str) -> float:
         raise InputError(
             file=option,
             problem=f"{text!r} is not a quantity in {unit}",
-            mend=f"write a number in {unit}, or a number with its unit",
+            remedy=f"write a number in {unit}, or a number with its unit",
         ) from None
 
 

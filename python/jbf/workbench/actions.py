@@ -72,7 +72,7 @@ def map_of_runs(session: Session, parameters: Parameters) -> Any:
 def _number(parameters: Parameters) -> int:
     number = _model(parameters)
     if number is None:
-        raise InputError(problem="no model is selected", mend="fit or select one")
+        raise InputError(problem="no model is selected", remedy="fit or select one")
     return number
 
 

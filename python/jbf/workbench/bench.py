@@ -76,7 +76,7 @@ class Bench:
         for run in self.runs:
             if run.name == name:
                 return run
-        raise InputError(file=name, problem="this run is not open", mend="select an open run")
+        raise InputError(file=name, problem="this run is not open", remedy="select an open run")
 
     def trim(self, name: str, span: Span | None) -> None:
         """Restrict a run to an interval; None restores all of it.
@@ -93,12 +93,12 @@ class Bench:
         first, last = sorted(map(float, span))
         if not math.isfinite(first + last):
             raise InputError(
-                file=name, problem="an end is not a number", mend="give two instants, s"
+                file=name, problem="an end is not a number", remedy="give two instants, s"
             )
         remaining = int(((run.time_s >= first) & (run.time_s <= last)).sum())
         if remaining < MIN_SAMPLES:
             problem = f"only {remaining} samples would remain"
-            raise InputError(file=name, problem=problem, mend=f"keep at least {MIN_SAMPLES}")
+            raise InputError(file=name, problem=problem, remedy=f"keep at least {MIN_SAMPLES}")
         self.trims[name] = (first, last)
 
     def leave_out(self, name: str, out: bool) -> None:
@@ -116,7 +116,7 @@ class Bench:
         """
         runs = tuple(self._trimmed(run) for run in self.runs if run.name not in self.excluded)
         if not runs:
-            raise InputError(problem="all runs are excluded", mend="include at least one")
+            raise InputError(problem="all runs are excluded", remedy="include at least one")
         return runs
 
     def _trimmed(self, run: Run) -> Run:

@@ -39,7 +39,7 @@ class Folder:
         """
         root = Path(os.path.realpath(path))
         if not root.is_dir():
-            raise InputError(file=path, problem="is not a folder", mend="name an existing folder")
+            raise InputError(file=path, problem="is not a folder", remedy="name an existing folder")
         return cls(root)
 
     def path(self, name: str) -> Path:
@@ -59,7 +59,9 @@ class Folder:
             if resolved.is_relative_to(self.root) and resolved != self.root:
                 return resolved
         raise InputError(
-            file=quoted(name), problem="is not a name in the folder", mend="choose an existing one"
+            file=quoted(name),
+            problem="is not a name in the folder",
+            remedy="choose an existing one",
         )
 
     def name(self, path: Path) -> str:
@@ -80,12 +82,14 @@ class Folder:
         if "/" in name or "\\" in name or name.startswith(".") or kind not in _UPLOADS:
             endings = ", ".join(sorted(_UPLOADS))
             raise InputError(
-                file=quoted(name), problem="is not a recording, rig or map", mend=f"give {endings}"
+                file=quoted(name),
+                problem="is not a recording, rig or map",
+                remedy=f"give {endings}",
             )
         path = self.path(name)
         if os.path.lexists(self.root / name):
             raise InputError(
-                file=quoted(name), problem="already exists", mend="rename one of the two"
+                file=quoted(name), problem="already exists", remedy="rename one of the two"
             )
         return path
 

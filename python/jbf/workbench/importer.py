@@ -98,7 +98,7 @@ def import_runs(folder: Folder, names: Sequence[str], text: str, into: str) -> d
     """Import into a new folder of the given name; returns its rig and its runs."""
     out = folder.path(into)
     if out.exists():
-        raise InputError(file=into, problem="already exists", mend="name another folder")
+        raise InputError(file=into, problem="already exists", remedy="name another folder")
     paths, cut = _paths(folder, names), _cut_file(folder, text)
     additional = _additional_files(folder, text)
     with tempfile.TemporaryDirectory(prefix="jbf-map-") as scratch:
@@ -115,11 +115,11 @@ def import_runs(folder: Folder, names: Sequence[str], text: str, into: str) -> d
 
 def _paths(folder: Folder, names: Sequence[str]) -> list[Path]:
     if not names:
-        raise InputError(problem="no recording is selected", mend="select one")
+        raise InputError(problem="no recording is selected", remedy="select one")
     paths = [folder.path(name) for name in names]
     for name, path in zip(names, paths, strict=True):
         if not path.is_file():
-            raise InputError(file=name, problem="does not exist", mend="choose one of the list")
+            raise InputError(file=name, problem="does not exist", remedy="choose one of the list")
     return paths
 
 

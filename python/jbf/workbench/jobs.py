@@ -73,7 +73,7 @@ class Jobs:
         """
         with self._lock:
             if self.job is not None:
-                raise InputError(problem="a fit is running", mend="wait for it, or cancel it")
+                raise InputError(problem="a fit is running", remedy="wait for it, or cancel it")
             # Spawned, not forked, because the server is multithreaded.
             context = multiprocessing.get_context("spawn")
             mine, theirs = context.Pipe()

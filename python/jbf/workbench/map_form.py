@@ -223,7 +223,7 @@ def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, A
         if key in columns:
             words = WORDS.get(key, key)
             raise InputError(
-                problem=f"two columns are assigned to {words}", mend="keep one of them"
+                problem=f"two columns are assigned to {words}", remedy="keep one of them"
             )
         columns[key] = expression_of(row)
     other_formulas = {k: v for k, v in formulas.items() if k not in columns}
@@ -269,7 +269,7 @@ def _parsed(text: str) -> Any:
         return tomlkit.parse(text)
     except TOMLKitError as error:
         raise InputError(
-            problem=f"the map is not valid TOML ({error})", mend="correct it"
+            problem=f"the map is not valid TOML ({error})", remedy="correct it"
         ) from None
 
 

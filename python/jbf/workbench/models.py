@@ -47,7 +47,7 @@ class Models:
         """
         at = self.current if number is None else number
         if at is None or at not in self.nodes:
-            raise InputError(problem="this model does not exist", mend="fit or select one")
+            raise InputError(problem="this model does not exist", remedy="fit or select one")
         return self.nodes[at]
 
     def choose(self, number: int | None) -> None:

@@ -44,7 +44,7 @@ def next_run_text(session: Session) -> str:
     if not diagnosis.get("next_run"):
         raise InputError(
             problem="no next run was proposed",
-            mend="run a diagnosis; it proposes a run if effects are tied",
+            remedy="run a diagnosis; it proposes a run if effects are tied",
         )
     return str(diagnosis["next_run"])
 
@@ -68,7 +68,9 @@ def text_of(session: Session, kind: str) -> tuple[str, str]:
         The kind is unknown, or not available for this model.
     """
     if kind not in TEXTS:
-        raise InputError(problem=f"{kind!r} is not known", mend=f"choose one of {', '.join(TEXTS)}")
+        raise InputError(
+            problem=f"{kind!r} is not known", remedy=f"choose one of {', '.join(TEXTS)}"
+        )
     name, text = TEXTS[kind]
     return name, text(session)
 

@@ -31,7 +31,7 @@ def listening(port: int) -> socket.socket:
         listener.close()
         problem = f"port {port} is not available ({error})"
         raise InputError(
-            file="--port", problem=problem, mend="omit it: a free port is used"
+            file="--port", problem=problem, remedy="omit it: a free port is used"
         ) from None
     return listener
 
@@ -50,11 +50,11 @@ def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool =
         from jbf.workbench.actions import demo as open_demo
         from jbf.workbench.app import create_app
     except ImportError:
-        mend = 'pip install "jbf[workbench]"'
-        raise InputError(problem="Starlette or uvicorn is not installed", mend=mend) from None
+        remedy = 'pip install "jbf[workbench]"'
+        raise InputError(problem="Starlette or uvicorn is not installed", remedy=remedy) from None
     if not vendored.is_complete():
-        mend = "python -m jbf.workbench.vendored (once, with a network)"
-        raise InputError(problem=f"{vendored.NAME} was not fetched at build time", mend=mend)
+        remedy = "python -m jbf.workbench.vendored (once, with a network)"
+        raise InputError(problem=f"{vendored.NAME} was not fetched at build time", remedy=remedy)
     listener = listening(port)
     session = Session(Folder.of(folder))
     try:

@@ -77,7 +77,7 @@ class Session:
             No rig is open.
         """
         if self.bench is None:
-            raise InputError(problem="no runs are open", mend="open a rig and its runs")
+            raise InputError(problem="no runs are open", remedy="open a rig and its runs")
         return self.bench
 
     def open(self, rig_name: str, run_names: Sequence[str]) -> None:
@@ -95,7 +95,7 @@ class Session:
         """Replace rig, runs and models."""
         with self.lock:
             if self.jobs.job is not None:
-                raise InputError(problem="a fit is running", mend="wait for it, or cancel it")
+                raise InputError(problem="a fit is running", remedy="wait for it, or cancel it")
             self.bench, self.models = bench, models
             self._loaded = {}
             self.law = law or first_law(bench.rig)
@@ -123,9 +123,10 @@ class Session:
             for name in effects:
                 find_effect(name)
             if kind == "round" and law == AUTO:
-                mend = "choose a law, or diagnose"
+                remedy = "choose a law, or diagnose"
                 raise InputError(
-                    problem="a diagnosis selects the law for auto; a fit requires one", mend=mend
+                    problem="a diagnosis selects the law for auto; a fit requires one",
+                    remedy=remedy,
                 )
             place = self._new_place()
             order = Order(kind, bench.rig, bench.used_runs(), place, law, effects=tuple(effects))

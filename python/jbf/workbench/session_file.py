@@ -57,13 +57,13 @@ def load(session: Session) -> bool:
     try:
         content = json.loads(read_text(path))
     except json.JSONDecodeError as error:
-        mend = "remove it"
+        remedy = "remove it"
         raise InputError(
-            file=path, row=error.lineno, problem="is not valid JSON", mend=mend
+            file=path, row=error.lineno, problem="is not valid JSON", remedy=remedy
         ) from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InputError(
-            file=path, problem=f"does not have the format {FORMAT!r}", mend="remove it"
+            file=path, problem=f"does not have the format {FORMAT!r}", remedy="remove it"
         )
     try:
         bench = Bench.read(session.folder, str(content["rig"]), list(map(str, content["runs"])))
@@ -78,7 +78,7 @@ def load(session: Session) -> bool:
         if isinstance(error, InputError):
             raise
         problem = f"is not valid ({type(error).__name__}: {error})"
-        raise InputError(file=path, problem=problem, mend="remove it") from None
+        raise InputError(file=path, problem=problem, remedy="remove it") from None
     session.put(bench, models, law)
     if current is not None:
         session.show(int(current))

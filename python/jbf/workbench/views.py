@@ -107,7 +107,9 @@ def _mask_of_bins(
 ) -> dict[str, Mask]:
     node = session.models.node(number)
     if not 0 <= place < len(node["failures"]):
-        raise InputError(problem="the model has no such lack of fit", mend="choose one of the list")
+        raise InputError(
+            problem="the model has no such lack of fit", remedy="choose one of the list"
+        )
     ranges = node["failures"][place]["ranges_s"]
     names = node["record_names"]
     masks = {name: np.zeros(len(run.time_s), dtype=bool) for name, run in runs.items()}
@@ -193,7 +195,7 @@ def map_of_runs(session: Session, number: int) -> dict[str, Any]:
     """Return the mean of record minus prediction, one row per run, one column per speed range."""
     runs = series_by_run(session, number)
     if all(run.residual_n is None for run in runs.values()):
-        raise InputError(problem="this model has not been compared yet", mend="wait a moment")
+        raise InputError(problem="this model has not been compared yet", remedy="wait a moment")
     edges = speed_edges(tuple(runs.values()))
     rows: list[list[float | None]] = []
     for run in runs.values():
@@ -222,13 +224,13 @@ def signature(
     run_series = series_of_run(session, number, name)
     base = session.model(number)
     if effect in base.effects or effect not in catalogue():
-        raise InputError(problem=f"{effect} is in the model already, or unknown", mend="choose")
+        raise InputError(problem=f"{effect} is in the model already, or unknown", remedy="choose")
     richer = Model(base.rig, base.law, [*base.effects, effect], _usual(base, effect), base.clock)
     added = richer.predict(run) - base.predict(run)
     added = np.interp(run_series.time_s, run.time_s, added)
     residual = run_series.residual_n
     if residual is None:
-        raise InputError(problem="this model has not been compared yet", mend="wait a moment")
+        raise InputError(problem="this model has not been compared yet", remedy="wait a moment")
     ok = np.isfinite(residual) & np.isfinite(added)
     square = float(added[ok] @ added[ok])
     scale = float(residual[ok] @ added[ok]) / square if square > 0 else 0.0

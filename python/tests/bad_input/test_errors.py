@@ -11,7 +11,7 @@ from jbf.text_files import read_text, write_text, write_texts
 
 def test_error_message_names_place_problem_and_remedy() -> None:
     place = {"file": "a.csv", "row": 17, "column": "friction_n"}
-    error = InputError(**place, problem="is wrong", mend="correct it")  # type: ignore[arg-type]
+    error = InputError(**place, problem="is wrong", remedy="correct it")  # type: ignore[arg-type]
     assert str(error) == "a.csv, row 17, column friction_n: is wrong; correct it"
     assert str(InputError(problem="is wrong")) == "is wrong"
     assert str(InputError(key="load", problem="is\n wrong")) == "key load: is wrong"
@@ -25,9 +25,9 @@ def test_input_error_gains_file_and_key_prefix_but_keeps_a_known_file() -> None:
 
 
 def test_input_error_is_unchanged_by_pickling() -> None:
-    error = InputError(file="a", row=3, column="c", key="k", problem="p", mend="m")
+    error = InputError(file="a", row=3, column="c", key="k", problem="p", remedy="m")
     copy = pickle.loads(pickle.dumps(error))
-    assert (str(copy), copy.row, copy.mend) == (str(error), 3, "m")
+    assert (str(copy), copy.row, copy.remedy) == (str(error), 3, "m")
 
 
 def test_suggestion_ignores_case_and_lists_the_known_words_if_none_is_similar() -> None:

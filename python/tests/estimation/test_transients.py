@@ -36,7 +36,7 @@ def film_rate_1_s(run: Run, seed: dict[str, float] | None = None) -> float:
 def test_times_in_milliseconds_are_rejected_with_a_hint_at_the_unit(call: Any) -> None:
     error = input_error(call, Rig.thesis(), [IN_MILLISECONDS], law="journal")
     assert (error.column, error.file) == ("time_s", "sine")
-    assert "unit of time" in str(error.mend)
+    assert "unit of time" in str(error.remedy)
 
 
 def test_laws_without_a_film_accept_times_in_milliseconds() -> None:

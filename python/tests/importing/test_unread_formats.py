@@ -25,7 +25,7 @@ def test_unsupported_format_is_refused_with_its_name_and_a_remedy(
             format_of(path)
         line = str(refused.value)
         assert line.startswith(f"{path}: is {known.name}")
-        assert line.endswith(f"which is not supported; {known.mend}")
+        assert line.endswith(f"which is not supported; {known.remedy}")
         assert "\n" not in line
 
 

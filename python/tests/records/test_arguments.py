@@ -56,7 +56,7 @@ def test_arguments_of_the_required_kind_are_accepted_and_returned() -> None:
     ],
 )
 def test_wrong_argument_type_is_rejected_with_a_remedy(check: Any, given: Any, remedy: str) -> None:
-    assert remedy in str(input_error(check, *given).mend)
+    assert remedy in str(input_error(check, *given).remedy)
 
 
 def test_list_of_runs_accepts_any_iterable_and_checks_each_run() -> None:
@@ -99,7 +99,7 @@ def test_integer_at_or_above_its_minimum_is_returned_as_int(value: Any, least: i
     [(-1, 0), (2, 3), (True, 0), (1.0, 0), (Fraction(1, 2), 0), ("1", 0), (None, 0)],
 )
 def test_integer_below_its_minimum_or_of_another_type_is_rejected(value: Any, least: int) -> None:
-    assert str(least) in str(input_error(arguments.checked_integer, value, "n", least).mend)
+    assert str(least) in str(input_error(arguments.checked_integer, value, "n", least).remedy)
 
 
 def test_numeric_argument_becomes_a_contiguous_array_of_the_requested_type() -> None:
@@ -133,7 +133,7 @@ def test_unknown_toml_key_is_reported_with_the_nearest_known_key() -> None:
     refuse_unknown(["a"], iter(["a", "b"]))
     error = input_error(refuse_unknown, ["radius", "x"], iter(["radius_m"]), "bearing.")
     assert error.key == "bearing.radius"
-    assert "radius_m" in str(error.mend)
+    assert "radius_m" in str(error.remedy)
 
 
 def test_toml_syntax_error_is_reported_with_its_line(tmp_path: Path) -> None:

@@ -80,7 +80,7 @@ def test_invalid_csv_header_is_reported_with_column_and_remedy(
     path = write(HEADER.replace(old, new), *ROWS)
     error = input_error(read_run, path)
     assert (error.file, error.row, error.column) == (str(path), 1, column)
-    assert hint in str(error.mend)
+    assert hint in str(error.remedy)
 
 
 @pytest.mark.parametrize(
@@ -138,7 +138,7 @@ def test_malformed_csv_file_is_reported_with_cause_and_row(
 def test_unreadable_run_file_is_reported_with_its_cause(write: Write, tmp_path: Path) -> None:
     good = write(HEADER, *ROWS, name="sweep.csv")
     assert input_error(read_run, tmp_path).file == str(tmp_path)
-    assert "sweep.csv" in str(input_error(read_run, tmp_path / "sweeep.csv").mend)
+    assert "sweep.csv" in str(input_error(read_run, tmp_path / "sweeep.csv").remedy)
     assert "folder" in input_error(read_run, tmp_path / "no" / "x.csv").problem
     good.write_bytes(HEADER.encode() + b"\n1,\xff\n")
     assert input_error(read_run, good).row == 2
@@ -154,7 +154,7 @@ def test_missing_friction_column_is_accepted_only_if_not_required(write: Write) 
 
 def test_misspelt_friction_column_is_reported_even_if_not_required(write: Write) -> None:
     path = write("time_s,velocity_m_s,friction", *(f"{i},0.1,1" for i in range(10)))
-    assert "friction_n" in str(input_error(read_run, path, need_friction=False).mend)
+    assert "friction_n" in str(input_error(read_run, path, need_friction=False).remedy)
 
 
 def cells(count: int, empty: int, value: str) -> list[str]:

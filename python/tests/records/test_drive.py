@@ -136,7 +136,7 @@ def test_unsuitable_drive_column_is_rejected_with_hint(drive: Drive, name: str, 
     columns = DriveColumns.of(drive)
     error = input_error(columns.refuse_foreign_columns, Path("a.csv"), 3, ["time_s", name])
     assert (error.file, error.row, error.column) == ("a.csv", 3, name)
-    assert hint in str(error.mend)
+    assert hint in str(error.remedy)
 
 
 def test_motor_columns_are_converted_to_the_output_side_and_reported() -> None:
@@ -255,7 +255,7 @@ def test_missing_or_unsuitable_column_of_a_drive_is_reported_with_a_hint(
     path = record(tmp_path, dict.fromkeys(f"time_s,{header}".split(","), TIME_S))
     error = input_error(jbf.read_run, path, Rig(drive=drive))
     assert (error.file, error.row, error.column) == (str(path), 1, column)
-    assert hint in str(error.mend)
+    assert hint in str(error.remedy)
 
 
 def test_run_or_law_for_another_kind_of_rig_is_rejected(tmp_path: Path) -> None:
@@ -264,7 +264,7 @@ def test_run_or_law_for_another_kind_of_rig_is_rejected(tmp_path: Path) -> None:
     run = jbf.read_run(path, joint)
     for other in (Rig(), Rig(drive=SLIDE)):
         assert input_error(jbf.fit, other, [run], law="coulomb").file == str(path)
-    assert "coulomb" in str(input_error(jbf.Model, joint).mend)
+    assert "coulomb" in str(input_error(jbf.Model, joint).remedy)
 
 
 def test_documentation_names_every_key_and_column_of_a_drive() -> None:

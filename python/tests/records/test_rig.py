@@ -36,7 +36,7 @@ def test_thesis_rig_has_the_dimensions_and_loads_of_its_tables(path: Path) -> No
     assert isinstance(rig.load.normal_n, float)
     loads = [Rig.thesis(table).load for table in ("4.2", "4.3", "4.4", "4.5")]
     assert loads == [Load(104.0), Load(83.5), Load(104.0), Load(83.5)]
-    assert "4.2" in str(input_error(Rig.thesis, "4.1").mend)
+    assert "4.2" in str(input_error(Rig.thesis, "4.1").remedy)
 
 
 def test_units_and_radius_of_a_rig_follow_from_its_bearing_or_drive() -> None:

@@ -156,7 +156,7 @@ def test_quantity_in_a_wrong_unit_is_refused_with_file_key_and_remedy(
     error = input_error(rig_of, path, text.replace(old, new))
     assert (error.file, error.key) == (str(path), key)
     assert new in error.problem
-    assert unit in str(error.mend)
+    assert unit in str(error.remedy)
 
 
 @pytest.mark.parametrize("value", ["mm", "ten mm", "", "nan", "1e999 mm"])

@@ -53,7 +53,7 @@ class BenchOptions:
         if not 0.0 <= times < 1e6:
             raise InputError(
                 problem=f"--noise-times {times:g} is not a factor",
-                mend="choose zero or a positive number",
+                remedy="choose zero or a positive number",
             )
         return with_noise(bench, times)
 
@@ -100,8 +100,8 @@ class TaskOptions:
         from jbf.control.task import TASKS
 
         if self.task not in TASKS:
-            mend = f"{did_you_mean(self.task, TASKS)} (in quotes)"
-            raise InputError(problem=f'there is no task "{self.task}"', mend=mend)
+            remedy = f"{did_you_mean(self.task, TASKS)} (in quotes)"
+            raise InputError(problem=f'there is no task "{self.task}"', remedy=remedy)
         given = _given(self)
         return replace(TASKS[given.pop("task")], **given)
 

@@ -26,7 +26,7 @@ def check_picture(path: str | None) -> None:
         raise InputError(
             file=f"--plot {path}",
             problem="is not an image file",
-            mend="name a png, svg or pdf file",
+            remedy="name a png, svg or pdf file",
         )
 
 
@@ -38,5 +38,5 @@ def save_picture(figure: Any, path: str | None) -> None:
         figure.savefig(path, dpi=110)
     except (ValueError, OSError) as error:
         raise InputError(
-            file=f"--plot {path}", problem=str(error), mend="name a png, svg or pdf file"
+            file=f"--plot {path}", problem=str(error), remedy="name a png, svg or pdf file"
         ) from None

@@ -80,11 +80,11 @@ def run(options: RunOptions) -> int:
             scheme_names = scheme_names.replace("learning,", "")
     names = [name.strip() for name in scheme_names.split(",") if name.strip()]
     if not names:
-        raise InputError(problem="--scheme is empty", mend="name a scheme: --scheme observed")
+        raise InputError(problem="--scheme is empty", remedy="name a scheme: --scheme observed")
     if options.csv and len(names) != 1:
         raise InputError(
             problem=f"--csv requires one scheme, not {len(names)}",
-            mend="name one: --scheme observed",
+            remedy="name one: --scheme observed",
         )
     truth = None if options.model is None else model_of(options.model)
     carried = truth if options.carried is None else model_of(options.carried)
@@ -127,7 +127,9 @@ def _requested_motion(options: TaskOptions, truth: Model | None, bench: Bench) -
     given = [n for n in wave if getattr(options, n) is not None]
     if given:
         option = f"--{given[0].replace('_', '-')}"
-        raise InputError(problem=f"{option} cannot be combined with --motion", mend="leave out one")
+        raise InputError(
+            problem=f"{option} cannot be combined with --motion", remedy="leave out one"
+        )
     recorded = read_run(options.motion, need_friction=False)
     rig = (thesis_model() if truth is None else truth).rig
     motion = follow(recorded, rig, options.control or "velocity", bench)

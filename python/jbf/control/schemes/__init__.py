@@ -40,7 +40,9 @@ def scheme(name: str, model: Model | None = None, settings: Settings | None = No
         "repetitive": Repetitive,
     }
     if name not in without_settings:
-        raise InputError(problem=f'scheme "{name}" is not known', mend=did_you_mean(name, SCHEMES))
+        raise InputError(
+            problem=f'scheme "{name}" is not known', remedy=did_you_mean(name, SCHEMES)
+        )
     return without_settings[name]()
 
 

@@ -57,7 +57,7 @@ class Learning(Unguarded):
         if model.law != "journal":
             raise InputError(
                 problem=f"the learning scheme requires the law journal, not {model.law}",
-                mend="choose another scheme",
+                remedy="choose another scheme",
             )
         values = {n: p.value for n, p in model.parameters.items()}
         return cls(

@@ -95,26 +95,28 @@ class Limits:
         if self.duration_s > LONGEST_S:
             raise InputError(
                 problem=f"the limit duration_s = {self.duration_s:g} exceeds one day",
-                mend=f"use at most {LONGEST_S:g}",
+                remedy=f"use at most {LONGEST_S:g}",
             )
         for name, value in pairs:
             if not (np.isfinite(value) and value > 0.0):
-                raise InputError(problem=f"the limit {name} = {value:g}", mend="must be above zero")
+                raise InputError(
+                    problem=f"the limit {name} = {value:g}", remedy="must be above zero"
+                )
             if value > MOST:
                 raise InputError(
                     problem=f"the limit {name} = {value:g} is not plausible",
-                    mend="give it in SI units",
+                    remedy="give it in SI units",
                 )
         if self.load_n and self.load_n[0] > self.load_n[1]:
             raise InputError(
                 problem=f"the limit load_n = {self.load_n[0]:g} to {self.load_n[1]:g}",
-                mend="give the smaller load first",
+                remedy="give the smaller load first",
             )
         low, high = self.temperature_c or (0.0, 0.0)
         if not (np.isfinite([low, high]).all() and low <= high):
             raise InputError(
                 problem=f"the limit temperature_c = {low:g} to {high:g}",
-                mend="give two temperatures, the lower first",
+                remedy="give two temperatures, the lower first",
             )
 
     def filled(self, campaign: Campaign) -> Limits:

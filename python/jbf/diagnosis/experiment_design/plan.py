@@ -164,10 +164,10 @@ def plan(
     of_kind(limits, Limits, "limits", "give a jbf.Limits")
     for name, value in (("minutes", minutes), ("noise_rms", noise_rms), ("step_s", step_s)):
         if not (np.isfinite(number(value, name)) and value > 0.0):
-            raise InputError(key=name, problem=f"{value:g} is not above zero", mend="increase it")
+            raise InputError(key=name, problem=f"{value:g} is not above zero", remedy="increase it")
     if limits.velocity is None:
         raise InputError(
-            problem="the limit velocity_m_s is missing", mend="give the highest speed of the rig"
+            problem="the limit velocity_m_s is missing", remedy="give the highest speed of the rig"
         )
     if limits.acceleration is None:
         limits = replace(limits, acceleration=USUAL_RATE_RAD_S * limits.velocity)
@@ -180,13 +180,13 @@ def plan(
         raise InputError(
             key="minutes",
             problem=f"{minutes:g} allow only {count} runs of {limits.duration_s:g} s",
-            mend=f"allow time for at least {LEAST_RUNS} runs, or make them shorter",
+            remedy=f"allow time for at least {LEAST_RUNS} runs, or make them shorter",
         )
     if count > MOST_RUNS:
         raise InputError(
             key="minutes",
             problem=f"{minutes:g} allow more than {MOST_RUNS} runs of {limits.duration_s:g} s",
-            mend="allow less time, or make the runs longer",
+            remedy="allow less time, or make the runs longer",
         )
     step_s = max(step_s, limits.duration_s / MOST_SAMPLES)
     rig = model.rig

@@ -150,10 +150,10 @@ def planned_power(
     if not 0.0 < noise_rms <= MOST:
         problem = "is not plausible" if noise_rms > 0.0 else "is not above zero"
         problem = f"{noise_rms:g} {problem}"
-        raise InputError(key="noise_rms", problem=problem, mend="give its standard deviation")
+        raise InputError(key="noise_rms", problem=problem, remedy="give its standard deviation")
     planned = list_of_runs(runs)
     if not planned:
-        raise InputError(problem="no run was given", mend="give at least one motion")
+        raise InputError(problem="no run was given", remedy="give at least one motion")
     candidates = as_recorded(model, planned, noise_rms, policy)
     limits = power(candidates, model.effects)
     names = tuple(run.name for run in planned)

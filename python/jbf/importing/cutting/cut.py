@@ -37,7 +37,7 @@ def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
     timed = [method for method in settings.by or () if method in ("rests", "cycles", "motion")]
     if recording.steady and timed:
         problem = f'"{timed[0]}" requires a motion over time, but the file contains steady states'
-        raise InputError(key="cut.by", problem=problem, mend="remove it")
+        raise InputError(key="cut.by", problem=problem, remedy="remove it")
     if settings.by is not None or recording.steady:
         return _cut(recording, settings)
     pieces = at_rests_by_default(recording, settings)
@@ -78,9 +78,12 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
         else:
             cut_stream = recording.stream_of(CUT_COLUMN)
             if cut_stream is None:
-                mend = "name another column"
+                remedy = "name another column"
                 raise InputError(
-                    file=recording.path, key="cut.column", problem="contains no value", mend=mend
+                    file=recording.path,
+                    key="cut.column",
+                    problem="contains no value",
+                    remedy=remedy,
                 )
             cuts += cut_at_changes(cut_stream[0], CUT_COLUMN, method.replace("_", " "))
     keep_stream = recording.stream_of(KEPT_COLUMN)
@@ -142,7 +145,7 @@ def _mark_unusable(recording: Recording, piece: Piece, settings: CutSettings) ->
             file=recording.path,
             column=next(iter(read), "motion"),
             problem="contains no value",
-            mend="name another column in the map",
+            remedy="name another column in the map",
         )
     first, end = motion_stream[0].rows_between(piece.segment, piece.from_s, piece.to_s)
     why = ""

@@ -33,7 +33,7 @@ def cut_at_load_steps(recording: Recording) -> list[Cut]:
         raise InputError(
             key="cut.by",
             problem="load_step requires load_n, load_n_m or pressure_pa",
-            mend="name the column under [columns]",
+            remedy="name the column under [columns]",
         )
     stream, key = load_stream
     return [

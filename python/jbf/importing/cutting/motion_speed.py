@@ -33,7 +33,7 @@ class MotionSpeed:
             raise InputError(
                 file=recording.path,
                 problem="contains no position and no speed",
-                mend="name another column in the map",
+                remedy="name another column in the map",
             )
         self.stream: Stream = motion_stream[0]
         self.key = motion_stream[1]

@@ -59,8 +59,8 @@ class Condition:
         """
         match = _COMPARISON.fullmatch(text) if isinstance(text, str) else None
         if match is None:
-            mend = 'write a comparison, such as "powered == 1" or "load > 5 [N]"'
-            raise InputError(key="cut.keep", problem=f"{text!r} is not a condition", mend=mend)
+            remedy = 'write a comparison, such as "powered == 1" or "load > 5 [N]"'
+            raise InputError(key="cut.keep", problem=f"{text!r} is not a condition", remedy=remedy)
         quantity, relation, limit = (part.strip() for part in match.groups())
         difference = quantity if limit == "0" else f"{quantity} - ({limit})"
         return cls(difference, relation, str(text))
@@ -126,8 +126,8 @@ class CutSettings:
             methods = ("rests",) if {"rest_s", "keep_rest_s", "still"} & given.keys() else None
             methods = ("parts",) if "parts" in given else methods
         elif not isinstance(by, str | list | tuple):
-            mend = 'write by = "rests", or a list of methods'
-            raise InputError(key="cut.by", problem=f"{by!r} is not a cutting method", mend=mend)
+            remedy = 'write by = "rests", or a list of methods'
+            raise InputError(key="cut.by", problem=f"{by!r} is not a cutting method", remedy=remedy)
         else:
             methods = (by,) if isinstance(by, str) else tuple(by)
         for method in methods or ():
@@ -135,33 +135,33 @@ class CutSettings:
                 raise InputError(
                     key="cut.by",
                     problem=f"{quoted(method)} is not a cutting method",
-                    mend=did_you_mean(method, WAYS),
+                    remedy=did_you_mean(method, WAYS),
                 )
         needs = [method for method in methods or () if method in ("set_point", "run")]
         if needs and not isinstance(given.get("column"), str):
             raise InputError(
                 key="cut.column",
                 problem="is missing",
-                mend=f'by = "{needs[0]}" requires a column, such as "setpoint_rpm"',
+                remedy=f'by = "{needs[0]}" requires a column, such as "setpoint_rpm"',
             )
         for key in ("rest_s", "keep_rest_s", "shortest_s", "still"):
             if key in given:
                 given[key] = number(given[key], f"cut.{key}")
                 if not 0.0 <= given[key] < math.inf:
                     problem = f"{given[key]} is negative or not finite"
-                    raise InputError(key=f"cut.{key}", problem=problem, mend="correct it")
+                    raise InputError(key=f"cut.{key}", problem=problem, remedy="correct it")
         if "parts" in given and "parts" not in (methods or ()):
-            mend = 'add "parts" to by, or remove it'
-            raise InputError(key="cut.parts", problem='is used by by = "parts" only', mend=mend)
+            remedy = 'add "parts" to by, or remove it'
+            raise InputError(key="cut.parts", problem='is used by by = "parts" only', remedy=remedy)
         parts = given.get("parts", 2)
         if isinstance(parts, bool) or not isinstance(parts, int) or parts < 2:
             problem = f"{parts!r} is not an integer of at least 2"
-            raise InputError(key="cut.parts", problem=problem, mend="write parts = 2 for halves")
+            raise InputError(key="cut.parts", problem=problem, remedy="write parts = 2 for halves")
         if "keep" in given:
             given["keep"] = Condition.of(given["keep"])
         if "file" in given:
             if not isinstance(given["file"], str):
-                mend = 'write file = "cut.toml"'
-                raise InputError(key="cut.file", problem="is not text", mend=mend)
+                remedy = 'write file = "cut.toml"'
+                raise InputError(key="cut.file", problem="is not text", remedy=remedy)
             given["file"] = folder / given["file"]
         return cls(**(given | {"by": methods}))

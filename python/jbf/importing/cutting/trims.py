@@ -59,14 +59,14 @@ def trimmed(path: Path, recordings: Sequence[Recording]) -> list[Piece]:
         rows = content.get("pieces", [])
         if not isinstance(rows, list):
             raise InputError(
-                key="pieces", problem="is not a list", mend="write pieces = [ { ... }, ]"
+                key="pieces", problem="is not a list", remedy="write pieces = [ { ... }, ]"
             )
         pieces = [_piece(row, at, recordings) for at, row in enumerate(rows, 1)]
         names = [piece.name for piece in pieces if piece.keep]
         for at, name in enumerate(names):
             if name in names[:at]:
                 raise InputError(
-                    key="pieces", problem=f'two runs are called "{name}"', mend="rename one"
+                    key="pieces", problem=f'two runs are called "{name}"', remedy="rename one"
                 )
     except InputError as error:
         raise error.within(file=path) from None
@@ -79,34 +79,34 @@ def _piece(row: object, at: int, recordings: Sequence[Recording]) -> Piece:
     refuse_unknown(content, _KEYS, f"{key}, ")
     for needed in ("name", "file", "from_s", "to_s"):
         if needed not in content:
-            raise InputError(key=f"{key}, {needed}", problem="is missing", mend="add it")
+            raise InputError(key=f"{key}, {needed}", problem="is missing", remedy="add it")
     matching = [r for r in recordings if r.path.name == content["file"]]
     if not matching:
         names = ", ".join(r.path.name for r in recordings)
         problem = f'"{content["file"]}" is not imported'
-        raise InputError(key=f"{key}, file", problem=problem, mend=f"known: {names}")
+        raise InputError(key=f"{key}, file", problem=problem, remedy=f"known: {names}")
     segment = int(number(content.get("stretch", 1), f"{key}, stretch")) - 1
     if not 0 <= segment < matching[0].segments:
         problem = f"there is no stretch {segment + 1}"
-        mend = f"time restarts {matching[0].segments - 1} times in {matching[0].path.name}"
-        raise InputError(key=f"{key}, stretch", problem=problem, mend=mend)
+        remedy = f"time restarts {matching[0].segments - 1} times in {matching[0].path.name}"
+        raise InputError(key=f"{key}, stretch", problem=problem, remedy=remedy)
     from_s, to_s = (number(content[k], f"{key}, {k}") for k in ("from_s", "to_s"))
     first_s, last_s = ends(matching[0], segment)
     if not from_s < to_s or to_s < first_s or from_s > last_s:
         raise InputError(
             key=f"{key}, from_s",
             problem=f"{from_s:g} s to {to_s:g} s contains no samples",
-            mend=f"the recording covers {first_s:g} s to {last_s:g} s",
+            remedy=f"the recording covers {first_s:g} s to {last_s:g} s",
         )
     keep = content.get("keep", True)
     if not isinstance(keep, bool):
         raise InputError(
-            key=f"{key}, keep", problem="is not true or false", mend="write true or false"
+            key=f"{key}, keep", problem="is not true or false", remedy="write true or false"
         )
     name = str(content["name"])
     if keep and (not name or set(name) & set('/\\:*?"<>|') or name.startswith(".")):
         raise InputError(
-            key=f"{key}, name", problem="is not a valid file name", mend="use letters and digits"
+            key=f"{key}, name", problem="is not a valid file name", remedy="use letters and digits"
         )
     return Piece(
         name, matching[0].path.name, segment, from_s, to_s, keep, str(content.get("why", ""))

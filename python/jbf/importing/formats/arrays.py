@@ -149,7 +149,7 @@ def add_by_length(
         source.add(f"{length} samples" if _several(lengths) else "", group, length)
     if not source.tables:
         raise InputError(
-            file=source.path, problem="contains no numeric columns", mend="name another file"
+            file=source.path, problem="contains no numeric columns", remedy="name another file"
         )
 
 

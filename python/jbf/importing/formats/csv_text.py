@@ -56,7 +56,7 @@ class TextSource(Source):
         with opened(path) as file:
             data = file.read(_HEAD_BYTES)
         if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
-            raise InputError(file=path, problem="is binary, not text", mend="name another file")
+            raise InputError(file=path, problem="is binary, not text", remedy="name another file")
         self.encoding = options.encoding or decode(data)
         self._words: list[int] = []
         self._exact: set[str] = set()
@@ -66,7 +66,7 @@ class TextSource(Source):
         self._handle: io.BufferedReader | gzip.GzipFile | None = None
         lines = [line for _, line in islice(self._lines(), _HEAD_LINES)]
         if not any(line.strip() for line in lines):
-            raise InputError(file=path, problem="is empty", mend="name a file with samples")
+            raise InputError(file=path, problem="is empty", remedy="name a file with samples")
         self.dialect = sniff(lines, options.delimiter, options.decimal, options.thousands)
         self.empty = frozenset(word.lower() for word in options.empty)
         self.layout = self._laid_out(lines)
@@ -82,7 +82,7 @@ class TextSource(Source):
                 raise InputError(
                     file=self.path,
                     problem=f"the encoding {quoted(self.encoding)} is not known",
-                    mend='write one such as "utf-8" or "latin-1"',
+                    remedy='write one such as "utf-8" or "latin-1"',
                 ) from None
             try:
                 for number, line in enumerate(text, 1):
@@ -90,7 +90,7 @@ class TextSource(Source):
                     yield number, line.replace("\u2212", "-")
             except (OSError, EOFError, UnicodeError) as error:
                 problem = f"cannot be read ({error})"
-                raise InputError(file=self.path, problem=problem, mend="save it again") from None
+                raise InputError(file=self.path, problem=problem, remedy="save it again") from None
 
     def _laid_out(self, lines: list[str]) -> Layout:
         rows = [
@@ -104,7 +104,7 @@ class TextSource(Source):
                 raise InputError(
                     file=self.path,
                     problem="is separated by blanks, which channel names may contain",
-                    mend="export it with tabs or semicolons",
+                    remedy="export it with tabs or semicolons",
                 )
             return channels
         try:
@@ -151,7 +151,7 @@ class TextSource(Source):
                     instant = int(Instants(order or "day_first").parse(cells[:1], [False])[0])
                 except InputError as error:
                     raise InputError(
-                        file=self.path, column=name, problem=error.problem, mend=error.mend
+                        file=self.path, column=name, problem=error.problem, remedy=error.remedy
                     ) from None
                 start = as_date(instant) or start
                 # All columns of dates share one origin, and all columns of times of day another, so
@@ -229,8 +229,8 @@ class TextSource(Source):
             few = few and not self.layout.parts
             if few or (len(cells) > width and any(cells[width:])):
                 problem = f"has {len(cells)} cells where the header has {width}"
-                mend = "correct the row, or set delimiter and decimal under [file]"
-                damage.add(InputError(row=number, problem=problem, mend=mend))
+                remedy = "correct the row, or set delimiter and decimal under [file]"
+                damage.add(InputError(row=number, problem=problem, remedy=remedy))
                 continue
             # Empty cells at the end may be missing.
             cells += [""] * (width - len(cells))
@@ -331,11 +331,11 @@ class TextSource(Source):
                 continue
             if not dialect.is_number(cell):
                 other_decimal = "," if dialect.decimal == "." else "."
-                mend = f'correct the cell; a missing value needs empty = ["{cell}"] under [file]'
+                remedy = f'correct the cell; a missing value needs empty = ["{cell}"] under [file]'
                 if Dialect(dialect.delimiter, other_decimal).is_number(cell):
-                    mend = "use one decimal mark in all cells"
+                    remedy = "use one decimal mark in all cells"
                 problem = f"{quoted(cell)} is not a number"
-                error = InputError(row=rows[at], column=name, problem=problem, mend=mend)
+                error = InputError(row=rows[at], column=name, problem=problem, remedy=remedy)
                 wrong.setdefault(at, error)
                 continue
             numbers[at] = float(dialect.plain(cell))
@@ -354,7 +354,7 @@ class TextSource(Source):
                 row=rows[error.row or 0],
                 column=name,
                 problem=error.problem,
-                mend=error.mend,
+                remedy=error.remedy,
             ) from None
         return seconds_since(instants, self._origins[name][0])
 

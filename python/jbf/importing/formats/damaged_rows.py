@@ -60,5 +60,5 @@ class DamagedRows:
             row=self.first.row,
             column=self.first.column,
             problem=self.first.problem + extent,
-            mend=self.first.mend,
+            remedy=self.first.remedy,
         )

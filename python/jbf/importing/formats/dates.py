@@ -133,7 +133,7 @@ class Instants:
             raise InputError(
                 row=at,
                 problem=f"{quoted(cells[at].strip())} is not a date or a time of day",
-                mend="correct the cell or remove the row",
+                remedy="correct the cell or remove the row",
             )
         values[without_date] = self._continued(values[without_date])
         result[full] = values

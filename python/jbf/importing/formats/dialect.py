@@ -206,8 +206,8 @@ def opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
         file.seek(0)
     except OSError as error:
         reason = (error.strerror or type(error).__name__).lower()
-        mend = "check the path and its permissions"
-        raise InputError(file=path, problem=f"cannot be read ({reason})", mend=mend) from None
+        remedy = "check the path and its permissions"
+        raise InputError(file=path, problem=f"cannot be read ({reason})", remedy=remedy) from None
     return file
 
 

@@ -33,7 +33,7 @@ class ExcelSource(Source):
         tables = [t for name in self._book.sheetnames if (t := self._table(name)) is not None]
         if not tables:
             raise InputError(
-                file=path, problem="contains no numeric rows", mend="name another file"
+                file=path, problem="contains no numeric rows", remedy="name another file"
             )
         self.tables = tuple(tables)
 
@@ -114,7 +114,7 @@ class ExcelSource(Source):
     def _wrong(self, name: str, row: int, cell: Any, expected: str) -> InputError:
         problem = f"{quoted(cell)} is not {expected}"
         return InputError(
-            file=self.path, row=row, column=name, problem=problem, mend="correct the cell"
+            file=self.path, row=row, column=name, problem=problem, remedy="correct the cell"
         )
 
     def row_of(self, table: Table, sample: int) -> int | None:

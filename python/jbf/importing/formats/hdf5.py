@@ -35,7 +35,9 @@ def open_hdf5(path: Path, options: Options) -> Source:
         name = parent if parents.count(parent) == 1 else f"{parent} {length} samples".strip()
         source.add(name if len(groups) > 1 else "", columns, length)
     if not source.tables:
-        raise InputError(file=path, problem="contains no numeric columns", mend="name another file")
+        raise InputError(
+            file=path, problem="contains no numeric columns", remedy="name another file"
+        )
     return source
 
 

@@ -43,7 +43,7 @@ def open_json(path: Path, options: Options) -> Source:
         source.add(called if len(entries) > 1 else "", table_columns, rows, rate_hz=rate_hz)
     if not source.tables:
         raise InputError(
-            file=path, problem="contains no records and no numeric arrays", mend="write CSV"
+            file=path, problem="contains no records and no numeric arrays", remedy="write CSV"
         )
     return source
 
@@ -68,7 +68,7 @@ def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
                 file=path,
                 row=row,
                 problem=f"is not valid JSON ({reason})",
-                mend="correct it, or write CSV",
+                remedy="correct it, or write CSV",
             ) from None
         why = [(len(torn), f"the line is truncated ({reason})", row) for row, reason in torn[:1]]
         return records, list(why)

@@ -102,13 +102,13 @@ def lay_out(
 
     wide = [len(_trimmed(cells)) for _, cells in rows if numeric(cells)]
     if not wide:
-        raise InputError(problem="contains no numeric rows", mend="name a file with samples")
+        raise InputError(problem="contains no numeric rows", remedy="name a file with samples")
     width = Counter(wide[len(wide) // 2 :]).most_common(1)[0][0]
     # Shorter tables may end before the tables next to them.
     width = max([width, *(len(cells) for _, cells in rows if _side_by_side(cells))])
     first = _first_sample(rows, width, numeric, counts)
     if first is None:
-        raise InputError(problem="contains no numeric rows", mend="name a file with samples")
+        raise InputError(problem="contains no numeric rows", remedy="name a file with samples")
     if header:
         first = max(first, next((i for i, (n, _) in enumerate(rows) if n > header), first))
         first = max(first, next((i for i, (n, _) in enumerate(rows) if n > (units or 0)), first))
@@ -259,7 +259,7 @@ def _row(rows: Sequence[Row], number: int) -> list[str]:
         if n == number:
             return cells
     raise InputError(
-        row=number, problem="is not before the samples", mend="correct [file] header and units"
+        row=number, problem="is not before the samples", remedy="correct [file] header and units"
     )
 
 

@@ -27,7 +27,9 @@ def open_mat(path: Path, options: Options) -> Source:
     variables = {name: _tree(v) for name, v in content.items() if not name.startswith("__")}
     add_structures(source, variables)
     if not source.tables:
-        raise InputError(file=path, problem="contains no numeric columns", mend="name another file")
+        raise InputError(
+            file=path, problem="contains no numeric columns", remedy="name another file"
+        )
     return source
 
 

@@ -29,7 +29,9 @@ def open_mat73(path: Path, options: Options) -> Source:
         add_tables(source, path)
     add_structures(source, {name: _tree(file, item, 0) for name, item in variables.items()})
     if not source.tables:
-        raise InputError(file=path, problem="contains no numeric columns", mend="name another file")
+        raise InputError(
+            file=path, problem="contains no numeric columns", remedy="name another file"
+        )
     return source
 
 

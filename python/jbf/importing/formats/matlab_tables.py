@@ -27,7 +27,7 @@ def add_tables(source: ArraySource, path: Path) -> None:
             file=path,
             problem="contains a MATLAB table or timetable, which requires mat-io; "
             "mat-io is not installed",
-            mend="pip install 'jbf[timetable]' (Python 3.11 or later), or save plain vectors",
+            remedy="pip install 'jbf[timetable]' (Python 3.11 or later), or save plain vectors",
         ) from None
     with library_errors(path, "cannot be read by mat-io"):
         content = load_from_mat(str(path))

@@ -31,7 +31,7 @@ class McapSource(MessageSource):
         self._file = path.open("rb")
         summary = make_reader(self._file).get_summary()
         if summary is None:
-            raise InputError(file=path, problem="has no summary", mend="mcap recover FILE")
+            raise InputError(file=path, problem="has no summary", remedy="mcap recover FILE")
         self.origin_ns = summary.statistics.message_start_time if summary.statistics else 0
         counts = summary.statistics.channel_message_counts if summary.statistics else {}
         encodings = {c.message_encoding for c in summary.channels.values()} - {"cdr", "json"}
@@ -41,7 +41,7 @@ class McapSource(MessageSource):
         if not self.tables:
             contents = f" (it contains {', '.join(sorted(encodings))})" if encodings else ""
             problem = f"contains no numeric messages of ROS 2 or JSON{contents}"
-            raise InputError(file=path, problem=problem, mend="write its messages as JSON or CSV")
+            raise InputError(file=path, problem=problem, remedy="write its messages as JSON or CSV")
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
         """Yield the messages of a topic."""

@@ -41,7 +41,7 @@ class MdfSource(Source):
                 tables.append(table)
         if not tables:
             raise InputError(
-                file=path, problem="contains no numeric channels", mend="name another file"
+                file=path, problem="contains no numeric channels", remedy="name another file"
             )
         self.tables = tuple(tables)
 

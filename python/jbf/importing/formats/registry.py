@@ -62,7 +62,7 @@ class Format:
         return InputError(
             file=path,
             problem=f"is {self.name}, which requires {self.library}; it is not installed",
-            mend=f"pip install 'jbf[{self.extra}]'",
+            remedy=f"pip install 'jbf[{self.extra}]'",
         )
 
 
@@ -100,14 +100,14 @@ class Unread:
     ----------
     name
         Name for messages.
-    mend
+    remedy
         Remedy, such as an export to another format.
     suffixes, magic
         Suffixes of its file names, in lower case, and the first bytes of its files.
     """
 
     name: str
-    mend: str
+    remedy: str
     suffixes: tuple[str, ...] = ()
     magic: tuple[bytes, ...] = ()
 
@@ -151,7 +151,7 @@ def format_of(path: Path) -> Format:
         # ROS 2 writes a folder.
         if (path / "metadata.yaml").is_file():
             return next(f for f in FORMATS if f.extra == "rosbag")
-        raise InputError(file=path, problem="is a folder", mend="name the files in it")
+        raise InputError(file=path, problem="is a folder", remedy="name the files in it")
     check_readable(path, pipes=False)
     with path.open("rb") as file:
         begin = file.read(520)
@@ -164,7 +164,7 @@ def format_of(path: Path) -> Format:
         if by_suffix or begin.startswith(unread.magic):
             problem = f"is {unread.name}{f' ({suffix})' if suffix in unread.suffixes else ''}"
             raise InputError(
-                file=path, problem=f"{problem}, which is not supported", mend=unread.mend
+                file=path, problem=f"{problem}, which is not supported", remedy=unread.remedy
             )
     by_name = next((f for f in FORMATS if suffix in f.suffixes), None)
     return FORMATS[-1] if by_name is None else by_name

@@ -30,7 +30,7 @@ class BagSource(MessageSource):
                 self.add_topic(topic, info.msgcount)
         if not self.tables:
             raise InputError(
-                file=path, problem="contains no numeric messages", mend="name another file"
+                file=path, problem="contains no numeric messages", remedy="name another file"
             )
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:

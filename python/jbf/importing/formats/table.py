@@ -86,7 +86,7 @@ class Table:
             if column.name == name:
                 return column
         names = [column.name for column in self.columns]
-        raise InputError(column=name, problem="does not exist", mend=did_you_mean(name, names))
+        raise InputError(column=name, problem="does not exist", remedy=did_you_mean(name, names))
 
 
 @dataclass(frozen=True)
@@ -195,8 +195,8 @@ def library_errors(path: Path, problem: str) -> Iterator[None]:
         raise
     except Exception as error:
         reason = str(error).splitlines()[0].strip() if str(error).strip() else type(error).__name__
-        mend = "save it again, or name another file"
-        raise InputError(file=path, problem=f"{problem} ({reason})", mend=mend) from error
+        remedy = "save it again, or name another file"
+        raise InputError(file=path, problem=f"{problem} ({reason})", remedy=remedy) from error
 
 
 def unique(names: Sequence[str]) -> list[str]:

@@ -60,7 +60,7 @@ def open_tdms(path: Path, options: Options) -> Source:
         source.add(name if len(groups) > 1 else "", columns, length, clock, date)
     if not source.tables:
         raise InputError(
-            file=path, problem="contains no numeric channels", mend="name another file"
+            file=path, problem="contains no numeric channels", remedy="name another file"
         )
     return source
 

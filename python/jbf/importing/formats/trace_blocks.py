@@ -30,7 +30,7 @@ def open_trace(path: Path, lines: Iterable[str]) -> Source:
     source = ArraySource(path)
     add_by_clock(source, _blocks(path, lines))
     if not source.tables:
-        raise InputError(file=path, problem="contains no samples", mend="export the trace again")
+        raise InputError(file=path, problem="contains no samples", remedy="export the trace again")
     return source
 
 
@@ -49,7 +49,7 @@ def _blocks(path: Path, lines: Iterable[str]) -> Iterator[Signal]:
             except ValueError:
                 problem = f"{line.strip()!r} is not a sample"
                 raise InputError(
-                    file=path, row=number, problem=problem, mend="export the trace again"
+                    file=path, row=number, problem=problem, remedy="export the trace again"
                 ) from None
     if rows:
         yield _signal(name, rows)

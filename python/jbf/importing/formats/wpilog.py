@@ -69,7 +69,7 @@ def open_wpilog(path: Path, options: Options) -> Source:
         raise InputError(
             file=path,
             problem="is not a complete WPILib data log",
-            mend="copy it from the robot again",
+            remedy="copy it from the robot again",
         )
     source = ArraySource(path)
     entries, torn = _entries(data)
@@ -78,7 +78,9 @@ def open_wpilog(path: Path, options: Options) -> Source:
     origin_us = min((min(entry.stamps_us) for entry in entries if entry.stamps_us), default=0)
     add_by_clock(source, (s for entry in entries for s in entry.signals(data, origin_us)))
     if not source.tables:
-        raise InputError(file=path, problem="contains no numeric entries", mend="name another file")
+        raise InputError(
+            file=path, problem="contains no numeric entries", remedy="name another file"
+        )
     return source
 
 

@@ -101,7 +101,7 @@ def corrected_records(
                 file=run.path or name,
                 column="velocity_m_s",
                 problem="is missing; an angle determines no speed without the journal's radius",
-                mend="add the column, or give the rig its [bearing]",
+                remedy="add the column, or give the rig its [bearing]",
             )
         speed, speed_outliers = mend_speed(name, time, speed, None, quantities.speed)
         speed, end_mask, ends = mend_speed_ends(name, time, speed, None, quantities.speed)

@@ -315,7 +315,7 @@ def _steady(run: Run) -> EstimatedMotion:
             file=run.path or run.name,
             column="velocity_m_s",
             problem="is missing, and steady states require a speed",
-            mend="add the speed of each point",
+            remedy="add the speed of each point",
         )
     zeros, rest = np.zeros(len(run)), run.velocity == 0.0
     return EstimatedMotion(run.velocity, zeros, zeros, zeros, rest, ~rest)

@@ -15,7 +15,7 @@ from pathlib import Path
 import jbf
 import numpy as np
 from jbf.models.catalogue import Effect, Parameter, built_in
-from jbf.reporting.catalogue_text import NEEDS, meaning_of, refused_words
+from jbf.reporting.catalogue_text import REQUIREMENTS, meaning_of, refused_words
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -253,7 +253,7 @@ def page(effect: Effect) -> str:
         f"**Limits of validity.** {effect.limits}.",
     ]
     if effect.needs:
-        needs = [words for need, words in NEEDS.items() if need in effect.needs]
+        needs = [words for need, words in REQUIREMENTS.items() if need in effect.needs]
         lines += ["", f"**Requirements.** {'; '.join(needs)}."] if needs else []
     if effect.refused:
         lines += ["", f"**Cannot be combined with.** {refused_words(effect)}."]

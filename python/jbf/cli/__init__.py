@@ -31,13 +31,13 @@ from jbf.renamed import current_option
 _MODULES = {"import": "import_files"}
 """Modules of commands whose name is a Python keyword."""
 
-BEGIN = (
+FIRST_COMMANDS = (
     ("jbf demo", "an example of the complete workflow"),
     ("jbf import log.csv", "read a recording of your own"),
     ("jbf diagnose rig.toml runs/ --report report.html", "find the missing effects"),
 )
 """Commands to begin with, for the help of `jbf`, and what each does."""
-FIRST = (*(line for line, _ in BEGIN), 'eval "$(jbf --completion bash)"')
+TOP_EXAMPLES = (*(line for line, _ in FIRST_COMMANDS), 'eval "$(jbf --completion bash)"')
 """Examples in the help of `jbf --help`."""
 
 _PIPE_CLOSED = 141
@@ -103,7 +103,7 @@ def parser(words: Sequence[str] | None = None) -> Parser:
         choices=SHELLS,
         help="print a script for shell completion of commands and options: bash, zsh or fish",
     )
-    top.epilog = "\n".join([HEAD, *(f"  {line}" for line in FIRST)])
+    top.epilog = "\n".join([HEAD, *(f"  {line}" for line in TOP_EXAMPLES)])
     commands = top.add_subparsers(
         dest="command", metavar="COMMAND", required=True, parser_class=Parser
     )
@@ -206,8 +206,8 @@ def _refuse(error: InputError) -> int:
 
 def _without_command() -> int:
     """Print the commands to begin with, and an error in one line."""
-    width = max(len(line) for line, _ in BEGIN)
-    lines = [f"  {line:<{width}}  {does}" for line, does in BEGIN]
+    width = max(len(line) for line, _ in FIRST_COMMANDS)
+    lines = [f"  {line:<{width}}  {does}" for line, does in FIRST_COMMANDS]
     outputs.say("\n".join(["Commands to begin with:", *lines]), {})
     return _refuse(InputError(problem="COMMAND is missing", remedy="jbf --help lists all commands"))
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from jbf.importing.result import Import
 
 
-EVERY = "all"
+ALL_JOINTS = "all"
 """Value of `--joint` that selects every joint."""
 
 
@@ -95,7 +95,7 @@ def run(options: ImportOptions) -> int:
         )
     if options.map is None and options.folder is None:
         return _inspect(options)
-    if options.joint == EVERY:
+    if options.joint == ALL_JOINTS:
         return _each_joint(options)
     return _import(options, options.joint, options.folder)
 

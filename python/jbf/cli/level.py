@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from jbf.errors import InputError
-from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, Quantities
 from jbf.units.quantity import number_in
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class LevelOptions:
     no_artefact_margin: bool
     min_effect: str | None
 
-    def policy(self, quantities: Quantities = OF_BEARING) -> Policy:
+    def policy(self, quantities: Quantities = BEARING) -> Policy:
         """Return the policy of a diagnosis with these thresholds.
 
         Raises

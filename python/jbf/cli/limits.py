@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from jbf.cli.arguments import Group
-from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, Quantities
 from jbf.units.quantity import number_in
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class LimitOptions:
     loads: tuple[str, str] | None
     temperatures_c: tuple[float, float] | None
 
-    def limits(self, duration_s: float, quantities: Quantities = OF_BEARING) -> Limits:
+    def limits(self, duration_s: float, quantities: Quantities = BEARING) -> Limits:
         """Return the limits in the units of a rig, for runs of the given duration in seconds.
 
         Raises

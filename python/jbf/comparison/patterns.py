@@ -23,7 +23,7 @@ SIGNIFICANCE = 6.0
 """Required excess of the explained part over chance, in standard deviations."""
 STRONG_SHARE = 0.02
 """Fraction of the explained part below which a bin is not mentioned in the text of a pattern."""
-MOST_OF = 0.8
+WHOLE_AXIS_SHARE = 0.8
 """Fraction of the bins above which a pattern covers the whole axis."""
 
 
@@ -151,5 +151,5 @@ def pattern_words(
     spots = "; ".join(f"{means[i]:+.2g} {unit} at {axis.labels[i]}" for i in worst if strong[i])
     if not lead:
         return f"most {spots}"
-    throughout = strong.sum() / max(np.count_nonzero(counts), 1) > MOST_OF
+    throughout = strong.sum() / max(np.count_nonzero(counts), 1) > WHOLE_AXIS_SHARE
     return f"{f'all of {axis.axis}, ' if throughout else ''}{lead}; most {spots}"

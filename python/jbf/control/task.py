@@ -85,7 +85,7 @@ class Task:
 
 # In velocity control the initial error is up to 2 rad/s, but no printed peak contains this error:
 # the thesis must have excluded the start. In position control the printed peaks occur at the start.
-_LEFT_OUT_S = 2.0
+_EXCLUDED_START_S = 2.0
 
 
 def _position(wave: str, low: float, high: float, frequency: float) -> Task:
@@ -93,7 +93,7 @@ def _position(wave: str, low: float, high: float, frequency: float) -> Task:
 
 
 def _velocity(wave: str, low: float, high: float, frequency: float) -> Task:
-    return Task("velocity", wave, low, high, frequency, 50.0 + _LEFT_OUT_S, _LEFT_OUT_S)
+    return Task("velocity", wave, low, high, frequency, 50.0 + _EXCLUDED_START_S, _EXCLUDED_START_S)
 
 
 TASKS = {

@@ -24,7 +24,7 @@ from jbf.estimation.work import Work
 from jbf.models.catalogue import Effect
 from jbf.models.driven import Driven
 from jbf.models.requirements import has_angle, has_path, has_position
-from jbf.models.user_effects import ALWAYS
+from jbf.models.user_effects import COLUMNS_OF_EVERY_RUN
 from jbf.records.arguments import list_of_runs
 from jbf.records.findings.finding import Finding
 from jbf.records.findings.noisy_load import steady_load
@@ -223,7 +223,9 @@ class Campaign:
         if effect.name in SMOOTHS_FORCE and self.motion_uncertain:
             return "errors of the acceleration are a large part of the residual"
         for column in effect.columns:
-            if column not in ALWAYS and any(column not in p.run.columns() for p in self.prepared):
+            if column not in COLUMNS_OF_EVERY_RUN and any(
+                column not in p.run.columns() for p in self.prepared
+            ):
                 return f"the column {column} is missing in some runs"
         if "angle" in needs and not self.has_angle:
             return f"{self.rig.quantities.mover}'s angle is missing in some runs"

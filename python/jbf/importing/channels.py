@@ -20,7 +20,7 @@ SIGNAL_COLUMN = "signal"
 """Column of a signal that files with separate clocks have in common."""
 RATE = "rate"
 """Value used instead of a clock expression if only the sampling rate is known."""
-OF_CUTTING = (CUT_COLUMN, KEPT_COLUMN)
+CUTTING_COLUMNS = (CUT_COLUMN, KEPT_COLUMN)
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def channels_of(source: Source, mapping: Map) -> list[Channel]:
         (table_name,) = of_tables
         table = next(t for t in tables if t.name == table_name)
         clock = clock_of(key, table, tables, mapping, names, places)
-        unit = ONE if key in OF_CUTTING else wanted_unit(key)
+        unit = ONE if key in CUTTING_COLUMNS else wanted_unit(key)
         channels.append(Channel(key, text, node, table, clock, unit))
     return channels
 

@@ -29,18 +29,18 @@ SIGNIFICANT = 5.0
 """Minimum ratio of a drift to its standard error for the drift to be significant."""
 LEAST_WINDOWS = 5.0
 """Minimum effective number of windows for the estimate of a drift."""
-SMALLEST = 0.02
+MIN_DRIFT_STEPS = 0.02
 """Minimum effect of a drift over the record, in steps of the slower record."""
-WITHIN = 0.5
+MIN_WINDOW_CORRELATION = 0.5
 """Minimum absolute correlation within windows.
 
 Slow changes of unrelated records may be correlated by chance.
 """
 WINDOWS, MOST_SLOW, MOST_FAST = 24, 2_000, 200_000
 """Number of windows, and the largest number of samples of the slow and the fast record in each."""
-TRIED = 10_000_000
+MAX_TRIAL_SAMPLES = 10_000_000
 """Largest number of samples evaluated on the grid of trial offsets and drifts."""
-LATTICE = 8
+TRIAL_OFFSETS_PER_STEP = 8
 """Number of trial offsets per step of the slower record."""
 ITERATIONS = 20
 
@@ -156,13 +156,13 @@ class _Problem:
         significant = (
             clusters >= LEAST_WINDOWS
             and abs(drift) > SIGNIFICANT * error
-            and abs(drift) * (self.last_s - self.first_s) > SMALLEST * self.step
+            and abs(drift) * (self.last_s - self.first_s) > MIN_DRIFT_STEPS * self.step
         )
         if not significant:
             solution = self._minimise((start[0], 0.0), with_drift=False)
         offset = self._centred(*solution)
         within = self._correlation_within_windows(offset, solution[1])
-        if abs(within) < WITHIN:
+        if abs(within) < MIN_WINDOW_CORRELATION:
             problem = (
                 "the common signal agrees in slow changes only (correlation "
                 f"{abs(within):.2f} within windows)"
@@ -182,7 +182,7 @@ class _Problem:
     def _start(self) -> tuple[float, float]:
         """Return the best offset and drift on a grid of trial values."""
         lobe = self.coarse.lobe_s
-        spacing = max(self.step / LATTICE, lobe / 50.0)
+        spacing = max(self.step / TRIAL_OFFSETS_PER_STEP, lobe / 50.0)
         reach = np.arange(0.0, lobe + spacing, spacing)
         offsets = self.coarse.offset_s + np.concatenate((-reach[:0:-1], reach))
         half = np.ceil(MOST_DRIFT * (self.last_s - self.first_s) / max(lobe, self.step))
@@ -190,7 +190,9 @@ class _Problem:
         trials = [(float(offset), float(drift)) for drift in drifts for offset in offsets]
         every = self.windows
         samples = sum(len(window.slow) for window in every)
-        self.windows = [w.thinned(max(samples * len(trials) // TRIED, 1)) for w in every]
+        self.windows = [
+            w.thinned(max(samples * len(trials) // MAX_TRIAL_SAMPLES, 1)) for w in every
+        ]
         best = min(trials, key=lambda trial: 1.0 - self._correlation(*trial) ** 2)
         self.windows = every
         return best
@@ -285,13 +287,13 @@ class _Problem:
         """
         if self.coarse.lobe_s >= 2.0 * self.step:
             return offset  # a smooth signal: Gauss-Newton finds its minimum
-        around = offset + np.linspace(-1.0, 1.0, 8 * LATTICE + 1) * self.step
+        around = offset + np.linspace(-1.0, 1.0, 8 * TRIAL_OFFSETS_PER_STEP + 1) * self.step
         misfits = np.array([1.0 - self._correlation(o, drift) ** 2 for o in around])
         level = misfits.min() + 0.02 * (min(misfits[0], misfits[-1]) - misfits.min())
         alike = np.flatnonzero(misfits <= level)
         if not alike.size or np.ptp(alike) + 1 > alike.size:
             return offset
-        middle = offset + (float(np.mean(alike)) / (4 * LATTICE) - 1.0) * self.step
+        middle = offset + (float(np.mean(alike)) / (4 * TRIAL_OFFSETS_PER_STEP) - 1.0) * self.step
         return middle if abs(middle - offset) > 0.1 * self.step else offset
 
     def _covariance(self, at: tuple[float, float], *, with_drift: bool) -> Array:

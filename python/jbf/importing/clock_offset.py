@@ -20,20 +20,20 @@ from jbf.importing.spool import Stream
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-WEAKEST = 0.8
+MIN_CORRELATION = 0.8
 """Minimum absolute correlation that is accepted."""
-RIVAL = 1.5
+MAX_RIVAL_RATIO = 1.5
 """Largest ratio of unexplained variances for a second offset to count as equally plausible.
 
 The ratio is that of the second offset to the best offset.
 """
-FLOOR = 0.01
+MIN_UNEXPLAINED_SHARE = 0.01
 """Share of unexplained variance below which offsets count as equally good."""
-OVERLAP = 0.25
+MIN_OVERLAP = 0.25
 """Minimum overlap in the search, as a share of the largest overlap."""
 LEAST_SAMPLES = 20
 """Minimum number of common samples in an overlap."""
-VARYING = 0.02
+MIN_OVERLAP_VARIANCE = 0.02
 """Minimum variance within an overlap, as a share of the variance of the whole record."""
 POINTS = 1 << 20
 """Largest number of grid points of a record."""
@@ -188,13 +188,13 @@ def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Ma
     f_a, f_aa, m_a = spectrum(a), spectrum(a * a), spectrum(in_a.astype(np.float64))
     f_b, f_bb, m_b = spectrum(b), spectrum(b * b), spectrum(in_b.astype(np.float64))
     n = np.maximum(np.rint(sums(m_a, m_b)), 0.0)
-    allowed: Mask = n >= max(LEAST_SAMPLES, OVERLAP * float(n.max()))
+    allowed: Mask = n >= max(LEAST_SAMPLES, MIN_OVERLAP * float(n.max()))
     n = np.maximum(n, 1.0)
     mean_a, mean_b = sums(f_a, m_b) / n, sums(m_a, f_b) / n
     var_a = sums(f_aa, m_b) / n - mean_a**2
     var_b = sums(m_a, f_bb) / n - mean_b**2
     # The signals are standardised, so that the variance of a whole record is 1.
-    allowed &= (var_a > VARYING) & (var_b > VARYING)
+    allowed &= (var_a > MIN_OVERLAP_VARIANCE) & (var_b > MIN_OVERLAP_VARIANCE)
     r = np.zeros(len(n))
     both = np.sqrt(var_a[allowed] * var_b[allowed])
     r[allowed] = (sums(f_a, f_b) / n - mean_a * mean_b)[allowed] / both
@@ -210,11 +210,13 @@ def _clear_peak(r: Array, allowed: Mask, offsets: Array) -> tuple[int, int, int]
         If the correlation is weak, or a lag outside the lobe explains as much variance.
     """
     best = int(np.argmax(np.abs(r)))
-    if abs(r[best]) < WEAKEST:
+    if abs(r[best]) < MIN_CORRELATION:
         problem = f"the signals are not proportional at any offset (correlation {abs(r[best]):.2f})"
         raise InputError(problem=problem, remedy=REMEDY)
     unexplained = 1.0 - r**2
-    alike = allowed & (unexplained < RIVAL * max(float(unexplained[best]), FLOOR))
+    alike = allowed & (
+        unexplained < MAX_RIVAL_RATIO * max(float(unexplained[best]), MIN_UNEXPLAINED_SHARE)
+    )
     places = np.flatnonzero(alike)
     edges = np.flatnonzero(np.diff(places) > 3)
     begins = places[np.concatenate(([0], edges + 1))]

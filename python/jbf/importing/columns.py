@@ -96,7 +96,7 @@ _MODELLED = _words(
     "gravity model modelled feedforward estimated estimate predicted simulated compensation"
 )
 """Words for computed values, which were not measured by a sensor or a drive."""
-_ALSO = {"effort": "torque"}
+_SECOND_MEANINGS = {"effort": "torque"}
 """Second meaning of a word: a force in French, a torque in robot logs. The unit decides."""
 _ACTUAL = {"ist", "istwert", "actual", "act", "measured", "meas", "mess", "réel", "reel"}
 _ANGLES = _words(
@@ -114,7 +114,7 @@ _GENERIC = _words(
 _SHORT = 2
 """Words with at most this number of letters are symbols, and their meaning is not certain."""
 
-_STATED = (
+_UNIT_PATTERNS = (
     re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$"),
     re.compile(r"^(?P<name>.*?)\s*\((?P<unit>[^()]*(?:\([^()]*\))?[^()]*)\)\s*$"),
     re.compile(r"^(?P<name>.*?)\s*\{(?P<unit>[^{}]*)\}\s*$"),
@@ -165,7 +165,7 @@ def split_unit(text: str) -> tuple[str, str]:
     # Names that occur twice in a file are numbered.
     heading = re.sub(r" #\d+$", "", " ".join(text.split()))
     candidates: list[tuple[str, str]] = []
-    for number, pattern in enumerate(_STATED):
+    for number, pattern in enumerate(_UNIT_PATTERNS):
         match = pattern.match(heading)
         if match is None:
             continue
@@ -205,7 +205,7 @@ def parse_header(text: str, unit: str = "") -> Header:
         lower_words = [w.lower() for w in _SPLIT.split(name if tail is None else tail[0]) if w]
     lower_words, numbers = _unnumbered(lower_words, parse_unit(unit))
     kinds = [(word, _BY_WORD[word]) for word in lower_words if word in _BY_WORD]
-    kinds += [(word, _ALSO[word]) for word in lower_words if word in _ALSO]
+    kinds += [(word, _SECOND_MEANINGS[word]) for word in lower_words if word in _SECOND_MEANINGS]
     if "cell" in lower_words or "zelle" in lower_words:
         kinds = [("loadcell", "force")]
     kinds += [
@@ -233,7 +233,7 @@ def _unnumbered(words: list[str], unit: Unit | None) -> tuple[list[str], list[st
         match = _NUMBERED.fullmatch(word)
         is_quantity = match is not None and (match[1] in _BY_WORD or match[1] in _GENERIC)
         if is_quantity and match is not None:
-            kinds = {_BY_WORD.get(match[1], ""), _ALSO.get(match[1], "")} & KINDS.keys()
+            kinds = {_BY_WORD.get(match[1], ""), _SECOND_MEANINGS.get(match[1], "")} & KINDS.keys()
             fits = unit is None or any(unit.dimensions in KINDS[kind] for kind in kinds)
             if fits or not kinds:
                 stems.append(match[1])

@@ -18,7 +18,7 @@ Array = npt.NDArray[np.float64]
 Value = Array | float
 
 _RAD = BASES.index("rad")
-_SAME = 1e-6
+_FACTOR_TOLERANCE = 1e-6
 """Relative difference below which a number equals the conversion factor of a unit."""
 
 
@@ -208,7 +208,7 @@ def _refuse_double_conversion(node: Binary, left: Quantity, right: Quantity) -> 
         if this.unit.dimensions == NONE or size == 1.0 or other.unit is not ONE:
             continue
         factor = abs(other.value if node.sign == "*" or other is left else 1.0 / other.value)
-        if math.isclose(factor, size, rel_tol=_SAME):
+        if math.isclose(factor, size, rel_tol=_FACTOR_TOLERANCE):
             raise InputError(
                 problem=f"the factor {other.value:g} converts {this.unit.text} a second time",
                 remedy="remove it: units are converted automatically",

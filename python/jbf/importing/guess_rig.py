@@ -8,11 +8,11 @@ from typing import Any
 
 from jbf.importing.expression import OPEN
 from jbf.importing.guessed import Entry, Question
-from jbf.importing.targets import LINEAR, TURNING
+from jbf.importing.targets import LINEAR, ROTARY
 
 Sections = dict[str, dict[str, Any]]
 
-_ASKS = {
+_QUESTIONS = {
     "rated_torque_n_m": 'what is the motor\'s rated torque, 100 % (such as "1.27 N m")?',
     "rated_force_n": 'what is the motor\'s rated force, 100 % (such as "60 N")?',
     "torque_constant_n_m_a": 'what is the motor\'s torque per ampere (such as "0.5 N m/A")?',
@@ -33,7 +33,7 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
         Whether the file holds only a motion, as of a coast-down.
     """
     linear = any(key in keys for key in LINEAR)
-    turning = any(key in keys for key in TURNING)
+    turning = any(key in keys for key in ROTARY)
     if not linear and not turning:
         return {}, []
     motion = "linear" if linear else "rotary"
@@ -64,7 +64,7 @@ def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list
         open_keys.append("pitch_m")
     drive |= dict.fromkeys(open_keys, OPEN)
     return {"drive": drive}, [
-        Question(f"drive.{key}", f"{_ASKS[key]} Write it into the map") for key in open_keys
+        Question(f"drive.{key}", f"{_QUESTIONS[key]} Write it into the map") for key in open_keys
     ]
 
 
@@ -114,7 +114,7 @@ def redundant_motor_columns(entries: Mapping[str, Entry]) -> list[str]:
 
 def force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[Question]:
     """Replace a force that is recorded with an angle by a torque, and ask for its radius."""
-    turning = [key for key in TURNING if key in entries]
+    turning = [key for key in ROTARY if key in entries]
     if "friction_n" not in entries or not turning or "position_m" in entries:
         return []
     force = entries.pop("friction_n")

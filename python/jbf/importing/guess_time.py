@@ -13,14 +13,14 @@ from jbf.importing.expression import OPEN, written
 from jbf.importing.formats.messages import NANOSECONDS, SECONDS
 from jbf.importing.formats.table import Column, Table, Values
 from jbf.importing.guessed import Entry, Question
-from jbf.importing.plausible import OFF, PAIRS, speed_ratio
+from jbf.importing.plausible import MAX_RATIO, PAIRS, speed_ratio
 from jbf.importing.targets import wanted_unit
 from jbf.units.table import TIME
 from jbf.units.unit import parse_unit
 
 _FROM_S, _TO_S = 9.5e8, 4.1e9
 """Seconds since 1970 of the years 2000 and 2100."""
-FORWARD, FEW = 0.9, 4
+MIN_FORWARD_SHARE, MIN_TESTED_ROWS = 0.9, 4
 """Minimum share of increasing steps of a clock, and number of rows below which it is not tested."""
 SHORTEST_S = 1e-6
 """Smallest plausible sampling interval of a friction recording, s."""
@@ -129,7 +129,7 @@ def time_by_motion(
                 time, expression=text, why=f"speed and position agree in {unit}", sure=True
             )
             ratio = speed_ratio({**entries, **assumed, "time_s": trial}, pair, tables, heads)
-            if ratio is not None and 1.0 / OFF < ratio < OFF:
+            if ratio is not None and 1.0 / MAX_RATIO < ratio < MAX_RATIO:
                 fitting[unit] = trial
     return fitting.popitem()[1] if len(fitting) == 1 else None
 
@@ -209,9 +209,9 @@ def _runs_forward(values: Values) -> bool:
     times = np.asarray(values, dtype=np.float64)
     steps = np.diff(times[np.isfinite(times)])
     steps = steps[steps != 0.0]
-    if len(times) < FEW:
+    if len(times) < MIN_TESTED_ROWS:
         return True
-    return bool(len(steps) and np.mean(steps > 0.0) > FORWARD)
+    return bool(len(steps) and np.mean(steps > 0.0) > MIN_FORWARD_SHARE)
 
 
 def _steps(values: Values) -> float | None:

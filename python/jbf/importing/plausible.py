@@ -14,9 +14,9 @@ from jbf.importing.guessed import Entry, Question
 from jbf.importing.names import column_names, column_units
 from jbf.importing.targets import wanted_unit
 
-_ALIKE = 0.9
+_MIN_CORRELATION = 0.9
 """Minimum correlation of speed and change of position for a meaningful ratio."""
-OFF = 1.25
+MAX_RATIO = 1.25
 """Factor by which a ratio may exceed or fall below 1 without indicating a wrong unit."""
 PAIRS = (
     ("position_m", "velocity_m_s"),
@@ -25,7 +25,7 @@ PAIRS = (
     ("motor_angle_rad", "motor_speed_rpm"),
 )
 """Pairs of a position and its speed."""
-_LEAST = 20
+_MIN_SAMPLES = 20
 
 
 def contradictions(
@@ -39,7 +39,7 @@ def contradictions(
         if not all(by_key[key].sure for key in (place, speed, "time_s")):
             continue
         ratio = speed_ratio(by_key, (place, speed), tables, heads)
-        if ratio is not None and not 1.0 / OFF < ratio < OFF:
+        if ratio is not None and not 1.0 / MAX_RATIO < ratio < MAX_RATIO:
             statement = f"{by_key[speed].expression} is {ratio:.4g} times the derivative of"
             question = (
                 f"{statement} {by_key[place].expression}: one unit, or that of the time, is wrong"
@@ -64,17 +64,17 @@ def speed_ratio(
             values.append(converted(evaluate(node, heads, units), unit, key) * unit.in_si)
     except InputError:
         return None
-    if len({len(column) for column in values}) != 1 or len(values[0]) < _LEAST:
+    if len({len(column) for column in values}) != 1 or len(values[0]) < _MIN_SAMPLES:
         return None
     finite = np.all(np.isfinite(values), axis=0)
     time, place, speed = (column[finite] for column in values)
     steps = np.diff(time)
-    if len(time) < _LEAST or not (steps > 0.0).any():
+    if len(time) < _MIN_SAMPLES or not (steps > 0.0).any():
         return None
     moves = steps > 0.0
     change = np.diff(place)[moves] / steps[moves]
     mean = (0.5 * (speed[1:] + speed[:-1]))[moves]
     power = float(change @ change) * float(mean @ mean)
-    if power == 0.0 or abs(float(change @ mean)) < _ALIKE * power**0.5:
+    if power == 0.0 or abs(float(change @ mean)) < _MIN_CORRELATION * power**0.5:
         return None
     return abs(float(change @ mean)) / float(change @ change)

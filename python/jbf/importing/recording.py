@@ -13,8 +13,8 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.importing.alignment import Alignment, align
 from jbf.importing.channels import (
+    CUTTING_COLUMNS,
     KEPT_COLUMN,
-    OF_CUTTING,
     RATE,
     SIGNAL_COLUMN,
     Channel,
@@ -38,7 +38,7 @@ from jbf.records.checks import LARGEST
 Array = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
 
-LOADED = 0.1
+UNLOADED_SHARE = 0.1
 """Share of the usual load below which a machine counts as unloaded; used in suggestions."""
 STEADY = "none: steady states"
 """Text of the ledger for the clock of steady states."""
@@ -200,7 +200,7 @@ def _spool(
 def _values(
     channel: Channel, values: Mapping[str, Values], units: Mapping[str, str], words: _Words
 ) -> Array:
-    if channel.key in (*OF_CUTTING, SIGNAL_COLUMN):
+    if channel.key in (*CUTTING_COLUMNS, SIGNAL_COLUMN):
         read = [values[reference.column] for reference in references(channel.node)]
         if channel.key == KEPT_COLUMN and any(column.dtype == object for column in read):
             remedy = "use a numeric column in the comparison"
@@ -272,7 +272,7 @@ def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> 
                 continue
             time, load = block[low][0][[0, at]]
             typical = float(np.nanmedian(np.abs(stream.read(first, end)[:, at])))
-            condition = f"{mapping.columns['load_n']} > {LOADED * typical:.2g} [N]"
+            condition = f"{mapping.columns['load_n']} > {UNLOADED_SHARE * typical:.2g} [N]"
             raise InputError(
                 file=recording.path,
                 key="columns.load_n",

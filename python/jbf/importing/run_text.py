@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from jbf.importing.channels import OF_CUTTING
+from jbf.importing.channels import CUTTING_COLUMNS
 from jbf.importing.cutting.piece import Piece
 from jbf.importing.formats.table import BLOCK
 from jbf.importing.spool import Recording, Stream
@@ -29,7 +29,7 @@ def run_columns(recording: Recording) -> list[str]:
 
 def _written(stream: Stream) -> list[int]:
     """Return indices of the stream columns to write: not empty and not for cutting only."""
-    of_cutting = [at for at, key in enumerate(stream.columns) if key in OF_CUTTING]
+    of_cutting = [at for at, key in enumerate(stream.columns) if key in CUTTING_COLUMNS]
     return [at for at in range(len(stream.columns)) if at not in (*of_cutting, *stream.empty)]
 
 

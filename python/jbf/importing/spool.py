@@ -17,7 +17,7 @@ from jbf.importing.expression import Node
 from jbf.importing.file_clock import FileClock
 from jbf.importing.formats.dates import as_date
 from jbf.importing.formats.table import BLOCK, Values
-from jbf.records.channels import OWN_CLOCK
+from jbf.records.channels import SEPARATE_CLOCK_SHARE
 
 if TYPE_CHECKING:
     from jbf.importing.alignment import Alignment
@@ -60,7 +60,7 @@ class Stream:
         """
         if self.missing is None:
             return []
-        few = (self.missing > 0) & (self.missing < OWN_CLOCK * self.rows)
+        few = (self.missing > 0) & (self.missing < SEPARATE_CLOCK_SHARE * self.rows)
         return [int(column) for column in np.flatnonzero(few)]
 
     @property

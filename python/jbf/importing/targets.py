@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from jbf.errors import InputError, closest, did_you_mean, quoted
 from jbf.records.checks import COLUMNS
-from jbf.records.csv_file import OF_DRIVES
+from jbf.records.csv_file import DRIVE_COLUMNS
 from jbf.units.unit import Unit, unit_of_name
 
-KNOWN = (*COLUMNS, *OF_DRIVES, "pressure_pa")
+KNOWN = (*COLUMNS, *DRIVE_COLUMNS, "pressure_pa")
 """Columns of a run that have a defined meaning."""
 FRICTION = (
     "friction_n", "torque_n_m", "motor_torque_n_m", "current_a", "torque_percent", "force_percent",
     "voltage_v",
 )  # fmt: skip
 LINEAR = ("position_m", "velocity_m_s")
-TURNING = (
+ROTARY = (
     "angle_rad", "velocity_rad_s", "speed_rpm",
     "motor_angle_rad", "motor_velocity_rad_s", "motor_speed_rpm",
 )  # fmt: skip
-MOTION = (*LINEAR, *TURNING)
-_ALIKE = 0.8
+MOTION = (*LINEAR, *ROTARY)
+_MIN_SIMILARITY = 0.8
 _STEMS = {found[0]: key for key in reversed(KNOWN) if (found := unit_of_name(key)) is not None}
 
 
@@ -32,7 +32,9 @@ def wanted_unit(key: str) -> Unit:
         If the name resembles a known name, or does not end in a unit.
     """
     if key not in KNOWN:
-        suggestion = closest(key, [k for k in KNOWN if k.count("_") == key.count("_")], _ALIKE)
+        suggestion = closest(
+            key, [k for k in KNOWN if k.count("_") == key.count("_")], _MIN_SIMILARITY
+        )
         stem_and_unit = unit_of_name(key)
         if suggestion is None and stem_and_unit is not None:
             # A known quantity must have its standard name: the name must not state another unit.

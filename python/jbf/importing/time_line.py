@@ -17,9 +17,9 @@ from jbf.importing.spool import Dropped
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-_BEGINNING = 0.05
+_RESTART_SHARE = 0.05
 """Share of the elapsed time of a segment; a decrease to less than this share is a restart."""
-_MANY = 0.1
+_MAX_REPEATED_SHARE = 0.1
 """Share of rows with repeated times above which a clock is too coarse."""
 
 
@@ -73,7 +73,7 @@ class TimeLine:
                     self._first_repeat = self._row_of(self.seen + row)
                 continue
             elif now < self._last:
-                if now > self._first + _BEGINNING * (self._last - self._first):
+                if now > self._first + _RESTART_SHARE * (self._last - self._first):
                     raise InputError(
                         row=self._row_of(self.seen + row),
                         problem=f"sample {self.seen + row + 1}: time decreases from "
@@ -93,7 +93,7 @@ class TimeLine:
         InputError
             If too many times are repeated.
         """
-        if self._repeats > _MANY * max(self.seen, 1):
+        if self._repeats > _MAX_REPEATED_SHARE * max(self.seen, 1):
             raise InputError(
                 column="time_s",
                 problem=(

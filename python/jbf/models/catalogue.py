@@ -26,7 +26,7 @@ class _Summed(Protocol):
     def summary(self) -> str: ...
 
 
-BESIDE = ("other friction", "instrument")
+COMBINABLE_STAGES = ("other friction", "instrument")
 """Stages whose effects can be combined with a user-defined law.
 
 The effects add to the force of the law, or act on the sum. Effects of the other stages modify
@@ -307,7 +307,7 @@ def reason_not_applicable(effect: Effect, law: str) -> str | None:
     """Return why an effect cannot be combined with a law ("the law ..."), or None if it can."""
     if law not in _user_laws:
         return effect.refused.get(law)
-    if effect.stage not in BESIDE:
+    if effect.stage not in COMBINABLE_STAGES:
         return (
             "is user-defined, and the effect changes parts of a law that a user-defined law does "
             "not expose"

@@ -20,7 +20,7 @@ from jbf.models.catalogue import (
     in_chain_order,
 )
 from jbf.models.driven import Driven, DrivenChain
-from jbf.models.user_chain import BENDING, UserChain
+from jbf.models.user_chain import NONLINEAR_EFFECTS, UserChain
 from jbf.models.user_effects import MOTION_COLUMNS, UserEffect
 from jbf.models.user_laws import UserLaw
 from jbf.records.arguments import one_run, the_rig
@@ -148,7 +148,7 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
         if page.stage == "instrument" and page not in user_effects
     ]
     carrier = None if user_law is None else of_core([])
-    bends = any(name in BENDING for name, _ in instrument)
+    bends = any(name in NONLINEAR_EFFECTS for name, _ in instrument)
     before = [p.name for p in pages if p not in user_effects and p.stage != "instrument"]
     bare_core = of_core(before) if bends else None
     return DrivenChain(

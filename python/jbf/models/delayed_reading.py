@@ -27,7 +27,7 @@ Array = npt.NDArray[np.float64]
 DELAY = "time_delay"
 TAU = "time_delay.tau_s"
 DRIFT = "sensor_drift.d"
-BESIDE = 1e-3
+JUMP_MARGIN = 1e-3
 """Distance from a jump at which the force is evaluated on both sides, as a fraction of a step."""
 
 
@@ -100,7 +100,7 @@ class DelayedChain:
         moved = motion.at(instants_s, read_instants)
         turns = reversals(read_instants, moved)
         step = np.diff(read_instants)[turns.interval] if len(turns.at_s) else np.zeros(0)
-        sides = np.concatenate([turns.at_s - BESIDE * step, turns.at_s + BESIDE * step])
+        sides = np.concatenate([turns.at_s - JUMP_MARGIN * step, turns.at_s + JUMP_MARGIN * step])
         all_instants, driven = with_instants(self.rig, delayed_run, moved, sides)
         force = self.chain.predict(values[self.kept], [Driven(driven.motion)])[0]
         reading = force[np.searchsorted(all_instants, read_s)]

@@ -20,7 +20,7 @@ from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
 
-INSIDE = 1e-3
+MIN_MARGIN = 1e-3
 """Least distance of an additional instant from both samples, as a share of the step."""
 LONGEST_S = 1.0
 """Largest standard error of the instant of a reversal, s."""
@@ -111,7 +111,7 @@ def reversals(time_s: Array, motion: EstimatedMotion) -> Reversals:
         stop = np.where(v0 * a[k] < 0.0, t0 - v0 / a[k], t1)
     zero = np.where(v0 == 0.0, start, np.where(v1 == 0.0, stop, crossing))
     zero = np.clip(zero, t0, t1)
-    edge = INSIDE * (t1 - t0)
+    edge = MIN_MARGIN * (t1 - t0)
     between = ((v0 == 0.0) | (v1 == 0.0)) & (zero > t0 + edge) & (zero < t1 - edge)
     slope = np.maximum(np.maximum(np.abs(a[k]), np.abs(a[k + 1])), np.abs(v1 - v0) / (t1 - t0))
     error = np.maximum(motion.velocity_error_m_s[k], motion.velocity_error_m_s[k + 1])

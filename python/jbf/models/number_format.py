@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from jbf.models.parameter_value import ParameterValue
 
-BARE = "base law"
+BASE_LAW = "base law"
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -57,7 +57,7 @@ def step_words(models: Sequence[Sequence[str]], index: int) -> str:
     """Describe model `index` by the effects that it adds or removes, or as the base law."""
     effects = models[index]
     if index == 0:
-        return f"{BARE} + {', '.join(effects)}" if effects else BARE
+        return f"{BASE_LAW} + {', '.join(effects)}" if effects else BASE_LAW
     before = models[index - 1]
     new = [e for e in effects if e not in before]
     removed = [e for e in before if e not in effects]

@@ -7,9 +7,9 @@ from jbf.records.quantities import Quantities
 
 FORCES = {"presliding.sigma": "N/m", "stribeck_excess.a": "N", "dwell_stiction.a": "N"}
 """Parameters normalized by the load, which are forces in a law in newtons (load of 1 N)."""
-ALONG = ("backlash.gap",)
+DISPLACEMENTS = ("backlash.gap",)
 """Parameters that are angles on a rotary drive and displacements on a linear axis."""
-OVER_LOAD = ("dry_load_dependence.mu", "zero_load_dependence.k", "viscous_load_dependence.c")
+PER_LOAD = ("dry_load_dependence.mu", "zero_load_dependence.k", "viscous_load_dependence.c")
 """Parameters per unit of load; the load is in N (or bar) for every kind of motion."""
 
 
@@ -17,9 +17,9 @@ def unit_of(name: str, page: Parameter, law: str, quantities: Quantities) -> str
     """Unit of a parameter (dotted name) in combination with a law; `-` if dimensionless."""
     if find_law(law).needs_bearing:
         return page.unit
-    if quantities.motion == "linear" and name in ALONG:
+    if quantities.motion == "linear" and name in DISPLACEMENTS:
         return quantities.length
-    if quantities.motion == "rotary" and name in OVER_LOAD:
+    if quantities.motion == "rotary" and name in PER_LOAD:
         return quantities.unit("N" if page.unit == "-" else "N s/m") + " per load"
     return quantities.unit(FORCES.get(name, page.unit))
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from jbf.errors import InputError
 from jbf.models.catalogue import find_effect
-from jbf.models.user_effects import ALWAYS
+from jbf.models.user_effects import COLUMNS_OF_EVERY_RUN
 from jbf.records.rig import Rig
 from jbf.records.run import Run
 from jbf.records.run_requirements import require
@@ -32,7 +32,7 @@ def require_record(rig: Rig, run: Run, effects: Iterable[str]) -> None:
     for name in effects:
         needs = find_effect(name).needs
         for column in find_effect(name).columns:
-            if column not in ALWAYS:
+            if column not in COLUMNS_OF_EVERY_RUN:
                 require(run, column, f"the effect {name}")
         if "angle" in needs and not has_angle(rig, run):
             require(run, "angle_rad", f"the effect {name}")

@@ -2,8 +2,8 @@
 
 The instrument measures the sum of the bearing force and a user-defined force. If the effects of the
 instrument are linear in the force, the responses to both forces are added. If an effect is
-nonlinear (`BENDING`), the forces are added before the instrument. A user-defined law is treated
-likewise: the effects then belong to a chain of the core whose law is held at nearly zero.
+nonlinear (`NONLINEAR_EFFECTS`), the forces are added before the instrument. A user-defined law is
+treated likewise: the effects then belong to a chain of the core whose law is held at nearly zero.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from jbf.models.user_effects import UserEffect
 
 Array = npt.NDArray[np.float64]
 
-BENDING = ("sensor_hysteresis", "sensor_nonlinearity")
+NONLINEAR_EFFECTS = ("sensor_hysteresis", "sensor_nonlinearity")
 """Nonlinear effects of the instrument, for which superposition does not hold."""
-SMALL = 1e-6
+DIFFERENCE_STEP = 1e-6
 """Step of a directional difference quotient, as a fraction of the largest force."""
 
 
@@ -47,7 +47,8 @@ class UserChain:
     carrier
         The chain of the law of `core` without effects, if there is a user-defined law.
     bare
-        The chain of the core without the instrument, if the instrument has an effect of `BENDING`.
+        The chain of the core without the instrument, if the instrument has an effect of
+        `NONLINEAR_EFFECTS`.
     """
 
     def __init__(
@@ -210,7 +211,7 @@ class UserChain:
         largest = float(np.max(np.abs(slope)))
         if largest == 0.0:
             return slope
-        step = SMALL * max(float(np.max(np.abs(force))), 1e-9) / largest
+        step = DIFFERENCE_STEP * max(float(np.max(np.abs(force))), 1e-9) / largest
         above, below = (
             self._instrument_reading(parameters, motion, force + sign * step * slope)[0]
             for sign in (1, -1)

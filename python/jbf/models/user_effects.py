@@ -33,7 +33,7 @@ Array = npt.NDArray[np.float64]
 
 MOTION_COLUMNS = {"velocity_m_s": "velocity", "acceleration_m_s2": "acceleration"}
 """Argument names that are column names of a file, each with the equivalent argument name."""
-ALWAYS = ("time_s", "velocity", "acceleration", "load_n", *MOTION_COLUMNS)
+COLUMNS_OF_EVERY_RUN = ("time_s", "velocity", "acceleration", "load_n", *MOTION_COLUMNS)
 """Columns available for every run: recorded, estimated, or from the rig."""
 STAGES: dict[str, Stage] = {"other": "other friction", "instrument": "instrument"}
 AGREEMENT = 1e-5

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from jbf.comparison.bins import Axis, Bin, direction_words, label, span_words
 from jbf.comparison.patterns import Failure
-from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, Quantities
 
 Array = npt.NDArray[np.float64]
 
@@ -52,7 +52,7 @@ class BinAxis:
     ticks: tuple[str, ...]
 
 
-def bin_axis(failure: Failure, quantities: Quantities = OF_BEARING) -> BinAxis:
+def bin_axis(failure: Failure, quantities: Quantities = BEARING) -> BinAxis:
     """Return the plot coordinates of a failure's bins.
 
     They are numerical if known, otherwise categorical.

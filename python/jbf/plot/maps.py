@@ -23,7 +23,7 @@ Over = Literal["time", "speed", "place", "run"]
 CELLS = 120
 ROWS = 40
 MOST_NAMES = 24
-BEYOND = 0.0005
+OUTSIDE_SHARE = 0.0005
 """Fraction of the samples that may lie outside a map on each side."""
 
 
@@ -151,7 +151,7 @@ def _edges(values: Array, cells: int = CELLS, runs: int = 0) -> Array:
     """Return cell edges that cover nearly all values, or one cell per run."""
     if runs:
         return np.linspace(-0.5, runs - 0.5, runs + 1)
-    low, high = map(float, np.quantile(values, [BEYOND, 1.0 - BEYOND]))
+    low, high = map(float, np.quantile(values, [OUTSIDE_SHARE, 1.0 - OUTSIDE_SHARE]))
     room = 0.04 * (high - low) or 1.0
     edges: Array = np.linspace(low - room, high + room, cells + 1)
     return edges

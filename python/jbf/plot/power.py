@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from jbf.diagnosis.result import Diagnosis
 
 MOST = 8
-LOOKS = ("-", "--", "-.", ":")
+LINE_STYLES = ("-", "--", "-.", ":")
 COLOURS = (MODEL, BEFORE, NOISE, OTHER, MEASURED)
 
 
@@ -60,7 +60,7 @@ def power(
     x = np.geomspace(0.3 * min(100.0 * (p.share_80 or 0.0) for p in shown), 3.0 * strongest, 400)
     for i, p in enumerate(shown):
         chance = ndtr(deviate(p, x / 100.0))
-        look = LOOKS[i // len(COLOURS) % len(LOOKS)]
+        look = LINE_STYLES[i // len(COLOURS) % len(LINE_STYLES)]
         ax.plot(x, 100.0 * chance, look, color=COLOURS[i % len(COLOURS)], label=p.effect)
     for level in (80.0, 95.0):
         ax.axhline(level, color=INK, linewidth=0.6, alpha=0.5)

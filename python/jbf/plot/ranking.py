@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jbf.errors import InputError
-from jbf.models.number_format import BARE
+from jbf.models.number_format import BASE_LAW
 from jbf.plot.style import BEFORE, INK, MEASURED, MODEL, NOISE, dress, one_axes
 
 if TYPE_CHECKING:
@@ -83,6 +83,6 @@ def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> A
         )
     rest = len(trials) - len(listed)
     more = f"; {rest} with less evidence omitted" if rest else ""
-    model_text = " + ".join([BARE, *ledger_step.effects])
+    model_text = " + ".join([BASE_LAW, *ledger_step.effects])
     dress(ax, f"Candidates added to the {model_text}{more}", "Evidence", "")
     return ax

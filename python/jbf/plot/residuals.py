@@ -33,9 +33,9 @@ Array = npt.NDArray[np.float64]
 
 MOST_TICKS = 16
 MOST_DOTS = 4000
-ONE_PLACE = 0.012
+MERGE_DISTANCE = 0.012
 """Share of an axis's length below which two marks are merged."""
-NEARLY_ALL = 0.998
+SHOWN_SHARE = 0.998
 """Share of the samples that a time plot shows."""
 
 
@@ -123,7 +123,7 @@ def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[A
     """
     order = np.argsort(x, kind="stable")
     x, means, counts = x[order], means[order], counts[order]
-    groups = np.cumsum(np.diff(x, prepend=x[:1]) > ONE_PLACE * (np.ptp(x) if len(x) else 0.0))
+    groups = np.cumsum(np.diff(x, prepend=x[:1]) > MERGE_DISTANCE * (np.ptp(x) if len(x) else 0.0))
     weight = np.bincount(groups, counts)
     return np.bincount(groups, counts * x) / weight, np.bincount(groups, counts * means) / weight
 
@@ -164,7 +164,7 @@ def residual_in_time(
     )
     # Otherwise a few outliers would determine the scale.
     size = np.abs(residual[np.isfinite(residual)])
-    reach = max(1.4 * float(np.quantile(size, NEARLY_ALL)), 3.0 * comparison.noise_rms)
+    reach = max(1.4 * float(np.quantile(size, SHOWN_SHARE)), 3.0 * comparison.noise_rms)
     if reach > 0.0:
         ax.set_ylim(-reach, reach)
     count_beyond = int(np.sum(size > reach))

@@ -20,12 +20,12 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Channels = Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]
 
-OWN_CLOCK = 0.05
+SEPARATE_CLOCK_SHARE = 0.05
 """Smallest share of empty cells for a column to be treated as a channel with a separate clock.
 
 Fewer empty cells are gaps in the file, which the user has to repair.
 """
-ALONE = ("friction_n", *MOTION)
+REQUIRED_COLUMNS = ("friction_n", *MOTION)
 """Columns with at least as many readings as the minimum number of samples of a run."""
 
 
@@ -78,7 +78,9 @@ def recorded_samples(time_s: Array, values: Array) -> tuple[Array, Array]:
     A small number of missing values is kept, so that the later checks reject them.
     """
     finite = np.isfinite(values)
-    if finite.all() or np.count_nonzero(~finite) < max(MIN_SAMPLES, OWN_CLOCK * len(values)):
+    if finite.all() or np.count_nonzero(~finite) < max(
+        MIN_SAMPLES, SEPARATE_CLOCK_SHARE * len(values)
+    ):
         return time_s, values
     return time_s[finite], values[finite]
 
@@ -102,7 +104,7 @@ def _check_clock(clock: Array, values: Array, column: str, name: str) -> None:
         raise wrong(
             f"has {len(values)} values at {len(clock)} instants", "give one value per instant"
         )
-    if column in ALONE and len(clock) < MIN_SAMPLES:
+    if column in REQUIRED_COLUMNS and len(clock) < MIN_SAMPLES:
         raise wrong(f"has {len(clock)} readings", f"a run needs at least {MIN_SAMPLES}")
     if not (len(clock) and np.isfinite(clock).all() and np.isfinite(values).all()):
         raise wrong("contains values that are not finite", "remove the missing readings")

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, closest, quoted
 from jbf.records.arguments import the_rig
-from jbf.records.channels import OWN_CLOCK, filled
+from jbf.records.channels import SEPARATE_CLOCK_SHARE, filled
 from jbf.records.checks import (
     COLUMNS,
     MIN_SAMPLES,
@@ -40,7 +40,7 @@ from jbf.text_files import name_of, path_of, read_text
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-OF_DRIVES = (
+DRIVE_COLUMNS = (
     "torque_n_m",
     "motor_torque_n_m",
     "current_a",
@@ -127,7 +127,7 @@ def _checked_header(
                 remedy = f"did you mean {quoted(misses[name])}? rename it to {name}"
             else:
                 remedy = f"add it; the header has {listed(header)}"
-                of_drives = [heading for heading in OF_DRIVES if heading in header]
+                of_drives = [heading for heading in DRIVE_COLUMNS if heading in header]
                 if of_drive is None and of_drives:
                     remedy += f"; a rig with [drive] defines {of_drives[0]}"
             raise wrong(name, "is missing", remedy)
@@ -315,9 +315,9 @@ def _separately_clocked(
 ) -> tuple[Array, Mask] | None:
     """Return the readings of a channel with a separate clock, and the mask of its non-empty cells.
 
-    None if a cell is not a number, or if the share of empty cells is below `OWN_CLOCK`. A fast
-    channel may have a smaller share; every row without a value of it must then have a value of a
-    slower channel.
+    None if a cell is not a number, or if the share of empty cells is below `SEPARATE_CLOCK_SHARE`.
+    A fast channel may have a smaller share; every row without a value of it must then have a value
+    of a slower channel.
     """
     sampled = _filled_cells(cells)
     if not sampled.any():
@@ -340,7 +340,7 @@ def _filled_cells(cells: Sequence[str]) -> Mask:
 
 
 def _is_a_clock(sampled: Mask) -> bool:
-    return int(np.count_nonzero(~sampled)) >= max(MIN_SAMPLES, OWN_CLOCK * len(sampled))
+    return int(np.count_nonzero(~sampled)) >= max(MIN_SAMPLES, SEPARATE_CLOCK_SHARE * len(sampled))
 
 
 def _required(header: Sequence[str], need_friction: bool) -> list[str]:

@@ -22,7 +22,7 @@ from jbf.records.findings.finding import Finding
 
 Array = npt.NDArray[np.float64]
 
-ALWAYS = ("time_s", "load_n", "temperature_c")
+COLUMNS_OF_EVERY_DRIVE = ("time_s", "load_n", "temperature_c")
 RPM = 2.0 * math.pi / 60.0
 """One turn per minute in radians per second."""
 ALIASES = {
@@ -91,7 +91,7 @@ class DriveColumns:
     def known(self) -> tuple[str, ...]:
         """All columns with a defined meaning for this drive."""
         of_link = ("weight_angle_rad",) if self.drive.motion == "rotary" else ()
-        return (*ALWAYS, *self.friction, *self.speed, *self.place, *of_link)
+        return (*COLUMNS_OF_EVERY_DRIVE, *self.friction, *self.speed, *self.place, *of_link)
 
     def required(self, header: Sequence[str], need_friction: bool) -> list[str]:
         """Return the required columns: the time, a motion and a friction.

@@ -92,7 +92,7 @@ class Quantities:
         return {"force": self.force, "motion": self.length, "velocity": self.speed}
 
 
-OF_BEARING = Quantities(
+BEARING = Quantities(
     "bearing", "N", "m/s", "m", "Friction of one bearing", "Surface speed", "force",
     "the shaft", "the load cell",
 )  # fmt: skip

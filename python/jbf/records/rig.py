@@ -11,7 +11,7 @@ import tomlkit
 from jbf import _core
 from jbf.errors import InputError, quoted
 from jbf.records.drive import Drive
-from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, LINEAR, Quantities
 from jbf.records.toml_file import PathLike, number, positive, read_toml, refuse_unknown, table
 from jbf.records.usual_sizes import warn_of_unusual_sizes
 from jbf.text_files import write_text
@@ -226,7 +226,7 @@ class Rig:
         """Units and words of the rig's friction and motion."""
         if self.drive is not None:
             return self.drive.quantities
-        return LINEAR if self.bearing is None else OF_BEARING
+        return LINEAR if self.bearing is None else BEARING
 
     @property
     def radius_m(self) -> float | None:

@@ -32,7 +32,7 @@ from jbf.records.csv_output import csv_of_columns
 from jbf.records.derived_columns import derived_speed_column, fill_gaps
 from jbf.records.findings.finding import Finding
 from jbf.records.frames import columns_of, columns_of_dataset, dataset_of_columns
-from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, Quantities
 from jbf.results import Shown, data_frame
 from jbf.text_files import write_text
 
@@ -99,7 +99,7 @@ class Run(Shown):
     extra: dict[str, Array] = field(default_factory=dict)
     path: Path | None = None
     speed_recorded: bool = True
-    quantities: Quantities = OF_BEARING
+    quantities: Quantities = BEARING
     reading: tuple[Finding, ...] = ()
     read: dict[str, Mask] = field(default_factory=dict)
 

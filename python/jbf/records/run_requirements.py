@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from jbf.errors import InputError
 from jbf.records.checks import listed
-from jbf.records.quantities import OF_BEARING
+from jbf.records.quantities import BEARING
 from jbf.records.run import Run
 
 if TYPE_CHECKING:
@@ -52,13 +52,13 @@ def run_on(rig: Rig, run: Run) -> Run:
     quantities = rig.quantities
     if run.quantities == quantities:
         return run
-    if run.quantities != OF_BEARING and run.quantities.motion != quantities.motion:
+    if run.quantities != BEARING and run.quantities.motion != quantities.motion:
         raise InputError(
             file=run.path or run.name,
             problem=f"was read for a {run.quantities.motion} drive, but the rig is not one",
             remedy="give the rig with which it was read",
         )
-    if run.quantities == OF_BEARING and quantities.motion == "rotary" and run.path is not None:
+    if run.quantities == BEARING and quantities.motion == "rotary" and run.path is not None:
         raise InputError(
             file=run.path,
             problem="was read without the rig, whose [drive] defines its columns",

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from jbf.models.catalogue import Effect, Parameter, built_in, find_law, reason_not_applicable
-from jbf.records.quantities import LINEAR, OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, LINEAR, Quantities
 from jbf.reporting.effect_words import summary_of
 from jbf.reporting.paragraphs import columns, hanging
 
-NEEDS = {
+REQUIREMENTS = {
     "transmitted": "another effect whose force the drive transmits: gravity, inertia",
     "angle": "the column angle_rad in every run",
     "path": "the column angle_rad, or position_m on a linear axis, in every run",
@@ -30,7 +30,7 @@ def refused_words(effect: Effect) -> str:
 
 
 def effects_page(
-    pages: Iterable[Effect], law: str | None = None, quantities: Quantities = OF_BEARING
+    pages: Iterable[Effect], law: str | None = None, quantities: Quantities = BEARING
 ) -> str:
     """List the effects in the order of the signal chain, one line each, under a heading per stage.
 
@@ -49,7 +49,7 @@ def effects_page(
     if law is not None:
         reasons_of = {e.name: reason_not_applicable(e, law) for e in pages}
         refused = {name: reason for name, reason in reasons_of.items() if reason is not None}
-        quantities = OF_BEARING if find_law(law).needs_bearing else LINEAR
+        quantities = BEARING if find_law(law).needs_bearing else LINEAR
         applicable = effects_page([e for e in pages if e.name not in refused], None, quantities)
         widest = max(map(len, refused), default=0)
         reasons = [x for n, r in refused.items() for x in hanging(f"{n:<{widest}}  ", r)]
@@ -76,7 +76,7 @@ def effect_page(effect: Effect) -> str:
         ("source", effect.source),
         ("limits", effect.limits),
     ]
-    for need, words in NEEDS.items():
+    for need, words in REQUIREMENTS.items():
         if need in effect.needs:
             facts.append(("needs", words))
     if effect.columns:

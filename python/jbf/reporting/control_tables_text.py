@@ -11,7 +11,7 @@ from jbf.reporting.paragraphs import columns
 from jbf.reporting.words import number
 
 _TITLES = {"none": "no compensation", "learning": "dynamic model, learned", "coulomb": "Coulomb"}
-_FAR = 2.0
+_LISTED_RATIO = 2.0
 
 
 def _three_digits(value: float | None) -> str:
@@ -71,7 +71,7 @@ def score_text(tables: Tables) -> str:
     outlying = [
         f"{c.row}, {_TITLES[c.column]} ({c.ratio:.2f})"
         for c in tables.predicted
-        if c.ratio is not None and not 1.0 / _FAR <= c.ratio <= _FAR
+        if c.ratio is not None and not 1.0 / _LISTED_RATIO <= c.ratio <= _LISTED_RATIO
     ]
     lines = [
         f"Fitted: the seven cells without compensation, largest deviation {100.0 * worst:.0f} %.",

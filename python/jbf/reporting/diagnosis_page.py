@@ -41,7 +41,7 @@ from jbf.reporting.tables import (
     trial_rows,
 )
 from jbf.reporting.words import (
-    BARE,
+    BASE_LAW,
     extrapolation_sentences,
     headline_and_rest,
     held_out_sentence,
@@ -177,7 +177,7 @@ def _rounds(diagnosis: Diagnosis) -> list[Round]:
         ax = _full_width_axes(ranking_height(step)) if named else None
         rounds.append(
             Round(
-                " + ".join([BARE, *step.effects]),
+                " + ".join([BASE_LAW, *step.effects]),
                 svg([ranking(diagnosis, i, ax=ax)], "Evidence of each candidate") if named else "",
                 [row for trial, row in rows if trial.reason != CHANCE],
                 listed(t.effect for t in step.trials if t.reason == CHANCE),

@@ -12,7 +12,7 @@ from jbf.reporting.power_text import DETECTION_LIMITS, level_words, power_lines
 from jbf.reporting.tables import LEDGER_HEAD, law_rows, ledger_rows, trial_rows
 from jbf.reporting.text_parts import finding_lines, recorded, where_lines
 from jbf.reporting.words import (
-    BARE,
+    BASE_LAW,
     against_noise,
     extrapolation_sentences,
     law_words,
@@ -29,7 +29,7 @@ def _trial_lines(diagnosis: Diagnosis) -> list[str]:
     for step in diagnosis.steps:
         if not step.trials:
             continue
-        lines += ["", f"Candidates added to the {' + '.join([BARE, *step.effects])}"]
+        lines += ["", f"Candidates added to the {' + '.join([BASE_LAW, *step.effects])}"]
         rows = trial_rows(step)
         head, *table = columns(
             [("effect", f"RMS ({unit})", "evidence", "outcome"), *(row[:4] for row in rows)],

@@ -13,9 +13,9 @@ from jbf.reporting.text_parts import finding_lines, parameter_lines
 from jbf.reporting.words import law_words, number
 
 MOST_CORRELATIONS = 10
-ABOVE = 1.25
+NOTE_ABOVE = 1.25
 """Ratio of residual to noise of the records above which the report adds a note."""
-BELOW = 0.95
+NOTE_BELOW = 0.95
 """Ratio below which the report adds a note."""
 
 
@@ -66,7 +66,7 @@ def fit_report(fit: Fit) -> str:
             "small; `jbf fit --bootstrap 40` (jbf.bootstrap) computes reliable ones.",
             4,
         )
-    if fit.noise_floor is not None and fit.rms > ABOVE * fit.noise_floor:
+    if fit.noise_floor is not None and fit.rms > NOTE_ABOVE * fit.noise_floor:
         lines += hanging(
             "note: ",
             "the residual exceeds the noise of the records: an effect is missing (`jbf "
@@ -74,7 +74,7 @@ def fit_report(fit: Fit) -> str:
             "other start values: `--start NAME=VALUE`).",
             4,
         )
-    if fit.noise_floor is not None and fit.rms < BELOW * fit.noise_floor:
+    if fit.noise_floor is not None and fit.rms < NOTE_BELOW * fit.noise_floor:
         lines += hanging(
             "note: ",
             "the residual is below the noise of the records: their estimate also contains friction "

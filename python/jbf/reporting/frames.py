@@ -18,7 +18,7 @@ from jbf.estimation.trajectory_fit import TrajectoryFit
 from jbf.models.catalogue import parameters_of
 from jbf.models.parameter_units import unit_of
 from jbf.models.parameter_value import ParameterValue
-from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, Quantities
 
 Columns = dict[str, Any]
 
@@ -27,7 +27,7 @@ def parameter_columns(
     law: str,
     effects: tuple[str, ...],
     parameters: Mapping[str, ParameterValue],
-    quantities: Quantities = OF_BEARING,
+    quantities: Quantities = BEARING,
 ) -> Columns:
     """Return one row per parameter: name, value, stderr, unit, held flag, note."""
     pages = parameters_of(law, effects)

@@ -37,9 +37,9 @@ LEAST_SHARE = 0.08
 """Minimum share of a pattern that an effect must explain to be named as its cause."""
 UNCONFIRMED = "does not improve the held-out prediction"
 """Wording of the reason for a candidate that fits better but is rejected."""
-CONFIRMED = 0.6
+MIN_CAUSE_SHARE = 0.6
 """Minimum total share of a pattern at which effects are named as its full, not partial, cause."""
-SEEN_ALONG = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
+PLOTTED_AXES = ("time", "run", "angle", "velocity", "speed range", "regime", "direction", "force")
 
 TITLES = {
     "frequency": "Spectral lines",
@@ -95,7 +95,7 @@ def _failed(
     causes = listed(f"{name} ({100.0 * s:.0f} % of it)" for name, s in shares.items())
     fell = f"the means fall from {number(first, 2)} to {number(now, 2)} {unit}"
     fails = any(f.axis == failure.axis for f in diagnosis.after.failures)
-    if shares and sum(shares.values()) >= CONFIRMED:
+    if shares and sum(shares.values()) >= MIN_CAUSE_SHARE:
         cause = f"{causes}."
     elif shares:
         cause = f"Partly {causes}. The usual cause of the rest: {advice.causes}."
@@ -126,7 +126,7 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
         residual_in_time(after, largest_error_run(after), ax=ax)
     elif remainder.axis == "run" and len(after.runs) == 1:
         residual_in_time(after, 0, ax=ax)
-    elif remainder.axis in SEEN_ALONG or any(remainder.axis == f.axis for f in after.failures):
+    elif remainder.axis in PLOTTED_AXES or any(remainder.axis == f.axis for f in after.failures):
         quantities = after.model.rig.quantities
         noise_band(ax, after.noise_rms, unit=quantities.force)
         draw_means(ax, means_along(after, remainder.axis), MODEL, quantities)

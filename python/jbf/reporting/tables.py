@@ -10,7 +10,7 @@ import numpy as np
 
 from jbf.models.parameter_units import units_of
 from jbf.records.counts import count_of
-from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, Quantities
 from jbf.reporting.words import UNKNOWN, number, percent, step_name, value_and_error
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def parameter_rows(
     law: str,
     effects: tuple[str, ...],
     parameters: Mapping[str, ParameterValue],
-    quantities: Quantities = OF_BEARING,
+    quantities: Quantities = BEARING,
 ) -> list[tuple[str, str, str, str, str, str]]:
     """Return name, value, standard error, percentage, unit and note of each parameter, as text."""
     units = units_of(law, effects, quantities)

@@ -9,7 +9,7 @@ from jbf.diagnosis.ledger import Remainder
 from jbf.models.parameter_value import ParameterValue
 from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
-from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.quantities import BEARING, Quantities
 from jbf.records.run import Run
 from jbf.reporting.paragraphs import columns, hanging
 from jbf.reporting.tables import finding_rows, parameter_rows
@@ -19,7 +19,7 @@ def parameter_lines(
     law: str,
     effects: tuple[str, ...],
     parameters: Mapping[str, ParameterValue],
-    quantities: Quantities = OF_BEARING,
+    quantities: Quantities = BEARING,
 ) -> list[str]:
     """Format one line per parameter: value, standard error, percentage, unit, note."""
     rows = [

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from jbf.models.catalogue import find_law
-from jbf.models.number_format import BARE as BARE
+from jbf.models.number_format import BASE_LAW as BASE_LAW
 from jbf.models.number_format import measured as measured
 from jbf.models.number_format import number as number
 from jbf.models.number_format import percent as percent

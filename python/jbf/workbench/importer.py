@@ -27,7 +27,7 @@ from jbf.workbench.map_form import (
     without_path,
 )
 
-SI_OF = {
+SI_UNITS = {
     "time_s": "s",
     "angle_rad": "rad",
     "load_n": "N",
@@ -147,7 +147,7 @@ def _content_of(campaign: Import) -> dict[str, Any]:
         columns = [
             {
                 "name": name,
-                "unit": units.get(name, SI_OF.get(name, "")),
+                "unit": units.get(name, SI_UNITS.get(name, "")),
                 **dict(zip(("least", "median", "most"), _spread(values), strict=True)),
             }
             for name, values in run.columns().items()

@@ -18,7 +18,7 @@ from jbf.workbench.work import STOP, Order, main
 Ending = Literal["done", "error", "stopped"]
 Ended = Callable[[Ending, Any], None]
 Part = Callable[[Any], None]
-PATIENCE_S = 20.0
+STOP_TIMEOUT_S = 20.0
 """Time between the request to stop a process and its termination without a result, s."""
 
 
@@ -89,7 +89,7 @@ class Jobs:
     def cancel(self, at_once: bool = False) -> bool:
         """Stop the job; returns False if no job is running.
 
-        The job ends with its best result so far. On a second call, after `PATIENCE_S`, or with
+        The job ends with its best result so far. On a second call, after `STOP_TIMEOUT_S`, or with
         `at_once`, it is killed without a result.
         """
         with self._lock:
@@ -103,7 +103,7 @@ class Jobs:
             self._cancelled, self.job.message = True, "stopping; cancel again to abort"
             with contextlib.suppress(OSError):  # the process has just ended
                 self._connection.send(STOP)
-        patience = threading.Timer(PATIENCE_S, process.kill)
+        patience = threading.Timer(STOP_TIMEOUT_S, process.kill)
         patience.daemon = True
         patience.start()
         return True

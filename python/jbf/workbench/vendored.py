@@ -23,7 +23,7 @@ FILES = {
     "package/dist/uPlot.min.css": "uPlot.min.css",
     "package/LICENSE": "uPlot.LICENSE",
 }
-HERE = Path(__file__).resolve().parent / "vendored_files"
+FOLDER = Path(__file__).resolve().parent / "vendored_files"
 
 
 def file(name: str) -> Path | None:
@@ -31,7 +31,7 @@ def file(name: str) -> Path | None:
 
     None if the name is unknown or the file was not fetched.
     """
-    path = HERE / name
+    path = FOLDER / name
     return path if name in FILES.values() and path.is_file() else None
 
 
@@ -64,14 +64,14 @@ def fetch() -> None:
     """Fetch the archive from the registry, check it, and store the required files."""
     with urllib.request.urlopen(ADDRESS, timeout=60) as answer:
         contents = unpacked(answer.read())
-    HERE.mkdir(exist_ok=True)
+    FOLDER.mkdir(exist_ok=True)
     for name, content in contents.items():
-        part = HERE / f".{name}.part"
+        part = FOLDER / f".{name}.part"
         part.write_bytes(content)
-        os.replace(part, HERE / name)
+        os.replace(part, FOLDER / name)
 
 
 if __name__ == "__main__":
     if not is_complete():
         fetch()
-    sys.stdout.write(f"{NAME} {VERSION} is in {HERE}\n")
+    sys.stdout.write(f"{NAME} {VERSION} is in {FOLDER}\n")

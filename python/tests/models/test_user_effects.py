@@ -18,7 +18,7 @@ from jbf import InputError, Model, Parameter, Rig, Run, export
 from jbf.cli import main
 from jbf.models import catalogue
 from jbf.models.chain import chain, core_motion, estimated_motion
-from jbf.models.user_chain import BENDING
+from jbf.models.user_chain import NONLINEAR_EFFECTS
 
 HEAT = Parameter("k_n_k", "N/K", lower=-5.0, upper=5.0, null=0.0, starts=(0.1,))
 TRUTH = 0.35
@@ -314,4 +314,6 @@ def test_table_of_nonlinear_instruments_lists_exactly_the_nonlinear_instrument_e
             values = usual | {"two_waves.a_n": a_n, "two_waves.b_n": b_n}
             model = Model(Rig(), "coulomb", [effect.name, "two_waves"], values)
             nonlinearity += sign * model.predict(run)
-        assert (np.max(np.abs(nonlinearity)) >= 1e-9) == (effect.name in BENDING), effect.name
+        assert (np.max(np.abs(nonlinearity)) >= 1e-9) == (effect.name in NONLINEAR_EFFECTS), (
+            effect.name
+        )

@@ -12,7 +12,7 @@ import pytest
 from input_checks import Capture
 from jbf import Model, Rig
 from jbf.cli import main
-from jbf.importing.cutting.settings import WAYS, CutSettings
+from jbf.importing.cutting.settings import METHODS, CutSettings
 from jbf.importing.expression import FUNCTIONS
 from jbf.importing.formats.registry import FORMATS
 from jbf.importing.formats.table import Options
@@ -88,7 +88,7 @@ def test_import_page_names_every_option_function_and_format() -> None:
     text = text_of("docs/import.md")
     options = [f.name for f in (*fields(Options), *fields(CutSettings))]
     assert [name for name in options if f"`{name}`" not in text] == []
-    words = [*WAYS, *FUNCTIONS]
+    words = [*METHODS, *FUNCTIONS]
     assert [w for w in words if f'"{w}"' not in text and f"`{w}`" not in text] == []
     extras = [known.extra for known in FORMATS if known.extra]
     assert [extra for extra in extras if f"`jbf[{extra}]`" not in text] == []

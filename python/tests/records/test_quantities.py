@@ -12,7 +12,7 @@ from jbf.cli import main
 from jbf.models.catalogue import laws, parameters_of
 from jbf.models.parameter_units import unit_of, units_of
 from jbf.records.drive import Drive
-from jbf.records.quantities import LINEAR, OF_BEARING, ROTARY
+from jbf.records.quantities import BEARING, LINEAR, ROTARY
 from jbf.records.run_requirements import run_on
 from rigsim import AxisRun, axis_campaign
 
@@ -130,7 +130,7 @@ def test_catalogue_units_are_converted_to_those_of_a_linear_or_rotary_drive() ->
     units = [ROTARY.unit(si) for si in ("N", "N s/m", "N/m", "kg", "m", "1/N^2", "s")]
     assert units == ["N m", "N m s/rad", "N m/rad", "kg m^2", "rad", "1/(N m)^2", "s"]
     assert [LINEAR.unit(si) for si in ("N m/rad", "kg m^2", "N")] == ["N/m", "kg", "N"]
-    assert OF_BEARING.unit("N m/rad") == "N m/rad"
+    assert BEARING.unit("N m/rad") == "N m/rad"
 
 
 def test_load_coefficients_are_forces_for_a_drive_but_ratios_for_a_bearing() -> None:
@@ -139,7 +139,7 @@ def test_load_coefficients_are_forces_for_a_drive_but_ratios_for_a_bearing() -> 
         units = units_of("coulomb", chosen, quantities)
         assert units["presliding.sigma"] == stiffness
         assert units["stribeck_excess.a"] == units["dwell_stiction.a"] == force
-    units = units_of("journal", chosen, OF_BEARING)
+    units = units_of("journal", chosen, BEARING)
     assert units["presliding.sigma"] == "1/m"
     assert units["stribeck_excess.a"] == ""
 

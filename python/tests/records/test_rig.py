@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from input_errors import input_error
 from jbf.records.drive import Drive
-from jbf.records.quantities import LINEAR, OF_BEARING
+from jbf.records.quantities import BEARING, LINEAR
 from jbf.records.rig import Bearing, Load, Lubricant, Rig, read_rig
 
 THESIS = """\
@@ -41,7 +41,7 @@ def test_thesis_rig_has_the_dimensions_and_loads_of_its_tables(path: Path) -> No
 
 def test_units_and_radius_of_a_rig_follow_from_its_bearing_or_drive() -> None:
     joint, slide = Rig(drive=Drive("rotary", "torque")), Rig(drive=Drive("linear", "force"))
-    assert (Rig().quantities, Rig.thesis().quantities) == (LINEAR, OF_BEARING)
+    assert (Rig().quantities, Rig.thesis().quantities) == (LINEAR, BEARING)
     assert (joint.quantities.motion, slide.quantities.motion) == ("rotary", "linear")
     assert (Rig.thesis().radius_m, joint.radius_m) == (0.0127, 1.0)
     assert slide.radius_m is Rig().radius_m is None

@@ -10,7 +10,7 @@ from jbf.records.motion.position import Position, recorded_position
 from jbf.records.motion.ratio import factor_between, metres_per_unit, slope_near
 from jbf.records.motion.units import wrong_unit
 from jbf.records.motion.window_comparisons import HALF_WIDTHS, window_comparisons
-from jbf.records.quantities import LINEAR, OF_BEARING, ROTARY, Quantities
+from jbf.records.quantities import BEARING, LINEAR, ROTARY, Quantities
 from known_motions import TIME_S, path_of, quantised, speed_of, white
 
 PATH_M, SPEED_M_S = path_of(TIME_S), speed_of(TIME_S)
@@ -96,7 +96,7 @@ def test_distance_per_radian_of_a_slow_quantised_motion_is_recovered(even: bool)
     assert metres_per_unit(time_s, counts, 0.03 * speed) == pytest.approx(0.03, rel=0.01)
 
 
-def mismatch(column: str, factor: float, arm_m: float = 1.0, kind: Quantities = OF_BEARING) -> Any:
+def mismatch(column: str, factor: float, arm_m: float = 1.0, kind: Quantities = BEARING) -> Any:
     """Mismatch of a path whose derivative is `factor` times the speed."""
     position = Position(factor * PATH_M, column, column.rpartition("_")[2], arm_m)
     return wrong_unit("a", TIME_S, position, SPEED_M_S, kind)
@@ -105,11 +105,11 @@ def mismatch(column: str, factor: float, arm_m: float = 1.0, kind: Quantities = 
 @pytest.mark.parametrize(
     ("column", "factor", "arm_m", "kind", "channel", "hint"),
     [
-        ("angle_rad", 360.0 / TURN, 0.3, OF_BEARING, "angle_rad", "degrees"),
-        ("angle_rad", 1.0 / TURN, 0.3, OF_BEARING, "angle_rad", "turns"),
-        ("angle_rad", 0.3, 0.3, OF_BEARING, "velocity_m_s", "rad/s"),
-        ("angle_rad", 0.3 * TURN / 360.0, 0.3, OF_BEARING, "velocity_m_s", "degrees per second"),
-        ("angle_rad", 0.3 * TURN / 60.0, 0.3, OF_BEARING, "velocity_m_s", "revolutions per minute"),
+        ("angle_rad", 360.0 / TURN, 0.3, BEARING, "angle_rad", "degrees"),
+        ("angle_rad", 1.0 / TURN, 0.3, BEARING, "angle_rad", "turns"),
+        ("angle_rad", 0.3, 0.3, BEARING, "velocity_m_s", "rad/s"),
+        ("angle_rad", 0.3 * TURN / 360.0, 0.3, BEARING, "velocity_m_s", "degrees per second"),
+        ("angle_rad", 0.3 * TURN / 60.0, 0.3, BEARING, "velocity_m_s", "revolutions per minute"),
         ("angle_rad", TURN / 60.0, 1.0, ROTARY, "velocity_m_s", "revolutions per minute"),
         ("position_m", 1e3, 1.0, LINEAR, "position_m", "mm"),
         ("position_m", 1e6, 1.0, LINEAR, "position_m", "um"),

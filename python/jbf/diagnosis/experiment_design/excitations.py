@@ -14,7 +14,7 @@ from jbf.estimation.campaign import Campaign
 from jbf.models.catalogue import find_effect
 from jbf.models.chain import core_load_n, core_motion
 from jbf.models.driven import Driven
-from jbf.models.user_effects import ALWAYS
+from jbf.models.user_effects import COLUMNS_OF_EVERY_RUN
 from jbf.records.motion.known import known_motion
 from jbf.records.rig import Rig
 from jbf.records.run import Run
@@ -22,7 +22,7 @@ from jbf.records.run_requirements import run_on
 
 Array = npt.NDArray[np.float64]
 
-COLUMNS = {*ALWAYS, "angle_rad", "position_m"}
+COLUMNS = {*COLUMNS_OF_EVERY_RUN, "angle_rad", "position_m"}
 """Columns of a proposed run."""
 MOST_SAMPLES = 6000
 """Largest number of samples of a proposed run. It enters no verdict."""

@@ -24,7 +24,7 @@ from jbf.records.checks import MIN_SAMPLES
 TOO_FEW = f", but a run needs at least {MIN_SAMPLES}"
 REST_S, KEEP_REST_S = 0.25, 0.1
 """Default shortest rest at which a recording is cut, and the part of it that is kept, s."""
-LOST, SHORTEST_S = 0.05, 1.0
+MAX_DISCARDED_SHARE, SHORTEST_S = 0.05, 1.0
 """Largest share of discarded motion, and minimum median duration of runs, s, by default cutting.
 
 The default cutting is rejected outside these limits, so that an axis with stick-slip is not cut at
@@ -47,13 +47,18 @@ def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
 def at_rests_by_default(recording: Recording, settings: CutSettings) -> list[Piece] | None:
     """Cut a recording at its rests.
 
-    Return None if the result has no additional runs, or exceeds the limits `LOST` and `SHORTEST_S`.
+    Return None if the result has no additional runs, or exceeds the limits
+    `MAX_DISCARDED_SHARE` and `SHORTEST_S`.
     """
     by_rests = replace(settings, by=("rests",), rest_s=REST_S, keep_rest_s=KEEP_REST_S)
     pieces = _cut(recording, by_rests)
     runs = [p.to_s - p.from_s for p in pieces if p.keep]
     lost = sum(p.to_s - p.from_s for p in pieces if p.why.endswith(TOO_FEW))
-    if len(runs) <= recording.segments or np.median(runs) < SHORTEST_S or lost > LOST * sum(runs):
+    if (
+        len(runs) <= recording.segments
+        or np.median(runs) < SHORTEST_S
+        or lost > MAX_DISCARDED_SHARE * sum(runs)
+    ):
         return None
     recording.notes.append(f"cut at its rests into {len(runs)} runs (--no-cut keeps it whole)")
     return pieces

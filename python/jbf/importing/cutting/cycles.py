@@ -6,7 +6,7 @@ import numpy as np
 
 from jbf.importing.cutting.motion_speed import MotionSpeed
 from jbf.importing.cutting.piece import Cut
-from jbf.importing.cutting.rests import NOISES, STILL
+from jbf.importing.cutting.rests import REST_SPEED_SHARE, REST_SPEED_SIGMAS
 from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.spool import Recording
 
@@ -17,8 +17,8 @@ WINDOW_S = 0.05
 def cut_at_cycles(recording: Recording, settings: CutSettings) -> list[Cut]:
     """Return a cut at the start of each cycle of a forward stroke and a return stroke."""
     motion = MotionSpeed(recording, WINDOW_S)
-    share = STILL if settings.still is None else settings.still
-    threshold = max(share * motion.top(), NOISES * motion.noise())
+    share = REST_SPEED_SHARE if settings.still is None else settings.still
+    threshold = max(share * motion.top(), REST_SPEED_SIGMAS * motion.noise())
     stream, cuts = motion.stream, list[Cut]()
     for segment, (first, _) in enumerate(stream.segments):
         last_back: int | None = None

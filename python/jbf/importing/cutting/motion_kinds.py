@@ -11,7 +11,7 @@ import numpy as np
 
 from jbf.importing.cutting.motion_speed import MotionSpeed
 from jbf.importing.cutting.piece import Cut
-from jbf.importing.cutting.rests import NOISES, STILL
+from jbf.importing.cutting.rests import REST_SPEED_SHARE, REST_SPEED_SIGMAS
 from jbf.importing.cutting.settings import CutSettings
 from jbf.importing.spool import Recording
 
@@ -19,7 +19,7 @@ WINDOW_S = 1.0
 """Shortest window that is classified, s; `rest_s` applies if it is longer."""
 STEADY = 0.02
 """Largest range of a steady speed, as a share of its median."""
-HOLDS = 3
+MIN_WINDOWS = 3
 """Minimum number of consecutive windows of a kind; fewer belong to the kind before."""
 
 
@@ -27,9 +27,9 @@ def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut
     """Return a cut at each lasting change of the kind of motion."""
     window_s = max(settings.rest_s, WINDOW_S)
     motion = MotionSpeed(recording, 0.1 * window_s)
-    threshold = (STILL if settings.still is None else settings.still) * motion.top()
+    threshold = (REST_SPEED_SHARE if settings.still is None else settings.still) * motion.top()
     noise = motion.noise()
-    threshold = max(threshold, NOISES * noise)
+    threshold = max(threshold, REST_SPEED_SIGMAS * noise)
     cuts: list[Cut] = []
     for segment, (first, _) in enumerate(motion.stream.segments):
         kinds: list[str] = []
@@ -80,7 +80,7 @@ def _lasting_kinds(kinds: list[str]) -> list[tuple[int, str]]:
         end = at
         while end < len(kinds) and kinds[end] == kinds[at]:
             end += 1
-        if end - at >= HOLDS and kinds[at] != last:
+        if end - at >= MIN_WINDOWS and kinds[at] != last:
             if last is not None:
                 lasting.append((at, kinds[at]))
             last = kinds[at]

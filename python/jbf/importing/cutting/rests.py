@@ -13,9 +13,9 @@ from jbf.importing.spool import Recording
 
 WINDOW = 0.05
 """Averaging window of the absolute speed, as a share of the shortest rest."""
-STILL = 5e-3
+REST_SPEED_SHARE = 5e-3
 """Largest speed of a rest, as a share of the top speed."""
-NOISES = 2.0
+REST_SPEED_SIGMAS = 2.0
 """Largest speed of a rest, in standard deviations of the speed's white noise, if that is more."""
 
 
@@ -23,10 +23,10 @@ def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
     """Return a cut at each rest of sufficient duration, without the parts to be kept."""
     motion = MotionSpeed(recording, WINDOW * settings.rest_s)
     top = motion.top()
-    share = STILL if settings.still is None else settings.still
+    share = REST_SPEED_SHARE if settings.still is None else settings.still
     threshold = share * top
     if settings.still is None:
-        threshold = max(threshold, NOISES * motion.noise())
+        threshold = max(threshold, REST_SPEED_SIGMAS * motion.noise())
     cuts = []
     for segment, (first, end) in enumerate(motion.stream.segments):
         for begin, stop in _rests(motion, segment, threshold):

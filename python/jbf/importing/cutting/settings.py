@@ -26,7 +26,7 @@ RELATIONS: dict[str, Callable[[Array, float], Any]] = {
     "<": operator.lt,
 }
 _COMPARISON = re.compile(r"((?:`[^`]*`|[^`<>=!])+)(==|!=|>=|<=|>|<)((?:`[^`]*`|[^`<>=!])+)")
-WAYS = ("rests", "cycles", "set_point", "load_step", "motion", "run", "parts")
+METHODS = ("rests", "cycles", "set_point", "load_step", "motion", "run", "parts")
 """Cutting methods; each is implemented in a module of this package."""
 
 
@@ -78,7 +78,7 @@ class CutSettings:
     Attributes
     ----------
     by
-        Methods of `WAYS`, all of which are applied. Empty: one run per recording (and per
+        Methods of `METHODS`, all of which are applied. Empty: one run per recording (and per
         restart of time). None: at rests, if that yields runs (`cut.at_rests_by_default`).
     column
         Column of the file (an expression) for `set_point` or `run`.
@@ -131,11 +131,11 @@ class CutSettings:
         else:
             methods = (by,) if isinstance(by, str) else tuple(by)
         for method in methods or ():
-            if method not in WAYS:
+            if method not in METHODS:
                 raise InputError(
                     key="cut.by",
                     problem=f"{quoted(method)} is not a cutting method",
-                    remedy=did_you_mean(method, WAYS),
+                    remedy=did_you_mean(method, METHODS),
                 )
         needs = [method for method in methods or () if method in ("set_point", "run")]
         if needs and not isinstance(given.get("column"), str):

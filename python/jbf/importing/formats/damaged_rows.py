@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from jbf.errors import InputError
-from jbf.importing.formats.table import DAMAGED
+from jbf.importing.formats.table import MAX_DAMAGED_SHARE
 
 STOP_SHARE, STOP_ROWS = 1e-2, 20
 """Reading stops when the number of damaged rows exceeds STOP_SHARE * rows + STOP_ROWS."""
@@ -38,8 +38,8 @@ class DamagedRows:
             raise self._refused()
 
     def check(self) -> None:
-        """Raise an error if more than a share of `DAMAGED` of the rows is damaged."""
-        if len(self.lines) > max(DAMAGED * self.rows, 1.0):
+        """Raise an error if more than `MAX_DAMAGED_SHARE` of the rows are damaged."""
+        if len(self.lines) > max(MAX_DAMAGED_SHARE * self.rows, 1.0):
             raise self._refused()
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from jbf.errors import InputError
 from jbf.importing.formats.arrays import ArraySource, slices
 from jbf.importing.formats.messages import LONGEST, leaves_of, nanoseconds
-from jbf.importing.formats.table import DAMAGED, Options, Source, unique
+from jbf.importing.formats.table import MAX_DAMAGED_SHARE, Options, Source, unique
 from jbf.text_files import read_text
 
 SETTINGS = ("config", "settings", "meta", "metadata", "header", "info", "sampling", "recording")
@@ -62,7 +62,7 @@ def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
                 records.append(json.loads(line))
             except json.JSONDecodeError as error:
                 torn.append((number, error.msg))
-        if len(torn) > max(DAMAGED * len(records), 1.0) or len(records) < FEWEST:
+        if len(torn) > max(MAX_DAMAGED_SHARE * len(records), 1.0) or len(records) < FEWEST:
             row, reason = torn[0] if len(records) > len(torn) else (whole.lineno, whole.msg)
             raise InputError(
                 file=path,

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from jbf.errors import InputError, did_you_mean
 
-DAMAGED = 1e-3
+MAX_DAMAGED_SHARE = 1e-3
 """Largest share of damaged rows in a text file; one damaged row is always permitted."""
 BLOCK = 50_000
 """Number of rows in memory at a time."""

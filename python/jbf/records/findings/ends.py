@@ -3,7 +3,7 @@
 Examples are the first samples before a converter is ready, and the last samples of a buffer that
 was not full. An outlier within a record is detected from the adjacent samples on both sides; at an
 end, there are adjacent samples on one side only. A sample at an end is an outlier if its deviation
-from the adjacent samples exceeds the largest deviation within the record by the factor `TIMES`.
+from the adjacent samples exceeds the largest deviation within the record by the factor `MIN_RATIO`.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from jbf.records.lagrange import weights_at_zero
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-MOST = 3
+MAX_OUTLIERS = 3
 """Largest number of outliers at each end."""
-TIMES = 4.0
+MIN_RATIO = 4.0
 """Threshold, relative to the largest deviation of an inner sample from the following samples."""
 LEAST_SAMPLES = 60
 
@@ -33,7 +33,7 @@ def end_outliers(time: Array, values: Array, neighbours: int) -> Mask:
         Number of adjacent samples that predict a sample: one for a constant, three for a parabola.
     """
     mask = np.zeros(len(values), dtype=bool)
-    if len(values) < max(LEAST_SAMPLES, 2 * MOST + 2 * neighbours):
+    if len(values) < max(LEAST_SAMPLES, 2 * MAX_OUTLIERS + 2 * neighbours):
         return mask
     mask[: _count_outliers(time, values, neighbours)] = True
     mask[len(values) - _count_outliers(time[::-1], values[::-1], neighbours) :] = True
@@ -46,8 +46,8 @@ def _count_outliers(time: Array, values: Array, neighbours: int) -> int:
     t = np.stack([time[k : n + k] - time[:n] for k in range(1, neighbours + 1)])
     y = np.stack([values[k : n + k] - values[:n] for k in range(1, neighbours + 1)])
     deviation = np.abs(np.sum(weights_at_zero(t) * y, axis=0))
-    within = float(np.max(deviation[MOST : n - MOST]))
-    outliers = np.flatnonzero(deviation[:MOST] > TIMES * within)
+    within = float(np.max(deviation[MAX_OUTLIERS : n - MAX_OUTLIERS]))
+    outliers = np.flatnonzero(deviation[:MAX_OUTLIERS] > MIN_RATIO * within)
     # If the deviation of all inner samples is zero, there is no scale for the threshold.
     return int(outliers[-1]) + 1 if within > 0.0 and len(outliers) else 0
 

@@ -12,14 +12,14 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-SURE = 8.0
+MIN_SIGMAS = 8.0
 """Smallest force in the direction of the motion, in standard errors."""
 SHARE = 0.3
 """Smallest force in the direction of the motion, relative to the standard deviation of the force.
 
 A smaller force may be a residual of the fitted offset, inertia and spring.
 """
-STRETCHES = 12
+JACKKNIFE_BLOCKS = 12
 """Number of blocks of the record for the jackknife standard error."""
 LEAST = 100
 """Minimum number of samples in motion; at least a quarter of them in each direction."""
@@ -48,7 +48,7 @@ def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Fin
     x /= scale
     push, error = _reversing_force(x, run.friction[moves])
     push, error = push / scale[0], error / scale[0]
-    if push > -max(SURE * error, SHARE * float(np.std(run.friction[moves]))):
+    if push > -max(MIN_SIGMAS * error, SHARE * float(np.std(run.friction[moves]))):
         return []
     quantities = run.quantities
     words = (
@@ -61,13 +61,13 @@ def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Fin
 
 def _reversing_force(x: Array, force: Array) -> tuple[float, float]:
     """Return the force that reverses with the motion, and its jackknife standard error."""
-    part = np.arange(len(force)) * STRETCHES // len(force)
-    normal = np.stack([x[part == k].T @ x[part == k] for k in range(STRETCHES)])
-    right = np.stack([x[part == k].T @ force[part == k] for k in range(STRETCHES)])
+    part = np.arange(len(force)) * JACKKNIFE_BLOCKS // len(force)
+    normal = np.stack([x[part == k].T @ x[part == k] for k in range(JACKKNIFE_BLOCKS)])
+    right = np.stack([x[part == k].T @ force[part == k] for k in range(JACKKNIFE_BLOCKS)])
 
     def turned(matrix: Array, vector: Array) -> float:
         return float(np.linalg.lstsq(matrix, vector, rcond=1e-10)[0][0])
 
     total, sums = normal.sum(0), right.sum(0)
     leave_one_out = [turned(total - n, sums - r) for n, r in zip(normal, right, strict=True)]
-    return turned(total, sums), float(np.std(leave_one_out)) * np.sqrt(STRETCHES - 1)
+    return turned(total, sums), float(np.std(leave_one_out)) * np.sqrt(JACKKNIFE_BLOCKS - 1)

@@ -8,12 +8,12 @@ from jbf.records.counts import count_of
 from jbf.records.findings.finding import Finding
 from jbf.records.run import Run
 
-EVEN = 0.5
+STEP_TOLERANCE = 0.5
 """Largest relative deviation of a time step from the median in an evenly sampled record."""
-MOSTLY = 0.9
+MIN_REGULAR_SHARE = 0.9
 """Share of the steps that must be close to the median for a longer step to be a gap."""
 
-STRETCH = 4
+JITTER_WINDOW = 4
 """Window, in steps, over which the jitter of a time stamp cancels."""
 
 
@@ -24,13 +24,13 @@ def find_gaps(run: Run) -> list[Finding]:
     """
     steps = np.diff(run.time_s)
     median_step = float(np.median(steps))
-    even = np.abs(steps - median_step) < EVEN * median_step
-    if even.mean() < MOSTLY:
+    even = np.abs(steps - median_step) < STEP_TOLERANCE * median_step
+    if even.mean() < MIN_REGULAR_SHARE:
         return []
     # A missing row lengthens every window that contains it by one step. Jitter lengthens one step
     # and shortens its neighbours.
     missing = np.rint(steps / median_step) - 1.0
-    for length in range(2, min(STRETCH, len(steps)) + 1):
+    for length in range(2, min(JITTER_WINDOW, len(steps)) + 1):
         window = np.lib.stride_tricks.sliding_window_view(steps, length).sum(axis=1) / median_step
         extra = np.pad(np.rint(window) - length, length - 1, constant_values=np.inf)
         smallest = np.lib.stride_tricks.sliding_window_view(extra, length).min(axis=1)

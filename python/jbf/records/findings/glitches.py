@@ -13,21 +13,21 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-FAR = 8.0
+MIN_SIGMAS = 8.0
 """Minimum deviation from both neighbours, to the same side, in local standard deviations."""
-CHANGES = 3.0
+MIN_CHANGES = 3.0
 """Smallest deviation relative to the median change between adjacent samples.
 
 The deviation at a corner of a smooth force is smaller.
 """
 WINDOW = 41
 """Window of the local noise, samples."""
-LOUD = 0.8
+MIN_NOISE_RATIO = 0.8
 """Lower bound of the local noise, relative to the median; required near constant readings."""
-RARE = 0.02
+MAX_OUTLIER_SHARE = 0.02
 """Largest share of outliers; with more of them, the record has large noise instead."""
 LEAST_SAMPLES = 100
-SLOW, BESIDE = 0.02, 3
+SLOW_SHARE, MARGIN_SAMPLES = 0.02, 3
 """Speed limit of slow motion, relative to the top speed, and a distance in samples.
 
 Within this distance of a reversal or of a start from rest, the friction may have a real peak.
@@ -50,9 +50,11 @@ def glitches(values: Array) -> Mask:
     local = ndimage.median_filter(bend, WINDOW, mode="reflect") / 0.6745 / np.sqrt(6.0)
     typical = float(np.median(bend)) / 0.6745 / np.sqrt(6.0)
     step = ndimage.median_filter(np.abs(change), WINDOW, mode="reflect")
-    corner = CHANGES * np.maximum(step[:-1], step[1:])
-    outliers[1:-1] = deviation > np.maximum(FAR * np.maximum(local, LOUD * typical), corner)
-    if typical == 0.0 or outliers.sum() > RARE * n:
+    corner = MIN_CHANGES * np.maximum(step[:-1], step[1:])
+    outliers[1:-1] = deviation > np.maximum(
+        MIN_SIGMAS * np.maximum(local, MIN_NOISE_RATIO * typical), corner
+    )
+    if typical == 0.0 or outliers.sum() > MAX_OUTLIER_SHARE * n:
         outliers[:] = False
     return outliers
 
@@ -103,10 +105,10 @@ def _interpolated_force(run: Run, mask: Mask) -> Array:
 def _breakaway(velocity: Array) -> Mask:
     """Mask of the samples next to a reversal or an end of a rest."""
     top = float(np.max(np.abs(velocity), initial=0.0))
-    direction = np.where(np.abs(velocity) > SLOW * top, np.sign(velocity), 0.0)
+    direction = np.where(np.abs(velocity) > SLOW_SHARE * top, np.sign(velocity), 0.0)
     # In a slow reversal, the sign changes many samples from both ends of the slow segment.
     turns = np.flatnonzero((np.diff(direction) != 0.0) | (velocity[1:] * velocity[:-1] < 0.0))
     near_breakaway = np.zeros(len(direction), dtype=bool)
-    for offset in range(1 - BESIDE, BESIDE + 1):
+    for offset in range(1 - MARGIN_SAMPLES, MARGIN_SAMPLES + 1):
         near_breakaway[np.clip(turns + offset, 0, len(direction) - 1)] = True
     return near_breakaway

@@ -20,26 +20,26 @@ Array = npt.NDArray[np.float64]
 
 WINDOW = 40
 """Window length of the first search, samples."""
-LONGER = 240
+LONG_WINDOW = 240
 """Window length of the search for shorter periods, samples.
 
 If a polygon has nearly as many corners as samples, few degrees of freedom remain to test it.
 """
-SHORT = (1.05, 1.3)
+SHORT_PERIODS = (1.05, 1.3)
 """Range of periods for a channel with nearly the sampling rate of the record, samples."""
-BEATS, NEAR = 4, np.linspace(-1.0, 1.0, 9)
+BEAT_COUNT, BEAT_OFFSETS = 4, np.linspace(-1.0, 1.0, 9)
 """Number of strongest beat frequencies that are tested, and offsets from each of them.
 
 The offsets are in units of the reciprocal of the analysed length.
 """
-HEARD = 960
+SEGMENT_LENGTH = 960
 """Length of the analysed segment, samples."""
-LOOKS = 3
+WINDOW_COUNT = 3
 """Number of windows along the record, and of further windows with the most non-zero differences.
 
 The further windows are required because a coarsely quantised record has long constant segments.
 """
-MOST_BENDS = 0.5
+MAX_BEND_SHARE = 0.5
 """Share of non-zero second differences above which no further windows are selected."""
 PERIODS = np.exp(
     np.concatenate(
@@ -49,9 +49,9 @@ PERIODS = np.exp(
 """Periods that are searched, in samples; coarser if a window contains few periods."""
 PHASES = np.arange(0.0, 1.0, 0.1)
 """Phases that are searched, in periods."""
-FOLLOWED = 8
+REFINED_COUNT = 8
 """Number of the best candidates that are refined."""
-LEAST_FREE = 6
+MIN_DEGREES_OF_FREEDOM = 6
 """Smallest number of degrees of freedom of a window: samples minus corners."""
 LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
 """Largest RMS residuals of a polygon, relative to the noise.
@@ -59,21 +59,21 @@ LIKELY, LIKELY_SHORT, EXACT = 0.25, 0.5, 0.005
 The limits are for refinement, for refinement at a short period (coarser grid relative to the window
 length), and for acceptance.
 """
-ELSEWHERE, CLEARLY = (0.31, 0.5, 0.69), 0.03
+OTHER_PHASES, MAX_PHASE_RATIO = (0.31, 0.5, 0.69), 0.03
 """Other phases, in periods from the best one, and the largest ratio of the residuals.
 
 The residual at the best phase must be below this share of the smallest residual at the others.
 """
-FEW = 3.0
+MAX_NOISE_RATIO = 3.0
 """Upper bound of the noise estimate, relative to the median; limits the effect of large changes."""
-DIGITS, NEARLY = 3.0, 0.05
+MAX_ROUNDING_RATIO, MAX_ROUNDING_TO_NOISE = 3.0, 0.05
 """Largest residual due to rounding to the last digit.
 
 The first limit is relative to the rounding error, the second to the noise.
 """
-ENDS = 20.0
+END_DIGITS = 20.0
 """Largest distance from an end of the range at which a corner is set to that end, in digits."""
-FAR, ROUGH = 13, 0.93
+LONG_LAG, MIN_ROUGHNESS = 13, 0.93
 """Lag, samples, and ratio of second differences above which adjacent samples are uncorrelated."""
 ROUNDING = 1e-7
 """Noise relative to the range below which it is zero: rounding, and tolerance of the search."""
@@ -140,25 +140,25 @@ def _noise(values: Array, rounding: float) -> float:
     if rms <= rounding:
         return 0.0
     median_noise = float(np.median(bends[bends > rounding])) / 0.6745 / np.sqrt(6.0)
-    return float(min(rms, FEW * median_noise))
+    return float(min(rms, MAX_NOISE_RATIO * median_noise))
 
 
 def _exact(values: Array, noise: float) -> float:
     """Largest RMS residual of an accepted polygon: a share of the noise, or digit rounding."""
-    digits = DIGITS * resolution(values) / np.sqrt(12.0)
-    return float(max(EXACT * noise, min(digits, NEARLY * noise)))
+    digits = MAX_ROUNDING_RATIO * resolution(values) / np.sqrt(12.0)
+    return float(max(EXACT * noise, min(digits, MAX_ROUNDING_TO_NOISE * noise)))
 
 
 def _search_windows(values: Array, rounding: float) -> list[int]:
     """First samples of the search windows: along the record, and at the most frequent changes."""
     last = len(values) - WINDOW
     bends = np.abs(np.diff(values, 2)) > rounding
-    along: list[int] = np.linspace(0, last, LOOKS).astype(int).tolist()
-    if bends.mean() > MOST_BENDS:
+    along: list[int] = np.linspace(0, last, WINDOW_COUNT).astype(int).tolist()
+    if bends.mean() > MAX_BEND_SHARE:
         return along
     # Number of non-zero second differences in the window that begins at each sample.
     often = np.convolve(bends, np.ones(WINDOW - 2), "valid")[: last + 1]
-    for _ in range(LOOKS):
+    for _ in range(WINDOW_COUNT):
         busiest = int(np.argmax(often))
         along.append(busiest)
         often[max(busiest - WINDOW, 0) : busiest + WINDOW] = -1.0
@@ -168,25 +168,25 @@ def _search_windows(values: Array, rounding: float) -> list[int]:
 def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
     """Recover the readings of a channel with nearly the sampling rate of the record."""
     n = len(time)
-    if n < 2 * LONGER:
+    if n < 2 * LONG_WINDOW:
         return None
-    first = (n - LONGER) // 2
-    t, y = time[first : first + LONGER], values[first : first + LONGER]
+    first = (n - LONG_WINDOW) // 2
+    t, y = time[first : first + LONG_WINDOW], values[first : first + LONG_WINDOW]
     # Median, since relative to the RMS the residual of filtered jumps would also be small.
     noise = float(np.median(np.abs(np.diff(y, 2))) / 0.6745 / np.sqrt(6.0))
-    if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONGER * step:
+    if noise <= ROUNDING * float(np.ptp(values)) or np.ptp(t) > 1.2 * LONG_WINDOW * step:
         return None
     periods, phases = _grid(_beats(time, values, step))
     each = polygon_rms(t, y, periods, phases)
     # The residual of any such polygon is small for a record that was smoothed by a filter.
     median_residual = float(np.median(each))
-    best = np.argsort(each, kind="stable")[:FOLLOWED]
+    best = np.argsort(each, kind="stable")[:REFINED_COUNT]
     for residual, period, phase in np.stack([each, periods, phases])[:, best].T.tolist():
         if residual > LIKELY_SHORT * noise:
             break
         period, phase = refined(t, y, period, phase)
         if polygon(t, y, period, phase)[0] < _exact(values, min(noise, median_residual)):
-            native = _extended_polygon(time, values, first, LONGER, period, phase, noise)
+            native = _extended_polygon(time, values, first, LONG_WINDOW, period, phase, noise)
             if native is not None:
                 return native
     return None
@@ -197,16 +197,16 @@ def _beats(time: Array, values: Array, step: float) -> Array:
 
     The noise variance of an interpolated sample is smallest in the middle between two readings.
     """
-    n = min(len(time), HEARD)
+    n = min(len(time), SEGMENT_LENGTH)
     first = (len(time) - n) // 2
     place = (time[first + 1 : first + n - 1] - time[first]) / step
     rough = np.abs(np.diff(values[first : first + n], 2))
     rank = np.argsort(np.argsort(rough, kind="stable"), kind="stable") / len(rough) - 0.5
-    lowest, highest = (1.0 - 1.0 / period for period in SHORT)
+    lowest, highest = (1.0 - 1.0 / period for period in SHORT_PERIODS)
     frequency = np.arange(lowest, highest, 0.5 / n)
     power = np.abs(np.exp(-2j * np.pi * frequency[:, None] * place) @ rank)
-    best = np.argsort(-power, kind="stable")[:BEATS]
-    beat = (frequency[best, None] + NEAR / n).ravel()
+    best = np.argsort(-power, kind="stable")[:BEAT_COUNT]
+    beat = (frequency[best, None] + BEAT_OFFSETS / n).ravel()
     return np.asarray(step / (1.0 - beat))
 
 
@@ -219,8 +219,10 @@ def _grid(periods: Array) -> tuple[Array, Array]:
 def _as_rough_as_noise(values: Array) -> bool:
     """Return True if adjacent samples are uncorrelated, which excludes interpolation."""
     adjacent = np.median(np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2]))
-    distant = np.median(np.abs(values[2 * FAR :] - 2.0 * values[FAR:-FAR] + values[: -2 * FAR]))
-    return bool(adjacent > ROUGH * distant)
+    distant = np.median(
+        np.abs(values[2 * LONG_LAG :] - 2.0 * values[LONG_LAG:-LONG_LAG] + values[: -2 * LONG_LAG])
+    )
+    return bool(adjacent > MIN_ROUGHNESS * distant)
 
 
 def is_smooth(values: Array, share: float = SMOOTH) -> bool:
@@ -267,7 +269,7 @@ def _longest(
         for k in range(times):
             longer = (times * period, phase + k * period)
             residual, _, _ = polygon(time, values, *longer)
-            if residual < NEARLY * noise:
+            if residual < MAX_ROUNDING_TO_NOISE * noise:
                 # Refine again, since the error of the shorter period is multiplied as well.
                 longer = refined(time, values, *longer, near=True)
                 residual, _, _ = polygon(time, values, *longer)
@@ -284,8 +286,8 @@ def _fit_polygon(
     if residual > _exact(values, noise) or inside.sum() > MOST_CORNERS * len(time):
         return None
     # The residual is small at every phase for a record that was smoothed by a filter.
-    elsewhere = [polygon(time, values, period, phase + s * period)[0] for s in ELSEWHERE]
-    if residual > CLEARLY * min(elsewhere):
+    elsewhere = [polygon(time, values, period, phase + s * period)[0] for s in OTHER_PHASES]
+    if residual > MAX_PHASE_RATIO * min(elsewhere):
         return None
     read = _at_ends(corners[inside], values)
     native = Native(knots[inside], read, period)
@@ -300,7 +302,7 @@ def _fit_polygon(
 
 def _at_ends(read: Array, values: Array) -> Array:
     """Set corners near an end of the range, within the accuracy of the digits, to that end."""
-    tolerance = max(ENDS * last_digit(values), ROUNDING * float(np.ptp(values)))
+    tolerance = max(END_DIGITS * last_digit(values), ROUNDING * float(np.ptp(values)))
     for end in (float(np.min(values)), float(np.max(values))):
         read = np.where(np.abs(read - end) < tolerance, end, read)
     return read
@@ -312,11 +314,11 @@ def _coarse_search(t: Array, y: Array, step: float, noise: float) -> list[tuple[
     Several candidates are returned, because a wrong candidate may have the smallest residual on
     this grid if the number of corners is close to the number of samples.
     """
-    long_enough = len(t) - np.ceil(np.ptp(t) / (PERIODS * step)) - 2 >= LEAST_FREE
+    long_enough = len(t) - np.ceil(np.ptp(t) / (PERIODS * step)) - 2 >= MIN_DEGREES_OF_FREEDOM
     periods, phases = _grid(PERIODS[long_enough] * step)
     each = polygon_rms(t, y, periods, phases)
     best = [k for k in np.argsort(each, kind="stable").tolist() if each[k] < LIKELY * noise]
     phase_of_period = {periods[k]: phases[k] for k in reversed(best)}
     return [(period, phase_of_period[period]) for period in dict.fromkeys(periods[best].tolist())][
-        :FOLLOWED
+        :REFINED_COUNT
     ]

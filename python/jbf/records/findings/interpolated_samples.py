@@ -20,13 +20,13 @@ Mask = npt.NDArray[np.bool_]
 
 LEAST_SHARE, LEAST = 0.02, 10
 """Smallest share and smallest number of interpolated samples for a finding."""
-BY_CHANCE = 10.0
+MIN_CHANCE_RATIO = 10.0
 """Minimum ratio of the number of samples on a line to the number expected by chance."""
 ROUNDING = 1.05
 """Deviation from the line due to the rounding of three samples, in digits or quantisation steps."""
-FINE = 0.02
+MAX_ROUNDING = 0.02
 """Largest rounding at which lines are detectable, relative to the deviation of adjacent samples."""
-CORNERS = 12.0
+MAX_CORNER_DISTANCE = 12.0
 """Largest median distance from a sample on a line to a significant corner, in samples.
 
 Straight segments of a smooth force are longer.
@@ -48,13 +48,17 @@ def find_interpolated_samples(time: Array, values: Array) -> Native | None:
     # If the friction itself is linear there, the adjacent samples are also close to a line.
     next_to_line = (deviation > rounding) & (np.convolve(line, [1, 0, 1], "same") > 0)
     typical = float(np.median(deviation[next_to_line])) if np.any(next_to_line) else 0.0
-    if typical == 0.0 or rounding > FINE * typical or _far_from_corners(line, deviation > typical):
+    if (
+        typical == 0.0
+        or rounding > MAX_ROUNDING * typical
+        or _far_from_corners(line, deviation > typical)
+    ):
         return None
     small = deviation[(deviation > rounding) & (deviation <= typical)]
     # Quantisation puts samples on a line as often as one step off it.
     chance = len(small) / typical * max(quantum_of(values), rounding)
     count = int(line.sum())
-    if count < max(LEAST, LEAST_SHARE * len(time), BY_CHANCE * chance):
+    if count < max(LEAST, LEAST_SHARE * len(time), MIN_CHANCE_RATIO * chance):
         return None
     read = np.concatenate(([True], ~line, [True]))
     # If the friction itself is piecewise linear or a smooth curve, the corners have no noise.
@@ -72,4 +76,4 @@ def _far_from_corners(line: Mask, corner: Mask) -> bool:
     before = place - corners[np.maximum(after - 1, 0)]
     behind = corners[np.minimum(after, len(corners) - 1)] - place
     distance = np.minimum(np.abs(before), np.abs(behind))
-    return float(np.median(distance)) > CORNERS
+    return float(np.median(distance)) > MAX_CORNER_DISTANCE

@@ -12,7 +12,7 @@ Array = npt.NDArray[np.float64]
 LEAST_SAMPLES = 100
 CHANCE = 1e-4
 """Probability of classifying a constant load with white noise as a changing one."""
-EVEN = 1e-9
+CONSTANT_RANGE = 1e-9
 """Relative range below which a column is constant."""
 
 
@@ -23,7 +23,7 @@ def only_noise(load: Array) -> bool:
     cumulative periodogram that is linear in the frequency (Bartlett 1954).
     """
     n = len(load)
-    if n < LEAST_SAMPLES or np.ptp(load) <= EVEN * float(np.mean(load)):
+    if n < LEAST_SAMPLES or np.ptp(load) <= CONSTANT_RANGE * float(np.mean(load)):
         return False
     power = np.abs(np.fft.rfft(load - np.mean(load))[1 : (n + 1) // 2]) ** 2
     share = power / np.sum(power)

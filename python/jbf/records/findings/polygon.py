@@ -17,9 +17,9 @@ USUAL_HALVINGS, MOST_HALVINGS = 9, 14
 
 The search continues beyond the usual number as long as the residual decreases.
 """
-IN_VAIN = 4
+MAX_IDLE_HALVINGS = 4
 """Number of halvings after which a search without improvement ends."""
-AT_ONCE = 2**13
+BATCH_SAMPLES = 2**13
 """Total number of samples of the polygons in one linear system."""
 
 
@@ -41,7 +41,7 @@ def polygon(time: Array, values: Array, period: float, phase: float) -> tuple[fl
 
 def polygon_rms(time: Array, values: Array, period: Array, phase: Array) -> Array:
     """RMS residuals of the best polygons for several periods and phases, shape (m,)."""
-    at_once = max(AT_ONCE // len(time), 1)
+    at_once = max(BATCH_SAMPLES // len(time), 1)
     parts = [slice(k, k + at_once) for k in range(0, len(period), at_once)]
     return np.concatenate([_solved(time, values, period[p], phase[p])[0] for p in parts])
 
@@ -116,7 +116,7 @@ def refined(
         if k == 0:
             first = best[0]
         # For a true polygon, the residual is proportional to the step size of the search.
-        if k == IN_VAIN and best[0] > 0.5 * first and not near:
+        if k == MAX_IDLE_HALVINGS and best[0] > 0.5 * first and not near:
             break
         if k >= USUAL_HALVINGS and best[0] > 0.9 * before:
             break

@@ -18,15 +18,15 @@ from jbf.records.run import Run
 
 Mask = npt.NDArray[np.bool_]
 
-COUNTS = 2.0
+MIN_COUNTS = 2.0
 """Minimum travel from one row to the next for a drive to be in motion, in encoder counts."""
 LEAST_ROWS = 40
 """Minimum number of repeated rows in motion."""
 LEAST_SHARE = 0.02
 """Minimum share of repeated rows among the rows in motion."""
-TOGETHER = 0.9
+MIN_COMPLETE_SHARE = 0.9
 """Minimum share of rows with all values repeated among the repeated positions in motion."""
-LONGER = 2.0
+MIN_REST_RATIO = 2.0
 """Minimum duration of a repetition for a rest, relative to the longest repetition in motion."""
 
 
@@ -40,13 +40,13 @@ def repeated_rows(run: Run) -> Mask | None:
     by_speed = np.abs(run.velocity[:-1]) * steps
     # The ratio of the total displacements cancels the unit of the speed.
     unit = float(np.sum(path_steps)) / max(float(np.sum(by_speed)), 1e-300)
-    moving = unit * by_speed > COUNTS * step_of(place)
+    moving = unit * by_speed > MIN_COUNTS * step_of(place)
     same = np.ones(len(steps), dtype=bool)
     for name, column in run.columns().items():
         if name not in ("time_s", SLOW):
             same &= np.diff(column) == 0.0
     rows, stood = int(np.sum(same & moving)), int(np.sum((path_steps == 0.0) & moving))
-    if rows < max(LEAST_ROWS, LEAST_SHARE * moving.sum(), TOGETHER * stood):
+    if rows < max(LEAST_ROWS, LEAST_SHARE * moving.sum(), MIN_COMPLETE_SHARE * stood):
         return None
     return np.concatenate(([False], same & ~_of_rests(run, same, moving)))
 
@@ -63,7 +63,7 @@ def _of_rests(run: Run, same: Mask, moving: Mask) -> Mask:
     )
     rests = np.zeros(len(same), dtype=bool)
     for last, first, end in zip(lasted, firsts, ends, strict=True):
-        if last > LONGER * silent:
+        if last > MIN_REST_RATIO * silent:
             rests[first:end] = True
     return rests
 

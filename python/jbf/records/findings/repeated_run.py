@@ -16,9 +16,9 @@ from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
 
-SHIFTED = ("time_s", "angle_rad", "position_m")
+FREE_ORIGIN_COLUMNS = ("time_s", "angle_rad", "position_m")
 """Columns whose origin may differ."""
-ALIKE = 1e-6
+ROUNDING_TOLERANCE = 1e-6
 """Tolerance for rounding in these columns, relative to their range."""
 
 
@@ -42,10 +42,10 @@ def same_recording(a: Run, b: Run) -> bool:
 
 
 def _same(name: str, a: Array, b: Array) -> bool:
-    if name not in SHIFTED:
+    if name not in FREE_ORIGIN_COLUMNS:
         return bool(np.array_equal(a, b, equal_nan=True))
     a, b = a - a[0], b - b[0]
-    return bool(np.allclose(a, b, rtol=0.0, atol=ALIKE * float(np.ptp(a))))
+    return bool(np.allclose(a, b, rtol=0.0, atol=ROUNDING_TOLERANCE * float(np.ptp(a))))
 
 
 def repeated(first: Run, again: Run) -> Finding:

@@ -12,19 +12,19 @@ from jbf.records.run import Run
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-LEAST = 5
+MIN_READINGS = 5
 """Minimum number of identical readings at an extreme value of a noisy channel."""
-TIMES = 2.0
+MIN_LEVEL_RATIO = 2.0
 """Minimum ratio of their number to that at each adjacent level; noise alone has smaller tails."""
-NEXT = 3
+ADJACENT_LEVELS = 3
 """Number of levels next to the extreme that are compared."""
-COARSE = 0.6
+MIN_NOISE_STEPS = 0.6
 """Noise, in quantisation steps, below which a plateau is one level without saturation."""
-ALIKE = 0.2
+MIN_QUARTILE_RATIO = 0.2
 """Lower quartile of the third differences of noise over their median; 0.47 for white noise."""
-ROUGH = 1.2
+MIN_ROUGHNESS = 1.2
 """Ratio of third to second differences of noise: 1.8 for white noise, less than one for a curve."""
-REACH = 15
+EXCLUDED_SAMPLES = 15
 """Window around a saturated sample that is excluded, samples.
 
 The unclipped readings in this window are a selection of the lower values, and would bias the force.
@@ -38,13 +38,15 @@ def saturated(values: Array) -> tuple[Mask, list[float]]:
     mask = np.zeros(len(values), dtype=bool)
     ends: list[float] = []
     noise = _noise(values)
-    if noise == 0.0 or noise < COARSE * step_of(values):
+    if noise == 0.0 or noise < MIN_NOISE_STEPS * step_of(values):
         return mask, ends
     for sign in (1.0, -1.0):
         levels, counts = np.unique(-sign * values, return_counts=True)
         at = sign * values == -levels[0]
-        if counts[0] >= max(LEAST, TIMES * np.max(counts[1 : 1 + NEXT], initial=0)):
-            mask |= ndimage.maximum_filter1d(at, REACH)
+        if counts[0] >= max(
+            MIN_READINGS, MIN_LEVEL_RATIO * np.max(counts[1 : 1 + ADJACENT_LEVELS], initial=0)
+        ):
+            mask |= ndimage.maximum_filter1d(at, EXCLUDED_SAMPLES)
             ends.append(float(-sign * levels[0]))
     return mask, ends
 
@@ -58,7 +60,7 @@ def _noise(values: Array) -> float:
     low, middle = np.quantile(np.abs(np.diff(values, 3)[inside]), [0.25, 0.5])
     bend = float(np.median(np.abs(np.diff(values, 2)[inside])))
     # Without noise, most of the higher differences of a friction law are nearly zero.
-    noisy = low > ALIKE * middle and middle > ROUGH * bend
+    noisy = low > MIN_QUARTILE_RATIO * middle and middle > MIN_ROUGHNESS * bend
     return float(middle / 0.6745 / np.sqrt(20.0)) if noisy else 0.0
 
 

@@ -18,9 +18,9 @@ Array = npt.NDArray[np.float64]
 LEAST_ROWS = 40
 LEAST_SHARE = 0.02
 """Minimum share of the samples that repeat the previous one."""
-EVEN = 1e-3
+GRID_TOLERANCE = 1e-3
 """Largest deviation of samples from an even grid, as a share of a step."""
-WITHIN = 1.02
+MAX_TICK_RANGE = 1.02
 """Largest range of the beginnings of sequences relative to a clock of constant rate, in steps.
 
 The range is larger for sequences of random length.
@@ -31,14 +31,14 @@ SHORTEST, LONGEST = 2.0, 60.0
 At a period of two samples, a random sequence begins within a step of a tick with probability one
 half; the probability for forty sequences is negligible.
 """
-FINE = 0.2
+PHASE_STEP = 0.2
 """Phase difference between adjacent trial periods over the sequences of the first window, steps."""
 
 
 def find_repeated(time: Array, values: Array) -> Native | None:
     """Recover the readings of a channel with sample and hold; None for any other channel."""
     step = float(np.median(np.diff(time)))
-    if np.max(np.abs(np.diff(time) / step - 1.0)) > EVEN:
+    if np.max(np.abs(np.diff(time) / step - 1.0)) > GRID_TOLERANCE:
         return None
     first = np.flatnonzero(np.diff(values) != 0.0) + 1
     rows = len(first)
@@ -63,7 +63,7 @@ def _of_clock(
         (float(np.ptp(begins - p * count)), float(p))
         for p in period + np.linspace(-2.0, 2.0, 81) * step / count[-1]
     )
-    if spread > WITHIN * step:
+    if spread > MAX_TICK_RANGE * step:
         return None
     early = begins - period * count
     # Each reading precedes the beginning of its sequence by at most one step.
@@ -90,8 +90,8 @@ def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
     # The sequences that are closest together determine the period with the least ambiguity.
     densest = int(np.argmin(begins[LEAST_ROWS - 1 :] - begins[: len(begins) - LEAST_ROWS + 1]))
     look = begins[densest : densest + LEAST_ROWS] - begins[densest]
-    grid = np.exp(np.arange(np.log(SHORTEST), np.log(LONGEST), FINE / look[-1]))
-    for period in grid[_spread(look, grid) < WITHIN + FINE][::-1].tolist():
+    grid = np.exp(np.arange(np.log(SHORTEST), np.log(LONGEST), PHASE_STEP / look[-1]))
+    for period in grid[_spread(look, grid) < MAX_TICK_RANGE + PHASE_STEP][::-1].tolist():
         count = _extended_ticks(begins, densest, period)
         if count is not None:
             return count
@@ -115,7 +115,7 @@ def _extended_ticks(begins: Array, start: int, period: float) -> npt.NDArray[np.
         middle = rows[len(rows) // 2]
         count = np.round((rows - middle) / period)
         period, phase = np.polyfit(count, rows - middle, 1)
-        if np.ptp(rows - middle - period * count - phase) > WITHIN + FINE:
+        if np.ptp(rows - middle - period * count - phase) > MAX_TICK_RANGE + PHASE_STEP:
             return None
         if (low, high) == (0, len(begins)):
             numbers: npt.NDArray[np.intp] = (count - count[0]).astype(np.intp)

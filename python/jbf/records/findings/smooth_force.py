@@ -16,9 +16,9 @@ LEAST = 200
 """Minimum number of samples in motion."""
 ORDERS = (4, 6)
 """Orders of the differences that are compared."""
-FALLING = 0.5
+MAX_NOISE_RATIO = 0.5
 """Ratio of the noise estimates of the higher and the lower order; it is 1 for white noise."""
-DIGITS = 1e-4
+ROUNDING_SHARE = 1e-4
 """Share of the standard deviation of the force below which noise is digit rounding only."""
 
 
@@ -33,7 +33,7 @@ def is_without_noise(force: Array) -> bool:
     if len(force) < LEAST:
         return False
     low, high = (white_noise(force, order) for order in ORDERS)
-    return high < FALLING * low or high < DIGITS * float(np.std(force))
+    return high < MAX_NOISE_RATIO * low or high < ROUNDING_SHARE * float(np.std(force))
 
 
 def find_smooth_force(run: Run, sliding: Mask) -> list[Finding]:

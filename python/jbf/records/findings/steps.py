@@ -16,15 +16,15 @@ MOST_LEVELS = 0.2
 """Largest ratio of levels to samples for quantised readings."""
 FEWEST_LEVELS = 4
 """Minimum number of levels of quantised readings; a law without noise may have three levels."""
-CRUMBS, ALL = 0.03, 0.9
+GAP_TOLERANCE, MIN_GAP_SHARE = 0.03, 0.9
 """Largest deviation of gaps between levels from whole steps, and the share that must comply.
 
 The deviation is relative to the gap, or to five steps if five steps are larger. The differences
 between the levels of a law without noise are arbitrary.
 """
-CRUMB = 1e-3
+LEVEL_TOLERANCE = 1e-3
 """Corners closer than this share of the smallest possible step are one level."""
-MATTERS = 0.5
+MIN_STEP_TO_NOISE = 0.5
 """Ratio to the noise below which steps are not reported."""
 
 
@@ -45,14 +45,14 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
     # Gaps are multiples of the step at levels without samples, with small rounding residues.
     step = float(np.median(gaps[gaps <= 1.5 * np.median(gaps)]))
     times = gaps / step
-    is_multiple = np.abs(times - np.round(times)) < CRUMBS * np.maximum(times, 5.0)
-    return step if is_multiple.mean() > ALL else 0.0
+    is_multiple = np.abs(times - np.round(times)) < GAP_TOLERANCE * np.maximum(times, 5.0)
+    return step if is_multiple.mean() > MIN_GAP_SHARE else 0.0
 
 
 def _group_levels(values: Array) -> Array:
     """Return the levels of values close to them, ascending: the middle value of each group."""
     ordered = np.sort(values)
-    tolerance = CRUMB * float(np.ptp(ordered)) / (MOST_LEVELS * len(ordered))
+    tolerance = LEVEL_TOLERANCE * float(np.ptp(ordered)) / (MOST_LEVELS * len(ordered))
     begins = np.flatnonzero(np.concatenate(([True], np.diff(ordered) > tolerance)))
     ends = np.append(begins[1:], len(ordered))
     middle: Array = ordered[(begins + ends - 1) // 2]
@@ -67,7 +67,7 @@ def find_steps(run: Run, usable: Mask, *, drawn: bool = False) -> list[Finding]:
     assert run.friction is not None
     force = run.friction[usable]
     step = step_of(force, drawn=drawn)
-    if step == 0.0 or step < MATTERS * max(noise_of(force), 1e-300):
+    if step == 0.0 or step < MIN_STEP_TO_NOISE * max(noise_of(force), 1e-300):
         return []
     unit = run.quantities.force
     words = f"the {run.quantities.noun} has a quantisation step of {step:.3g} {unit}"

@@ -11,7 +11,7 @@ CONTRADICTION = 10.0
 """Minimum difference of path and speed for a contradiction, in standard errors."""
 CONTRADICTION_REACH = 3
 """Number of samples on each side whose acceleration is affected."""
-RARE = 0.01
+MAX_CONTRADICTION_SHARE = 0.01
 """Largest share of the samples that may be contradictions."""
 
 
@@ -21,14 +21,15 @@ def contradiction_of(
     """Difference between speed and path around each sample, m/s; zero if they agree.
 
     Possible causes are a filter transient and an outlier. If the share of differing samples exceeds
-    `RARE`, the result is zero everywhere, since the standard errors are then underestimated.
+    `MAX_CONTRADICTION_SHARE`, the result is zero everywhere, since the standard errors are then
+    underestimated.
     """
     dt = np.diff(time)
     gap = np.abs(np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * dt)
     typical = float(np.median(gap) / 0.6745)
     expected = np.sqrt(2.0 * sd_path**2 + 0.5 * (sd_speed * dt) ** 2)
     contradicts = gap > CONTRADICTION * np.maximum(typical, expected)
-    if not 0 < contradicts.sum() <= RARE * len(contradicts):
+    if not 0 < contradicts.sum() <= MAX_CONTRADICTION_SHARE * len(contradicts):
         return np.zeros(len(time))
     wide = np.pad(np.where(contradicts, gap / dt, 0.0), CONTRADICTION_REACH)
     windows = np.lib.stride_tricks.sliding_window_view(wide, 2 * CONTRADICTION_REACH)

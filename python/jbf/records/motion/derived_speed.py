@@ -17,13 +17,13 @@ Array = npt.NDArray[np.float64]
 
 SPANS = range(1, 13)
 """Numbers of samples over which differences are tried."""
-USUAL = 0.95
+TOP_SPEED_QUANTILE = 0.95
 """Quantile that represents the largest speed; a sample above 2 % of it is in motion."""
-ALIKE = 0.9
+MIN_EQUAL_SHARE = 0.9
 """Minimum share of the samples in motion at which the speed equals the difference."""
-TO = 0.05
+EQUALITY_TOLERANCE = 0.05
 """Tolerance of the equality, as a share of the step of the difference."""
-COARSE = 3.0
+MAX_NOISE_RATIO = 3.0
 """Noise of a difference, relative to the tolerance, below which it is kept as a measured speed."""
 
 
@@ -35,13 +35,13 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
     # Averaged over some samples, because a slow difference is zero between two counts. A quantile
     # replaces the maximum, because messages that arrive together make the difference unbounded.
     local = np.convolve(np.abs(speed), np.ones(SPANS[-1]) / SPANS[-1], "same")
-    moving = local > 0.02 * float(np.quantile(np.abs(speed), USUAL))
+    moving = local > 0.02 * float(np.quantile(np.abs(speed), TOP_SPEED_QUANTILE))
     median_step = float(np.median(np.diff(time)))
     for span in SPANS:
         difference = (path[span:] - path[:-span]) / (time[span:] - time[:-span])
-        tolerance = TO * step / (span * median_step)
+        tolerance = EQUALITY_TOLERANCE * step / (span * median_step)
         middle = moving[span // 2 : span // 2 + len(difference)]
-        if noise_of(difference[middle]) < COARSE * tolerance:
+        if noise_of(difference[middle]) < MAX_NOISE_RATIO * tolerance:
             continue
         # Backward and centred differences.
         for after in sorted({0, span // 2}):
@@ -50,7 +50,7 @@ def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding 
             if in_motion.sum() < 50:
                 continue
             agrees = np.abs(speed[where] - difference)[in_motion] <= tolerance
-            if agrees.mean() > ALIKE:
+            if agrees.mean() > MIN_EQUAL_SHARE:
                 return _finding(name, span, (0.5 * span - after) * median_step)
     return None
 

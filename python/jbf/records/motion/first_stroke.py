@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-HUM = 1e-3
+MAX_NOISE_SHARE = 1e-3
 """Largest first displacement of noise, relative to the longest one between two reversals."""
 
 
@@ -27,4 +27,4 @@ def begins_with_oscillation(time_s: Array, velocity: Array) -> bool:
     # directions.
     displacements = np.abs(np.add.reduceat(steps, np.unique(np.concatenate(([0], turns - 1)))))
     first = float(np.sum(np.abs(steps[: max(turns[0] - 1, 1)])))
-    return first < HUM * float(np.max(displacements))
+    return first < MAX_NOISE_SHARE * float(np.max(displacements))

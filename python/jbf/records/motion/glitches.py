@@ -15,49 +15,49 @@ from jbf.records.motion.roughness import step_of
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-FAR = 8.0
+MIN_SIGMAS = 8.0
 """Minimum deviation of a sample, in local standard deviations."""
-COUNTS = 3.0
+MIN_COUNTS = 3.0
 """Minimum deviation, in encoder counts; rounding deviates by less than 1.5 counts from a cubic."""
-BESIDE = 0.825
+MIN_NEIGHBOUR_RATIO = 0.825
 """Minimum opposite deviation of the adjacent samples, relative to the effect of an outlier on them.
 
 That effect is two thirds of the deviation at even steps. At a corner or a step the ratio is three
 quarters.
 """
-JUMP = 0.4
+MIN_JUMP_RATIO = 0.4
 """Minimum deviation relative to the change of the speed across the sample times a time step."""
-CHANGES = 3.0
+MIN_CHANGES = 3.0
 """Minimum deviation of a speed, relative to the usual change; above the deviation at corners."""
-ALIKE = 0.5
+MIN_CHANGE_RATIO = 0.5
 """Minimum ratio of the smaller to the larger of the two changes at an outlier of a speed."""
 WINDOW = 41
 """Window of the local noise and of the usual change, samples."""
-RARE = 0.02
+MAX_OUTLIER_SHARE = 0.02
 """Largest share of outliers; with more of them, the record has large noise instead."""
-RARE_ALONE = 0.003
+MAX_OUTLIER_SHARE_WITHOUT_PATH = 0.003
 """Largest share of outliers of a speed without a path; a real slip may be as short."""
 LEAST_SAMPLES = 60
-ASIDE = "excluded from the motion"
+EXCLUDED = "excluded from the motion"
 
 
 def mend_position(name: str, time: Array, position: Position) -> tuple[Position, Finding | None]:
     """Interpolate the path across its outliers."""
     path = position.path_m
-    threshold, mask = COUNTS * step_of(path), np.zeros(len(path), dtype=bool)
-    while mask.sum() <= RARE * len(path):
+    threshold, mask = MIN_COUNTS * step_of(path), np.zeros(len(path), dtype=bool)
+    while mask.sum() <= MAX_OUTLIER_SHARE * len(path):
         # Of two adjacent outliers, the second is detected once the first is excluded.
         valid = np.flatnonzero(~mask)
         further = valid[_path_outliers(time[valid], path[valid], threshold)]
         if not len(further):
             break
         mask[further] = True
-    if not 0 < mask.sum() <= RARE * len(path):
+    if not 0 < mask.sum() <= MAX_OUTLIER_SHARE * len(path):
         return position, None
     mended = _interpolated(time, path, mask)
     size = float(np.max(np.abs(path - mended))) / position.arm_m
     words = _words("position", time, mask, f"{size:.3g} {position.unit}")
-    finding = Finding("glitches", position.column, name, size, position.unit, ASIDE, words)
+    finding = Finding("glitches", position.column, name, size, position.unit, EXCLUDED, words)
     return position.along(mended), finding
 
 
@@ -71,9 +71,9 @@ def mend_speed(
     before, after = _differences(np.diff(speed))
     typical = _local_median(np.abs(np.diff(speed)))
     deviation = _smaller_difference(before, after)
-    deviation[deviation <= CHANGES * np.maximum(typical[:-1], typical[1:])] = 0.0
+    deviation[deviation <= MIN_CHANGES * np.maximum(typical[:-1], typical[1:])] = 0.0
     bend = _local_median(np.abs(before + after)) / 0.6745 / np.sqrt(6.0)
-    deviation[deviation <= FAR * bend] = 0.0
+    deviation[deviation <= MIN_SIGMAS * bend] = 0.0
     mask = np.concatenate(([False], deviation != 0.0, [False]))
     # In a record without noise, every corner would exceed the threshold.
     if np.median(np.abs(before + after)) == 0.0:
@@ -83,12 +83,16 @@ def mend_speed(
         mask &= _displacement_error(time, path, speed) > 2.0 * _displacement_error(
             time, path, mended
         )
-    if not 0 < mask.sum() <= (RARE_ALONE if path is None else RARE) * n:
+    if (
+        not 0
+        < mask.sum()
+        <= (MAX_OUTLIER_SHARE_WITHOUT_PATH if path is None else MAX_OUTLIER_SHARE) * n
+    ):
         return speed, None
     mended = _interpolated(time, speed, mask)
     size = float(np.max(np.abs(speed - mended)))
     words = _words("speed", time, mask, f"{size:.3g} {unit}")
-    return mended, Finding("glitches", "velocity_m_s", name, size, unit, ASIDE, words)
+    return mended, Finding("glitches", "velocity_m_s", name, size, unit, EXCLUDED, words)
 
 
 def mend_path_ends(
@@ -99,7 +103,9 @@ def mend_path_ends(
     mask = end_outliers(time, path, 3)
     mended = _interpolated(time, path, mask)
     deviation = (path - mended) / position.arm_m
-    finding = ends_finding(position.column, "position", name, mask, deviation, position.unit, ASIDE)
+    finding = ends_finding(
+        position.column, "position", name, mask, deviation, position.unit, EXCLUDED
+    )
     return (position.along(mended) if finding else position), mask, [finding] if finding else []
 
 
@@ -118,7 +124,7 @@ def mend_speed_ends(
         )
         if not missed[mask].all():
             mask[:], mended = False, speed
-    finding = ends_finding("velocity_m_s", "speed", name, mask, speed - mended, unit, ASIDE)
+    finding = ends_finding("velocity_m_s", "speed", name, mask, speed - mended, unit, EXCLUDED)
     return mended, mask, [finding] if finding else []
 
 
@@ -133,17 +139,17 @@ def _path_outliers(time: Array, path: Array, threshold: float) -> Mask:
     weights = weights_at_zero(t)
     deviation = -np.sum(weights * y, axis=0)
     size = np.abs(deviation)
-    outlying = size > np.maximum(FAR * _local_median(size) / 0.6745, threshold)
+    outlying = size > np.maximum(MIN_SIGMAS * _local_median(size) / 0.6745, threshold)
     # An outlier causes opposite deviations at the adjacent samples, by its weight in their cubics.
     for neighbour, weight in (
         (np.pad(deviation, (1, 0))[:-1], np.pad(weights[2], (1, 0))[:-1]),
         (np.pad(deviation, (0, 1))[1:], np.pad(weights[1], (0, 1))[1:]),
     ):
-        outlying &= (-neighbour * deviation > BESIDE * weight * size**2) & (
+        outlying &= (-neighbour * deviation > MIN_NEIGHBOUR_RATIO * weight * size**2) & (
             np.abs(neighbour) < size
         )
     # At a jump of the speed, the steps on both sides differ by three times the deviation.
-    outlying &= size > JUMP * np.abs((y[3] - y[2]) - (y[1] - y[0]))
+    outlying &= size > MIN_JUMP_RATIO * np.abs((y[3] - y[2]) - (y[1] - y[0]))
     mask[2:-2] = outlying
     return mask
 
@@ -159,7 +165,9 @@ def _smaller_difference(before: Array, after: Array) -> Array:
         np.minimum(np.abs(before), np.abs(after)),
         np.maximum(np.abs(before), np.abs(after)),
     )
-    deviation = np.where((before * after > 0.0) & (smaller > ALIKE * larger), smaller, 0.0)
+    deviation = np.where(
+        (before * after > 0.0) & (smaller > MIN_CHANGE_RATIO * larger), smaller, 0.0
+    )
     # Samples next to an outlier deviate from it as well, so only the largest deviation is kept.
     largest = np.maximum(np.pad(deviation, (1, 0))[:-1], np.pad(deviation, (0, 1))[1:])
     excess: Array = np.where(deviation > largest, deviation, 0.0)

@@ -12,22 +12,22 @@ Array = npt.NDArray[np.float64]
 
 LEAST = 0.01
 """Smallest jitter that is reported, as a share of a step."""
-EVEN, MOSTLY = 0.5, 0.9
+STEP_TOLERANCE, MIN_REGULAR_SHARE = 0.5, 0.9
 """Largest relative deviation from the usual step, and minimum share of steps within it.
 
 Otherwise the record has no constant sampling rate.
 """
 ORDER = 5
 """Order of the differences; they vanish for a smooth path."""
-UNIT = np.sqrt(252.0)
+DIFFERENCE_STD = np.sqrt(252.0)
 """Standard deviation of these differences for unit white noise: sqrt(binomial(2 ORDER, ORDER))."""
-WHITE = -0.45
+MAX_CORRELATION = -0.45
 """Correlation of adjacent differences below which they are noise; it is -5/6 for white noise."""
-BEYOND = 3.0
+MIN_NOISE_RATIO = 3.0
 """Minimum ratio of the path noise at speed to that at slow motion, and to the encoder rounding."""
-COUNTS = 1.2
+MIN_COUNTS = 1.2
 """Minimum path noise, in encoder counts; alternating rounding errors may resemble noise."""
-AGREE = 1.6
+MAX_ESTIMATE_RATIO = 1.6
 """Largest ratio of the jitter estimates at different speeds."""
 
 
@@ -41,8 +41,8 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
     """
     steps = np.diff(time)
     median_step = float(np.median(steps))
-    regular = np.abs(steps - median_step) < EVEN * median_step
-    if len(steps) < 60 or regular.mean() < MOSTLY:
+    regular = np.abs(steps - median_step) < STEP_TOLERANCE * median_step
+    if len(steps) < 60 or regular.mean() < MIN_REGULAR_SHARE:
         return None
     # A sampling rate that changes smoothly is not jitter. `noise_of` takes third differences of the
     # steps, which are fourth differences of the time stamps. For white noise, the variance of the
@@ -62,7 +62,7 @@ def jittered_path(name: str, time: Array, path: Array, speed: Array) -> Finding 
     """
     median_step = float(np.median(np.diff(time)))
     regular = np.abs(np.diff(time) / median_step - 1.0) < LEAST
-    if regular.mean() < MOSTLY:
+    if regular.mean() < MIN_REGULAR_SHARE:
         return None
     rough = np.diff(path, ORDER)
     spoilt = np.convolve(~regular, np.ones(ORDER), "valid") > 0.0
@@ -77,21 +77,24 @@ def jittered_path(name: str, time: Array, path: Array, speed: Array) -> Finding 
             if low > 0.0:
                 return None
             continue
-        noise = float(np.median(np.abs(rough[in_band]))) / 0.6745 / UNIT
+        noise = float(np.median(np.abs(rough[in_band]))) / 0.6745 / DIFFERENCE_STD
         if low == 0.0:
             slow_noise = max(noise, floor)
             continue
         pairs = in_band[1:] & in_band[:-1]
         if not np.any(pairs):
             return None
-        if _correlation(rough[1:][pairs], rough[:-1][pairs]) > WHITE or noise < max(
-            BEYOND * slow_noise, COUNTS * step
+        if _correlation(rough[1:][pairs], rough[:-1][pairs]) > MAX_CORRELATION or noise < max(
+            MIN_NOISE_RATIO * slow_noise, MIN_COUNTS * step
         ):
             return None
         mean = float(np.sqrt(np.mean(inner[in_band] ** 2)))
         sizes.append(float(np.sqrt(noise**2 - slow_noise**2)) / mean)
     size = sizes[-1]
-    if size < LEAST * median_step or not 1.0 / AGREE < sizes[0] / size < AGREE:
+    if (
+        size < LEAST * median_step
+        or not 1.0 / MAX_ESTIMATE_RATIO < sizes[0] / size < MAX_ESTIMATE_RATIO
+    ):
         return None
     words = (
         "the position noise grows with the speed, as with time stamp errors of "

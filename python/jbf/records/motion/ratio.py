@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from jbf.records.motion.window_comparisons import WIDE, Compared, window_comparisons
+from jbf.records.motion.window_comparisons import ALL_HALF_WIDTHS, Compared, window_comparisons
 
 Array = npt.NDArray[np.float64]
 
 FAST = 0.3
 """Share of the top speed above which the ratio is evaluated."""
-OFF = 0.2
+MIN_DEVIATION = 0.2
 """Minimum deviation of the ratio from one for path and speed to contradict one another."""
-SPREADS = 4.0
+MIN_SPREADS = 4.0
 """Minimum deviation relative to the spread (half the interquartile range)."""
-STEADY = 0.15
+MAX_SPREAD = 0.15
 """Largest relative spread of a constant factor."""
-SAME = 0.02
+UNIT_TOLERANCE = 0.02
 """Tolerance for a ratio of one metre per radian, at which the speed is in radians per second."""
 
 
@@ -26,9 +26,11 @@ def factor_between(time: Array, path: Array, speed: Array) -> float | None:
 
     None if they agree, or if their ratio is not constant.
     """
-    for c in window_comparisons(time, path, speed, WIDE):
+    for c in window_comparisons(time, path, speed, ALL_HALF_WIDTHS):
         ratio, spread = _middle(c)
-        if spread < STEADY * abs(ratio) and abs(ratio - 1.0) > max(OFF, SPREADS * spread):
+        if spread < MAX_SPREAD * abs(ratio) and abs(ratio - 1.0) > max(
+            MIN_DEVIATION, MIN_SPREADS * spread
+        ):
             return ratio
     return None
 
@@ -38,21 +40,22 @@ def metres_per_unit(time: Array, path: Array, speed: Array) -> float | None:
 
     None if the ratio is not constant or is negative.
     """
-    for c in window_comparisons(time, path, speed, WIDE):
+    for c in window_comparisons(time, path, speed, ALL_HALF_WIDTHS):
         ratio, spread = _middle(c)
-        if spread < STEADY * ratio:
+        if spread < MAX_SPREAD * ratio:
             exact = slope_near(time, path, speed, ratio)
-            return 1.0 if abs(exact - 1.0) < SAME else 1.0 / exact
+            return 1.0 if abs(exact - 1.0) < UNIT_TOLERANCE else 1.0 / exact
     return None
 
 
 def slope_near(time: Array, path: Array, speed: Array, estimate: float) -> float:
     """Ratio by least squares, over the windows whose ratio is close to a first estimate."""
-    for c in window_comparisons(time, path, speed, WIDE):
+    for c in window_comparisons(time, path, speed, ALL_HALF_WIDTHS):
         ratio, _ = _middle(c)
-        if abs(ratio / estimate - 1.0) < OFF:
+        if abs(ratio / estimate - 1.0) < MIN_DEVIATION:
             consistent = (
-                np.abs(c.by_path - estimate * c.by_speed) < OFF * np.abs(c.by_path) + c.count
+                np.abs(c.by_path - estimate * c.by_speed)
+                < MIN_DEVIATION * np.abs(c.by_path) + c.count
             )
             return float(
                 c.by_path[consistent] @ c.by_speed[consistent] / np.sum(c.by_speed[consistent] ** 2)

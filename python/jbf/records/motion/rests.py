@@ -20,11 +20,11 @@ STILL_STEPS = 1.5
 """Largest apparent displacement of the encoder during a rest, in steps."""
 STILL_SHARE = 5e-3
 """Largest speed of a rest as a share of the top speed."""
-HUM_ERRORS = 5.0
+REST_SPEED_SIGMAS = 5.0
 """Largest speed of a rest in standard deviations of the speed noise."""
-STANDS_OUT = 9.0
+MIN_MOTION_RATIO = 9.0
 """Minimum ratio of a speed in motion to the median in a rest: six standard deviations."""
-LONGER = 2.0
+MIN_DURATION_RATIO = 2.0
 """Minimum ratio of the duration of a rest to the time for which a reversal appears at rest."""
 
 
@@ -62,7 +62,7 @@ def still_samples(
     """
     n = len(path)
     top = float(np.max(np.abs(velocity), initial=0.0))
-    limit, noise = max(STILL_SHARE * top, hum), HUM_ERRORS * noise_of(velocity)
+    limit, noise = max(STILL_SHARE * top, hum), REST_SPEED_SIGMAS * noise_of(velocity)
     resting = _within_a_step(path, np.abs(velocity) <= limit, step, STILL_SAMPLES)
     if noise > limit > 0.0:
         longest = STILL_STEPS * step / (limit * float(np.median(np.diff(time_s))))
@@ -75,7 +75,7 @@ def still_samples(
             continue
         # A speed at the ends that exceeds the noise of the rest belongs to the motion.
         speed = np.abs(velocity[first:end])
-        calm_at = np.flatnonzero(speed <= max(STANDS_OUT * float(np.median(speed)), hum))
+        calm_at = np.flatnonzero(speed <= max(MIN_MOTION_RATIO * float(np.median(speed)), hum))
         resting[first : first + calm_at[0]] = False
         resting[first + calm_at[-1] + 1 : end] = False
     return resting
@@ -128,7 +128,7 @@ def _reverses(time_s: Array, velocity: Array, first: int, end: int, step: float)
     # Also covers a speed that touches zero, with two reversals or none.
     rate = (abs(v0) + abs(v1)) / (time_s[after] - time_s[before])
     still_s = 2.0 * np.sqrt(2.0 * STILL_STEPS * step / rate)
-    return bool(time_s[end - 1] - time_s[first] < LONGER * still_s)
+    return bool(time_s[end - 1] - time_s[first] < MIN_DURATION_RATIO * still_s)
 
 
 def certain_rests(rest: Mask) -> Mask:

@@ -9,19 +9,19 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-UNEVEN = 3.0
+MIN_NOISE_RATIO = 3.0
 """Minimum ratio of local to usual noise for a local estimate of heteroscedastic noise."""
 DIGITS = 1e-7
 """Share of the range of a signal below which changes are rounding to the digits of a file."""
 LEVELS = 10
 """Minimum number of different values of a quantised signal."""
-ALTERNATING, VARIOUS = 0.1, 6
+MIN_ALTERNATING_SHARE, MIN_SIZES = 0.1, 6
 """Minimum share of sign changes, or number of sizes, of second differences due to rounding."""
-PARTS = 6
+MAX_DIVISOR = 6
 """Largest divisor of the smallest change that is tried for the step."""
-WHOLE, MOSTLY = 0.05, 0.9
+STEP_TOLERANCE, MIN_WHOLE_SHARE = 0.05, 0.9
 """Tolerance of whole steps, and share of the changes within it, for a quantised signal."""
-UNEVEN_SAMPLES = 101
+NOISE_WINDOW = 101
 """Window of local noise, samples."""
 
 
@@ -62,14 +62,14 @@ def white_noise(signal: Array, order: int) -> float:
 def local_noise(signal: Array) -> Array | float:
     """`noise_of` for each sample if the noise is heteroscedastic, otherwise a single number."""
     overall = noise_of(signal)
-    if len(signal) < 4 * UNEVEN_SAMPLES:
+    if len(signal) < 4 * NOISE_WINDOW:
         return overall
     # Importing takes most of a second; not needed for the prediction of a short run.
     from scipy import ndimage
 
     third = np.pad(np.abs(np.diff(signal, 3)), (1, 2), mode="reflect")
-    local = ndimage.median_filter(third, UNEVEN_SAMPLES, mode="reflect") / 0.6745 / np.sqrt(20.0)
-    uneven = local > UNEVEN * overall
+    local = ndimage.median_filter(third, NOISE_WINDOW, mode="reflect") / 0.6745 / np.sqrt(20.0)
+    uneven = local > MIN_NOISE_RATIO * overall
     return np.where(uneven, local, overall) if uneven.any() else overall
 
 
@@ -92,15 +92,15 @@ def quantum_of(signal: Array) -> float:
     bends = bends[np.abs(bends) > DIGITS * float(np.ptp(signal))]
     if len(bends) < LEVELS:
         return 0.0
-    alternating = np.mean(bends[1:] * bends[:-1] < 0.0) > ALTERNATING
+    alternating = np.mean(bends[1:] * bends[:-1] < 0.0) > MIN_ALTERNATING_SHARE
     bends = np.abs(bends)
     # In a short record the smallest second difference may itself be a few steps.
-    for part in range(1, PARTS + 1):
+    for part in range(1, MAX_DIVISOR + 1):
         step = float(np.min(bends)) / part
         steps = np.diff(signal) / step
-        if np.mean(np.abs(steps - np.rint(steps)) < WHOLE) > MOSTLY:
+        if np.mean(np.abs(steps - np.rint(steps)) < STEP_TOLERANCE) > MIN_WHOLE_SHARE:
             # Ramps and parabolas without noise have a few second differences, all of the same sign.
-            various = len(np.unique(np.rint(bends / step))) >= VARIOUS
+            various = len(np.unique(np.rint(bends / step))) >= MIN_SIZES
             return step if alternating or various else 0.0
     return 0.0
 
@@ -111,4 +111,4 @@ def encoder_step(path: Array) -> float:
     Zero if the samples are finer than those of any encoder.
     """
     step = step_of(path)
-    return 0.0 if noise_of(path) > UNEVEN * step / np.sqrt(12.0) else step
+    return 0.0 if noise_of(path) > MIN_NOISE_RATIO * step / np.sqrt(12.0) else step

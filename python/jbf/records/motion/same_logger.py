@@ -16,9 +16,9 @@ from jbf.records.motion.smoothing import Smoothed
 
 Array = npt.NDArray[np.float64]
 
-SAME = 10.0
+MAX_VARIANCE_RATIO = 10.0
 """Ratio of the largest variance to the smallest one up to which runs have the same errors."""
-SAME_DELAY = 0.1
+MAX_DELAY_DIFFERENCE = 0.1
 """Difference of the velocity delays up to which runs have the same one, samples."""
 
 
@@ -46,13 +46,13 @@ def further_starts(motions: Sequence[Smoothed]) -> tuple[ReadingErrors, ...]:
 def _relative_sizes(motion: Smoothed) -> Array:
     """Logarithms of the variances of position and velocity, and the delay of the velocity.
 
-    The values are relative to the tolerances `SAME` and `SAME_DELAY`; nan for a channel that was
-    not recorded.
+    The values are relative to the tolerances `MAX_VARIANCE_RATIO` and `MAX_DELAY_DIFFERENCE`; nan
+    for a channel that was not recorded.
     """
     readings, errors = motion.readings, motion.errors
     step_s = float(np.median(np.diff(readings.time_s)))
     velocity = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)
     recorded = np.array([np.isfinite(readings.position).any(), velocity.any(), True])
-    logs = np.log([errors.position_variance, errors.velocity_variance]) / np.log(SAME)
-    sizes = np.append(logs, errors.velocity_delay_s / (SAME_DELAY * step_s))
+    logs = np.log([errors.position_variance, errors.velocity_variance]) / np.log(MAX_VARIANCE_RATIO)
+    sizes = np.append(logs, errors.velocity_delay_s / (MAX_DELAY_DIFFERENCE * step_s))
     return np.asarray(np.where(recorded, sizes, np.nan))

@@ -14,16 +14,16 @@ from jbf.records.motion.window_comparisons import Compared, window_comparisons
 
 Array = npt.NDArray[np.float64]
 
-SURE = 6.0
+MIN_DELAY_ERRORS = 6.0
 """Minimum delay of the speed, in standard errors."""
-ALIKE = 0.9
+MAX_CORRELATION = 0.9
 """Correlation of speed and acceleration above which a delay only scales the speed.
 
 This is the case for a speed that decays exponentially.
 """
-WITHIN = 1.5
+MAX_DELAY = 1.5
 """Largest delay that the smoother corrects, samples; longer filters also distort the speed."""
-STRETCHES = 12
+JACKKNIFE_BLOCKS = 12
 """Number of blocks of the record for the jackknife standard error."""
 
 
@@ -36,7 +36,7 @@ def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding
     )
     late_s, error_s = sharpest
     step_s = float(np.median(np.diff(time)))
-    if late_s < max(SURE * error_s, WITHIN * step_s):
+    if late_s < max(MIN_DELAY_ERRORS * error_s, MAX_DELAY * step_s):
         return None
     words = (
         f"the speed lags the position by {1e3 * late_s:.3g} ms: filtered, or a backward difference"
@@ -51,13 +51,13 @@ def _speed_delay(c: Compared) -> tuple[float, float]:
     The speed is regressed on the speed and acceleration of the path; the error is by the jackknife
     over parts of the record.
     """
-    part = np.arange(len(c.by_path)) * STRETCHES // len(c.by_path)
+    part = np.arange(len(c.by_path)) * JACKKNIFE_BLOCKS // len(c.by_path)
     x = np.stack([c.by_path, c.acceleration], axis=1)
     alike = abs(float(x[:, 0] @ x[:, 1])) / max(float(np.prod(np.linalg.norm(x, axis=0))), 1e-300)
-    if alike > ALIKE:
+    if alike > MAX_CORRELATION:
         return 0.0, np.inf
-    normal = np.stack([x[part == k].T @ x[part == k] for k in range(STRETCHES)])
-    right = np.stack([x[part == k].T @ c.by_speed[part == k] for k in range(STRETCHES)])
+    normal = np.stack([x[part == k].T @ x[part == k] for k in range(JACKKNIFE_BLOCKS)])
+    right = np.stack([x[part == k].T @ c.by_speed[part == k] for k in range(JACKKNIFE_BLOCKS)])
 
     def late(matrix: Array, vector: Array) -> float:
         return -float(np.linalg.lstsq(matrix, vector, rcond=1e-12)[0][1])
@@ -65,5 +65,5 @@ def _speed_delay(c: Compared) -> tuple[float, float]:
     without = [
         late(normal.sum(0) - n, right.sum(0) - r) for n, r in zip(normal, right, strict=True)
     ]
-    spread = float(np.std(without)) * np.sqrt(STRETCHES - 1)
+    spread = float(np.std(without)) * np.sqrt(JACKKNIFE_BLOCKS - 1)
     return late(normal.sum(0), right.sum(0)), max(spread, 1e-12)

@@ -18,9 +18,9 @@ Mask = npt.NDArray[np.bool_]
 
 LEAST = 3 * STILL_SAMPLES
 """Minimum number of samples at standstill for an estimate of the offset."""
-GONE = 4.0
+MIN_IMPLIED_STEPS = 4.0
 """Minimum displacement that the speed implies during a standstill, in encoder steps."""
-ERRORS = 5.0
+MIN_OFFSET_ERRORS = 5.0
 """Minimum offset in standard errors."""
 
 
@@ -56,7 +56,10 @@ def speed_zero(
     inner = at_rest[(at_rest >= low) & (at_rest <= high)]
     zero = float(np.mean(inner))
     error = float(np.std(inner)) / np.sqrt(len(inner) / STILL_SAMPLES)
-    if abs(zero) < ERRORS * error or abs(zero) * _longest(time, resting) < GONE * step:
+    if (
+        abs(zero) < MIN_OFFSET_ERRORS * error
+        or abs(zero) * _longest(time, resting) < MIN_IMPLIED_STEPS * step
+    ):
         return speed, 0.0, None
     words = f"the speed reads {zero:.3g} {unit} at constant position"
     finding = Finding("speed_zero", "velocity_m_s", name, zero, unit, "subtracted", words)

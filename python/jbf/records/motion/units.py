@@ -10,12 +10,12 @@ import numpy.typing as npt
 
 from jbf.records.findings.finding import Finding
 from jbf.records.motion.position import Position
-from jbf.records.motion.ratio import OFF, factor_between, slope_near
-from jbf.records.quantities import OF_BEARING, Quantities
+from jbf.records.motion.ratio import MIN_DEVIATION, factor_between, slope_near
+from jbf.records.quantities import BEARING, Quantities
 
 Array = npt.NDArray[np.float64]
 
-NEAR = 0.06
+FACTOR_TOLERANCE = 0.06
 """Relative tolerance within which a ratio matches the factor of a unit."""
 
 
@@ -45,7 +45,7 @@ def wrong_unit(
     time: Array,
     position: Position,
     speed: Array,
-    quantities: Quantities = OF_BEARING,
+    quantities: Quantities = BEARING,
 ) -> Mismatch | None:
     """Detect a path and a speed that differ by a factor.
 
@@ -56,7 +56,7 @@ def wrong_unit(
     ratio = factor_between(time, position.path_m, speed)
     if ratio is None:
         return None
-    if abs(ratio + 1.0) < OFF:
+    if abs(ratio + 1.0) < MIN_DEVIATION:
         words = f"{position.column} decreases where {called} is positive: one has the wrong sign"
         done = f"{position.column} is negated"
         return Mismatch(
@@ -64,7 +64,7 @@ def wrong_unit(
         )
     column, unit, by = position.column, "", slope_near(time, position.path_m, speed, ratio)
     for column_of_unit, guess, factor in _units(position, turns=quantities.motion == "rotary"):
-        if abs(abs(ratio) / factor - 1.0) < NEAR:
+        if abs(abs(ratio) / factor - 1.0) < FACTOR_TOLERANCE:
             noun = called if column_of_unit == "velocity_m_s" else column_of_unit
             column, unit, by = (
                 column_of_unit,

@@ -18,23 +18,23 @@ Array = npt.NDArray[np.float64]
 
 HALF_WIDTHS = (2, 4, 8)
 """Half widths of the windows, in samples, for a fine and for a coarse path."""
-WIDE = (*HALF_WIDTHS, 16, 32, 64)
+ALL_HALF_WIDTHS = (*HALF_WIDTHS, 16, 32, 64)
 """Half widths for ratios, which are independent of the width.
 
 In a slow motion with fast sampling, one count takes tens of samples.
 """
-WHOLE = 1.2
+MAX_DURATION_RATIO = 1.2
 """Largest ratio of the duration of a window to the median; a longer window contains a gap."""
-LONG = 2.5
+MIN_GAP_RATIO = 2.5
 """Minimum ratio to the usual step for a step to be a gap."""
-SHARE = 0.05
+MIN_GAP_SHARE = 0.05
 """Minimum share of the window for a step to be a gap.
 
 The displacement of a fast motion in such a step is unknown.
 """
-COMMON = 0.9
+USUAL_STEP_QUANTILE = 0.9
 """Quantile of the time steps that defines the usual step, also for uneven sampling."""
-LEAST = 60
+MIN_WINDOWS = 60
 """Minimum number of windows for a comparison."""
 
 
@@ -64,9 +64,9 @@ def window_comparisons(
     """Yield path and speed over windows of several widths, in ascending order of width."""
     integral = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
     steps = np.diff(time)
-    typical_step = float(np.quantile(steps, COMMON)) if len(steps) else 0.0
+    typical_step = float(np.quantile(steps, USUAL_STEP_QUANTILE)) if len(steps) else 0.0
     for half in half_widths:
-        if len(time) < 4 * half + LEAST:
+        if len(time) < 4 * half + MIN_WINDOWS:
             return
         lasts = time[2 * half :] - time[: -2 * half]
         by_path = (path[2 * half :] - path[: -2 * half]) / lasts
@@ -74,9 +74,13 @@ def window_comparisons(
         spacing = time[3 * half : -half] - time[half : -3 * half]
         acceleration = (by_path[2 * half :] - by_path[: -2 * half]) / spacing
         lengths = time[4 * half :] - time[: -4 * half]
-        gaps = np.cumsum(np.r_[0, steps > typical_step * max(LONG, SHARE * 4 * half)])
-        use = (lengths < WHOLE * np.median(lengths)) & (gaps[4 * half :] == gaps[: -4 * half])
+        gaps = np.cumsum(
+            np.r_[0, steps > typical_step * max(MIN_GAP_RATIO, MIN_GAP_SHARE * 4 * half)]
+        )
+        use = (lengths < MAX_DURATION_RATIO * np.median(lengths)) & (
+            gaps[4 * half :] == gaps[: -4 * half]
+        )
         inner = slice(half, -half)
-        if use.sum() >= LEAST:
+        if use.sum() >= MIN_WINDOWS:
             count = step_of(path) / float(np.median(lasts))
             yield Compared(by_path[inner][use], by_speed[inner][use], acceleration[use], count)

@@ -7,6 +7,7 @@
 - `output` is the output of the block before it: each line, in that order, except for blanks; `...`
   omits any lines, and within a line any words;
 - `text` and blocks without a language are prose;
+- `jbf` and `import jbf` are the source of this repository, whichever copy is installed;
 - a first line `# in a clone of the repository` runs a block at its root;
 - a block below `<!-- not tested: WHY -->` is not run; readers of the page do not see the comment;
 - `<!-- needs: TOOL... -->` names programs and targets of Rust without which a page is skipped;
@@ -38,8 +39,8 @@ ELSEWHERE = {
     ("docs/control.md", "python"): "python/tests/project/test_documentation.py",
 }
 PROSE = {"", "text"}
-SIMULATOR = ROOT / "simulator"
-DEMO = ROOT / "python" / "jbf" / "data" / "demo" / "hidden"
+SIMULATOR, SOURCE = ROOT / "simulator", ROOT / "python"
+DEMO = SOURCE / "jbf" / "data" / "demo" / "hidden"
 WHY = re.compile(r"not tested: \S+ \S+ \S+")
 SECONDS = 1800
 """A shell block that takes longer is considered to hang; a busy machine is slow."""
@@ -202,14 +203,20 @@ class Reader:
         place = self.folder / ".folder"
         script = f'{body}\npwd > "{place}"'
         bin_ = Path(sys.executable).parent
-        path = f"{bin_}:{Path(__file__).parent / 'bin'}:{os.environ['PATH']}"
+        environment = {
+            **os.environ,
+            "PATH": f"{Path(__file__).parent / 'bin'}:{bin_}:{os.environ['PATH']}",
+            "PYTHONPATH": f"{SOURCE}:{SIMULATOR}",
+            "JBF": str(ROOT),
+            "JBF_PYTHON": sys.executable,
+        }
         where = Path(place.read_text().strip()) if place.exists() else self.folder
         if body.startswith(IN_A_CLONE):
             where, script = ROOT, body
         done = subprocess.run(
             ["bash", "-euo", "pipefail", "-c", script],
             cwd=where,
-            env={**os.environ, "PATH": path, "PYTHONPATH": str(SIMULATOR), "JBF": str(ROOT)},
+            env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,
@@ -242,7 +249,7 @@ def run(page: Path, keep: Path | None = None) -> None:
 
 
 if __name__ == "__main__":
-    sys.path.insert(0, str(SIMULATOR))
+    sys.path[:0] = [str(SOURCE), str(SIMULATOR)]
     for named in sys.argv[1:]:
         try:
             run(Path(named).resolve())

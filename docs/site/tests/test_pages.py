@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from pages import LINK, Block, blocks, every_page, name_of, prose
+from pages import LINK, ROOT, Block, blocks, every_page, name_of, prose
 from snippets import PROSE, Reader, Wrong, compare, missing
 
 SITE = Path(__file__).resolve().parents[1]
@@ -52,6 +52,14 @@ def test_snippet_reader_refuses_wrong_output_failing_commands_and_untested_code(
         reader.follow(Block("sh", "", "reboot\n", 1, "not tested: no"))
     with pytest.raises(Wrong, match="none before"):
         Reader(tmp_path).follow(Block("output", "", "one\n", 1))
+
+
+def test_shell_blocks_import_the_source_of_this_repository(tmp_path: Path) -> None:
+    reader = Reader(tmp_path)
+    reader.follow(Block("sh", "", 'python -c "import jbf; print(jbf.__file__)"\n', 1))
+    reader.follow(Block("output", "", f"{ROOT / 'python' / 'jbf' / '__init__.py'}\n", 1))
+    reader.follow(Block("sh", "", "jbf --version\n", 1))
+    reader.follow(Block("output", "", "jbf ...\n", 1))
 
 
 def test_snippet_reader_writes_files_and_changes_folders(tmp_path: Path) -> None:

@@ -14,6 +14,11 @@ NAMES = [
     name for name in jbf.__all__ if not name.startswith("_") and name not in ("control", "plot")
 ]
 FUNCTIONS = [name for name in NAMES if inspect.isfunction(getattr(jbf, name))]
+ROOT = Path(__file__).resolve().parents[3]
+FOLDERS = ("python", "simulator", "benches", "docs", "release")
+JOINED = re.compile(
+    r"^[ \t]*(?:Parameters|Attributes|Notes|Returns|Raises|Examples)[ \t]+-{5,}", re.M
+)
 OPTIONS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
@@ -55,3 +60,11 @@ def test_arguments_and_result_of_a_public_function_are_documented(name: str) -> 
     shared = re.search(r"parameters are those of|other arguments are those of", text)
     if not shared:
         assert set(signature.parameters) <= documented, name
+
+
+def test_headings_of_sections_are_above_their_underlines() -> None:
+    assert JOINED.search("Title.\n\n    Returns -------\n    The value.\n")
+    assert not JOINED.search("Title.\n\n    Returns\n    -------\n    The value.\n")
+    files = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py")]
+    texts = {path: path.read_text(encoding="utf-8") for path in files if path != Path(__file__)}
+    assert not [f"{path}: {match[0]}" for path in texts for match in JOINED.finditer(texts[path])]

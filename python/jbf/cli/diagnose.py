@@ -76,12 +76,12 @@ def add(commands: Commands) -> None:
 
 def _add_next_run(parser: Parser) -> None:
     group = parser.add_argument_group(
-        "next experiment", "a run that distinguishes effects that fit equally well"
+        "next experiment", "a run that distinguishes the effects of an ambiguous verdict"
     )
     group.add_argument(
         "--next-run",
         metavar="CSV",
-        help="write the motion of that run, if effects fit equally well",
+        help="write the motion of that run, if one is proposed",
     )
     group.add_argument(
         "--next-duration-s",
@@ -177,7 +177,7 @@ def _text(diagnosis: Diagnosis, options: DiagnoseOptions, held_out: list[str]) -
         return verdict_line(diagnosis)
     lines = list(held_out)
     if options.next_run and diagnosis.experiment is None:
-        lines += ["", f"No effects fit equally well: {options.next_run} was not written"]
+        lines += ["", f"No run is proposed: {options.next_run} was not written"]
     if options.verbosity.full:
         return "\n".join([diagnosis.summary(full=True), *lines])
     report = options.report or "add --report FILE.html"

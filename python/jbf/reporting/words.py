@@ -156,10 +156,14 @@ def law_sentence(diagnosis: Diagnosis) -> str:
     )
 
 
-def _with_weights(diagnosis: Diagnosis, tied: Sequence[str]) -> list[str]:
-    """Format effects that tie, each with its posterior weight."""
+def _with_probabilities(diagnosis: Diagnosis, tied: Sequence[str]) -> str:
+    """State that one of several effects explains the records, with their posterior weights."""
     weights = diagnosis.weights.get(tied[0], {})
-    return [f"{e} ({100.0 * weights[e]:.0f} %)" if e in weights else e for e in tied]
+    words = f"{listed(tied, 'or')} explains the records"
+    if not all(effect in weights for effect in tied):
+        return words
+    probabilities = listed(f"{100.0 * weights[effect]:.0f} %" for effect in tied)
+    return f"{words}, with probabilities of {probabilities}"
 
 
 _STRUCTURE = "The residual has structure that no effect in the catalogue explains"
@@ -190,13 +194,12 @@ def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
         return f"Missing: {added}. With {_pronoun(diagnosis.effects)}, {fall}."
     if diagnosis.verdict == "ambiguous":
         ties = "; ".join(
-            f"{listed(_with_weights(diagnosis, (effect, *alternatives)), 'or')}"
+            _with_probabilities(diagnosis, (effect, *alternatives))
             for effect, alternatives in diagnosis.alternatives.items()
             if alternatives and effect in diagnosis.effects
         )
         return (
-            f"An effect is missing, but these runs cannot tell which: {ties}. "
-            f"With {added}, {fall}; the alternatives fit equally well."
+            f"An effect is missing, but these runs cannot tell which: {ties}. With {added}, {fall}."
         )
     structure = f"{_STRUCTURE}{_worst(diagnosis.residual_structure, place)}."
     if diagnosis.effects:

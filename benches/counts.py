@@ -76,7 +76,7 @@ def read() -> tuple[str, Counts]:
 
 
 def write(counts: Counts) -> None:
-    head = "# Instructions a step, counted by callgrind. Written by `benches/counts.py --write`."
+    head = "# Instructions per step, counted by callgrind. Written by `benches/counts.py --write`."
     rows = [f"{name} {count:.1f}" for name, count in counts.items()]
     BASELINE.write_text("\n".join([head, f"# {rustc().strip()}", *rows]) + "\n", encoding="utf-8")
 
@@ -131,7 +131,7 @@ def main() -> None:
         print(f"{len(now)} counts written to {BASELINE.relative_to(ROOT)}")
         return
     before, limit = baseline(target)
-    print("instructions a step:  before      now")
+    print("instructions per step: before      now")
     worse = []
     for name in sorted({*before, *now}):
         old, new = before.get(name), now.get(name)

@@ -158,7 +158,7 @@ def judged(task: Task, diagnosis: jbf.Diagnosis) -> str:
     The result is one of the outcomes in the columns of `table`.
     """
     if task.foreign:
-        return "right" if diagnosis.verdict == "unexplained" else "not told"
+        return "right" if diagnosis.verdict == "unexplained" else "not reported"
     named, true = {*diagnosis.machine, *diagnosis.effects}, set(task.effects)
     if named == true:
         right = {"adequate", "missing", "ambiguous"} if true else {"adequate"}
@@ -172,7 +172,7 @@ def judged(task: Task, diagnosis: jbf.Diagnosis) -> str:
 
 def table(answers: list[Answer]) -> Iterator[str]:
     """Generate a row per kind, and a line for every campaign that is not right."""
-    columns = ("right", "tied", "named falsely", "unexplained", "missed", "not told")
+    columns = ("right", "tied", "named falsely", "unexplained", "missed", "not reported")
     head = ("hidden", "campaigns", *columns, "held-out, median", "worst", "CPU s, worst")
     yield f"| {' | '.join(head)} |"
     yield "|---" * len(head) + "|"

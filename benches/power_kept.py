@@ -122,7 +122,7 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=4, help="campaigns with nothing hidden; 4")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--effects", nargs="+", help="only these; all by default")
-    parser.add_argument("--out", type=Path, help="JSON lines, one a diagnosis")
+    parser.add_argument("--out", type=Path, help="file of JSON lines, one per diagnosis")
     options = parser.parse_args()
     rows: list[dict[str, Any]] = []
     if options.out is not None and options.out.exists():

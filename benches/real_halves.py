@@ -247,7 +247,7 @@ def main() -> int:
         print("skipped: name the folder of the recordings: python benches/real_halves.py FOLDER")
         return 0
     print(
-        "| recording | law | left-out RMS | by hand | ratio | verdict | machine | named | CPU s |"
+        "| recording | law | held-out RMS | by hand | ratio | verdict | machine | named | CPU s |"
     )
     print("|---|---|---|---|---|---|---|---|---|")
     tasks = []

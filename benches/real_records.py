@@ -47,10 +47,10 @@ def table(title: str, run: jbf.Run) -> None:
 def diagnosed(title: str, run: jbf.Run) -> None:
     """Diagnose with the Coulomb law and print the effects added with the error at each step."""
     diagnosis = jbf.diagnose(jbf.Rig(), [run], law="coulomb")
-    print(f"{title}: diagnosed beside coulomb in {diagnosis.elapsed_s:.0f} s: {diagnosis.verdict}")
+    print(f"{title}: law coulomb, diagnosed in {diagnosis.elapsed_s:.0f} s: {diagnosis.verdict}")
     for step in diagnosis.steps:
         names = ", ".join(step.effects) or "the law alone"
-        print(f"  {step.rms:8.3f} N, left-out half {step.held_out_rms:8.3f} N  {names}")
+        print(f"  {step.rms:8.3f} N, held-out half {step.held_out_rms:8.3f} N  {names}")
 
 
 def main() -> int:

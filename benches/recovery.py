@@ -201,7 +201,7 @@ def main() -> None:
     """Run the study and print its table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("effects", nargs="*", metavar="EFFECT", help="all, and none, by default")
-    parser.add_argument("--repeats", type=int, default=200, help="fits an effect")
+    parser.add_argument("--repeats", type=int, default=200, help="fits per effect")
     parser.add_argument("--rigs", type=int, default=8, help="rigs among which they are shared")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--coloured", action="store_true", help="noise with a coloured part")
@@ -215,7 +215,9 @@ def main() -> None:
     parser.add_argument("--json", type=Path, help="write every error here, effect by effect")
     options = parser.parse_args()
     kept: dict[str, dict[str, list[float]]] = {}
-    print(f"{options.repeats} fits an effect, {options.rigs} rigs, seed {options.seed}\n\n{HEADER}")
+    print(
+        f"{options.repeats} fits per effect, {options.rigs} rigs, seed {options.seed}\n\n{HEADER}"
+    )
     for effect in options.effects or [None, *rigsim.CATALOGUE]:
         name = None if effect in (None, "none") else effect
         errors = study(

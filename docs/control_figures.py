@@ -28,7 +28,7 @@ def ablation() -> None:
         "with the thesis's position gains": Observed(
             model, replace(settings, loop_rad_s=LAW_RAD_S)
         ),
-        "told nothing of the elastic belt": Observed(rigid),
+        "without a model of the elastic belt": Observed(rigid),
         "the observer without a model": Observed(
             thesis_model(elastic="nothing", f_m=1e-4, gamma=1e-3), settings
         ),
@@ -80,7 +80,7 @@ def relay() -> None:
         r = run(None, Learning(volts=volts), replace(TASKS["position sine"], seconds=25.0))
         turns = np.sum(np.diff(np.sign(r.velocity_rad_s)) != 0.0) / r.task.seconds
         most = np.max(np.abs(r.compensation_v))
-        print(f"scale {volts or 'of the rig'}: {turns:.0f} turns a second, {most:.2f} V")
+        print(f"scale {volts or 'of the rig'}: {turns:.0f} turns per second, {most:.2f} V")
 
 
 if __name__ == "__main__":

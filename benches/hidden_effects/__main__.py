@@ -35,7 +35,7 @@ def main() -> int:
     parser.add_argument(
         "--least", type=float, metavar="SHARE", help="fail where fewer answers of a kind are good"
     )
-    parser.add_argument("--out", type=Path, help="JSON lines, one a campaign")
+    parser.add_argument("--out", type=Path, help="file of JSON lines, one per campaign")
     parser.add_argument("--picture", type=Path, help="detection rate against strength, PNG")
     options = parser.parse_args()
     wanted = tuple(options.kinds.split(","))

@@ -48,7 +48,7 @@ def confusion(rows: list[Row]) -> str:
             name += " + unexplained"
         hidden = row["hidden"] + (" (no such effect)" if row["kind"] == "foreign" else "")
         results.setdefault(hidden, Counter())[name] += 1
-    lines = ["| hidden | said |", "|---|---|"]
+    lines = ["| hidden | result |", "|---|---|"]
     for hidden, names in sorted(results.items()):
         words = ", ".join(f"{name} ({n})" for name, n in names.most_common())
         lines.append(f"| {hidden} | {words} |")

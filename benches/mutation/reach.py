@@ -119,7 +119,11 @@ def measured(files: list[str], folder: Path, limit_s: float = LONGEST_S) -> None
         environment = os.environ | {"COVERAGE_FILE": str(data)}
         code, output, errors = run(command, ROOT, environment, limit_s)
         if code is None:
-            print(f"{file}: longer than {limit_s:.0f} s, left out", file=sys.stderr, flush=True)
+            print(
+                f"{file}: skipped, because it takes more than {limit_s:.0f} s",
+                file=sys.stderr,
+                flush=True,
+            )
             continue
         print(f"{file}: {output.splitlines()[-1] if output else errors[-200:]}", flush=True)
 
@@ -156,7 +160,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--by-file", type=Path, help="also the short form, for a sample in CI")
     parser.add_argument("--data", type=Path, help="where to keep what was measured, to go on there")
-    parser.add_argument("--longest", type=float, default=LONGEST_S, help="processor time, s a file")
+    parser.add_argument(
+        "--longest", type=float, default=LONGEST_S, help="processor time per file, s"
+    )
     options = parser.parse_args()
     files = options.tests or sorted(
         p.relative_to(ROOT).as_posix() for p in (ROOT / "python" / "tests").glob("**/test_*.py")

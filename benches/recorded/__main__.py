@@ -47,7 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--jobs", type=int, default=1, help="campaigns side by side")
     parser.add_argument("--limit", type=float, default=300.0, help="CPU s for a diagnosis; 300")
     parser.add_argument("--least", type=float, metavar="SHARE", help="fail where fewer are right")
-    parser.add_argument("--out", type=Path, help="JSON lines, one a campaign")
+    parser.add_argument("--out", type=Path, help="file of JSON lines, one per campaign")
     return parser
 
 
@@ -66,7 +66,7 @@ def _simulated(options: argparse.Namespace, parser: argparse.ArgumentParser) -> 
             try:
                 case = written(task, options.keep or Path(scratch))
             except (ArithmeticError, ValueError) as error:
-                print(f"{task.key}: left out, it cannot be simulated: {error}", flush=True)
+                print(f"{task.key}: skipped, because it cannot be simulated: {error}", flush=True)
                 return None
             return scored(case, options.limit)
 

@@ -116,8 +116,14 @@ def main() -> int:
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--cases", type=int, default=100)
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--limit", type=float, default=120.0, help="processor time, s a case; 120")
-    parser.add_argument("--out", type=Path, help="JSON lines, one a case; what it has is not tried")
+    parser.add_argument(
+        "--limit", type=float, default=120.0, help="processor time per case, s; default 120"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        help="file of JSON lines, one per case; cases that it contains are skipped",
+    )
     options = parser.parse_args()
     seeds = range(options.first_seed, options.first_seed + options.cases)
     rows = [row for row in kept(options.out) if row["seed"] in seeds]

@@ -84,7 +84,7 @@ impl<F: Float> Batch<F> {
         dt_s: F,
         data: &[F],
     ) -> Vec<F> {
-        assert_eq!(data.len(), speeds.len(), "data: one value a sample");
+        assert_eq!(data.len(), speeds.len(), "data: one value per sample");
         let parts = self.parts();
         let outs = parts.iter().map(|_| Out::Squares(data)).collect();
         self.run(films, speeds, dt_s, &parts, outs)
@@ -107,9 +107,9 @@ impl<F: Float> Batch<F> {
         parts: &[(usize, usize)],
         outs: Vec<Out<'_, F>>,
     ) -> Vec<F> {
-        assert_eq!(films.0.len(), self.laws.len(), "films: one a set");
+        assert_eq!(films.0.len(), self.laws.len(), "films: one per set");
         if let Speeds::Each { sets, .. } = speeds {
-            assert_eq!(*sets, self.laws.len(), "speeds: one column a set");
+            assert_eq!(*sets, self.laws.len(), "speeds: one column per set");
         }
         let done: Vec<Vec<Block<F>>> = parts
             .par_iter()

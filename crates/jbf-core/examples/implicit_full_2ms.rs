@@ -50,11 +50,11 @@ fn main() -> Result<(), ParameterError> {
         errors.fold(0.0, f64::max) / peak
     };
     println!(
-        "Rodas3 (the law's own): {:.1e} of the peak, {ns:.0} ns a step",
+        "Rodas3 (the law's own): {:.1e} of the peak, {ns:.0} ns per step",
         worst(&third)
     );
     println!(
-        "Rodas5P:                {:.1e} of the peak, {more_ns:.0} ns a step",
+        "Rodas5P:                {:.1e} of the peak, {more_ns:.0} ns per step",
         worst(&fifth)
     );
     Ok(())

@@ -82,7 +82,7 @@ fn frozen_encoder_is_reported_and_the_control_law_acts_alone() {
                 assert!(parts.status.has(Status::FALLBACK), "{name}");
                 assert_eq!(parts.output_v, parts.base_v, "{name}");
             } else {
-                assert!(told > 0 || i < 400, "{name}: not told after {i} steps");
+                assert!(told > 0 || i < 400, "{name}: not reported after {i} steps");
             }
         }
         // Reported all the time except for the first moments and the trials of a doubtful observer.
@@ -93,7 +93,7 @@ fn frozen_encoder_is_reported_and_the_control_law_acts_alone() {
         };
         assert!(
             f64::from(told) > share * 4_000.0,
-            "{name}: told for {told} steps"
+            "{name}: reported for {told} steps"
         );
         bench.frozen = false;
         for _ in 0..3_000 {

@@ -54,9 +54,9 @@ class Registration:
         """Return a registration; the default name is that of the function."""
         return cls(kind, function.__name__ if name is None else name, function, tuple(parameters))
 
-    def refused(self, problem: str, mend: str) -> InputError:
+    def refused(self, problem: str, remedy: str) -> InputError:
         """Return the error that names the entry, the problem and the remedy."""
-        return InputError(problem=f"the {self.kind} {quoted(self.name)} {problem}", mend=mend)
+        return InputError(problem=f"the {self.kind} {quoted(self.name)} {problem}", remedy=remedy)
 
     def check_name(self, built_in: Container[str], reserved: str | None = None) -> None:
         """Raise an InputError if the name is invalid, reserved, or that of a built-in entry."""

@@ -1,7 +1,7 @@
 """Types of the extension module."""
 
 from collections.abc import Sequence
-from typing import Any, Protocol, TypeAlias, TypedDict, final, type_check_only
+from typing import Any, Literal, Protocol, TypeAlias, TypedDict, final, type_check_only
 
 import numpy as np
 import numpy.typing as npt
@@ -205,7 +205,12 @@ class MotionReadings:
         self, errors: _ReadingErrors, corners: _Array, speed: _Array
     ) -> SmoothedMotion: ...
     def estimated(
-        self, errors: _ReadingErrors, corners: _Array, passes: tuple[int, int], fixed: bool
+        self,
+        errors: _ReadingErrors,
+        corners: _Array,
+        passes: tuple[int, int],
+        known: Literal["nothing", "intensity", "everything"],
+        linear: tuple[_Array, _Array, _Array, npt.NDArray[np.bool_]] | None = None,
     ) -> tuple[float, float, float, float, _Array]: ...
 
 @final

@@ -1,6 +1,8 @@
 //! Errors of the readings of a motion, and its corners, by expectation-maximisation (EM).
 
-use crate::smoother::{Adjoint, Forward, Readings};
+use core::ops::Range;
+
+use crate::smoother::{Adjoint, Forward, LinearReading, Readings};
 
 /// Degrees of freedom of the noise's t distribution: with few, corners are sharp.
 const FREEDOM: u32 = 2;
@@ -33,6 +35,11 @@ pub struct Record<'a> {
     ///
     /// Assigned velocities are not used in the estimate of the variance of the velocities.
     pub assigned: f64,
+    /// Measured linear functions of the motion, one for each instant, or none at all.
+    pub linear: &'a [LinearReading],
+    /// Whether each step has the same factor of the intensity as the one before it; empty if each
+    /// has its own.
+    pub continues: &'a [bool],
 }
 
 /// Errors of the readings of a motion, and the noise that drives it.
@@ -57,6 +64,17 @@ pub struct Passes {
     pub normal: usize,
     /// Passes with the t distribution.
     pub robust: usize,
+}
+
+/// Quantities that [`estimate`] takes from the start values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// None: errors of the readings and intensity are estimated.
+    Nothing,
+    /// The intensity.
+    Intensity,
+    /// Errors of the readings and intensity; only the factors of the intensity are estimated.
+    Everything,
 }
 
 /// Variances of the positions and of the velocities; infinite where there is no reading.
@@ -97,7 +115,21 @@ impl Record<'_> {
             velocity: self.velocity,
             velocity_variance: &variances.velocity,
             velocity_delay: errors.velocity_delay,
+            linear: self.linear,
         }
+    }
+
+    /// Ranges of the steps that have one factor of the intensity.
+    fn intervals(&self, steps: usize) -> impl Iterator<Item = Range<usize>> + '_ {
+        let mut first = 0;
+        (1..=steps).filter_map(move |end| {
+            if self.continues.get(end).is_some_and(|same| *same) {
+                return None;
+            }
+            let interval = first..end;
+            first = end;
+            Some(interval)
+        })
     }
 
     /// Calls `using` with the readings and the intensity of each step.
@@ -128,7 +160,7 @@ impl Record<'_> {
 ///
 /// # Arguments
 /// * `corners`: start values of the factors, n - 1.
-/// * `fixed`: if true, the errors are known and only the factors are estimated.
+/// * `known`: quantities that keep their start values.
 ///
 /// # Sources
 /// Shumway & Stoffer (1982) (EM for state-space models); Lange, Little & Taylor (1989) (EM for the
@@ -139,7 +171,7 @@ pub fn estimate<const N: usize>(
     start: ReadingErrors,
     mut corners: Vec<f64>,
     passes: Passes,
-    fixed: bool,
+    known: Known,
 ) -> (ReadingErrors, Vec<f64>) {
     let n = record.time.len();
     if n < 2 || corners.len() != n - 1 {
@@ -150,15 +182,19 @@ pub fn estimate<const N: usize>(
     for pass in 0..passes.normal + passes.robust {
         expected.update(record, &errors, &corners);
         if pass >= passes.normal {
-            for (corner, square) in corners.iter_mut().zip(&expected.disturbance) {
-                *corner = factor::<N>(*square, errors.intensity);
+            for steps in record.intervals(corners.len()) {
+                let corner = factor::<N>(&expected.disturbance[steps.clone()], errors.intensity);
+                corners[steps].fill(corner);
             }
         }
-        if fixed {
+        if known == Known::Everything {
             continue;
         }
         let previous = errors;
         errors = expected.maximised(record, &errors, &corners);
+        if known == Known::Intensity {
+            errors.intensity = start.intensity;
+        }
         let change = |of: fn(&ReadingErrors) -> f64| (of(&errors) / of(&previous)).ln().abs();
         let most = change(|e| e.intensity)
             .max(change(|e| e.position_variance))
@@ -186,29 +222,47 @@ pub fn lower_bound<const N: usize>(
     speed: &[f64],
 ) -> f64 {
     let mut forward = Forward::<N>::default();
-    let (prior, half_order) = (0.5 * f64::from(FREEDOM), 0.5 * N as f64);
-    let shape = prior + half_order;
-    let (ln_gamma, digamma) = gamma_of_half(FREEDOM + N as u32);
-    let gain = half_order * (digamma - shape.ln()) - (shape - prior) * digamma + ln_gamma
-        - gamma_of_half(FREEDOM).0;
+    let prior = 0.5 * f64::from(FREEDOM);
     record.with(errors, corners, speed, |readings, intensity| {
         forward.pass(readings, intensity);
-        let mut bound = forward.log_likelihood;
-        forward.backward(readings, intensity, |_, _, _, disturbance| {
-            if disturbance.is_finite() {
-                let rate = prior + 0.5 * disturbance / errors.intensity;
-                bound += gain - prior * (rate / prior).ln() - shape * (prior - rate) / rate;
-            }
+        let mut disturbances = vec![f64::NAN; corners.len()];
+        forward.backward(readings, intensity, |k, _, _, disturbance| {
+            disturbances[k] = disturbance;
         });
+        let mut bound = forward.log_likelihood;
+        for steps in record.intervals(corners.len()) {
+            let (square, count) = total::<N>(&disturbances[steps], errors.intensity);
+            if count > 0 {
+                let half = 0.5 * f64::from(count);
+                let (shape, rate) = (prior + half, prior + 0.5 * square);
+                let (ln_gamma, digamma) = gamma_of_half(FREEDOM + count);
+                bound += half * (digamma - shape.ln()) - half * digamma + ln_gamma
+                    - gamma_of_half(FREEDOM).0
+                    - prior * (rate / prior).ln()
+                    - shape * (prior - rate) / rate;
+            }
+        }
         bound
     })
 }
 
-/// Reciprocal of the posterior mean of the precision factor `1 / c` of a step.
-fn factor<const N: usize>(disturbance: f64, intensity: f64) -> f64 {
-    let square = disturbance / intensity;
-    let square = if square.is_finite() { square } else { N as f64 };
-    (f64::from(FREEDOM) + square) / (f64::from(FREEDOM) + N as f64)
+/// Sum of the squared disturbances of the steps of an interval, relative to the intensity, and the
+/// number of its disturbances; steps of zero length have none.
+fn total<const N: usize>(disturbance: &[f64], intensity: f64) -> (f64, u32) {
+    let finite = disturbance.iter().filter(|d| d.is_finite());
+    finite.fold((0.0, 0), |(sum, count), d| {
+        (sum + d / intensity, count + N as u32)
+    })
+}
+
+/// Reciprocal of the posterior mean of the precision factor `1 / c` of an interval.
+fn factor<const N: usize>(disturbance: &[f64], intensity: f64) -> f64 {
+    let (square, count) = total::<N>(disturbance, intensity);
+    let freedom = f64::from(FREEDOM);
+    if count == 0 || !square.is_finite() {
+        return 1.0;
+    }
+    (freedom + square) / (freedom + f64::from(count))
 }
 
 /// Logarithm of the gamma function and its derivative at n / 2, n > 0, by recurrence.

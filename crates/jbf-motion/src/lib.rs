@@ -25,6 +25,6 @@ mod model;
 mod smoother;
 mod whitening;
 
-pub use estimation::{estimate, lower_bound, Passes, ReadingErrors, Record};
-pub use smoother::{log_likelihood, smooth, Readings, Smoothed};
+pub use estimation::{estimate, lower_bound, Known, Passes, ReadingErrors, Record};
+pub use smoother::{log_likelihood, smooth, LinearReading, Readings, Smoothed};
 pub use whitening::whiten;

@@ -18,6 +18,21 @@ pub struct Readings<'a> {
     /// Time delay of the velocities, s: each reading is the velocity at this time before its
     /// instant.
     pub velocity_delay: f64,
+    /// Linear functions of the motion that were measured, one for each instant, or none at all.
+    pub linear: &'a [LinearReading],
+}
+
+/// Measurement `value = row . (position, velocity, acceleration) + e`, `e ~ N(0, variance)`.
+///
+/// A reading with an infinite variance is missing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearReading {
+    /// Coefficients of position, velocity and acceleration.
+    pub row: [f64; 3],
+    /// Measured value.
+    pub value: f64,
+    /// Error variance of the value.
+    pub variance: f64,
 }
 
 /// Posterior of a motion of order N, in SI units, or with radians in place of metres.
@@ -98,7 +113,7 @@ pub fn log_likelihood<const N: usize>(readings: &Readings, intensity: &[f64]) ->
 }
 
 type Estimate<const N: usize> = (State<N>, Square<N>);
-type Updates<const N: usize> = [Option<(Update<N>, f64)>; 2];
+type Updates<const N: usize> = [Option<(Update<N>, f64)>; 3];
 
 /// States of the filter, stored for the backward pass; a second pass reuses the memory of the
 /// first.
@@ -154,11 +169,12 @@ impl<const N: usize> Forward<N> {
         intensity: &[f64],
         mut visit: impl FnMut(usize, &Transition<N>, &Adjoint<N>, f64),
     ) {
-        let rows = self.time.rows::<N>(readings);
+        let [position, velocity] = self.time.rows::<N>(readings);
         let mut adjoint = Adjoint::last();
         let mut step = Transition::over(0.0);
         for k in (0..self.filtered.len().saturating_sub(1)).rev() {
             let Adjoint { state: r, square } = &mut adjoint;
+            let rows = [position, velocity, self.time.linear_row(readings, k + 1)];
             for (row, update) in rows.iter().zip(&self.updates[k + 1]).rev() {
                 if let Some((update, innovation)) = update {
                     // With L = I - K row': r <- row e / S + L' r, N <- row row' / S + L' N L
@@ -209,6 +225,17 @@ impl TimeScale {
         [position, late_velocity(readings.velocity_delay / self.unit)]
     }
 
+    /// Linear reading at instant k as a function of the state; zero if there is none.
+    fn linear_row<const N: usize>(&self, readings: &Readings, k: usize) -> State<N> {
+        let mut row = State::zeros();
+        if let Some(reading) = readings.linear.get(k) {
+            for i in 0..N.min(3) {
+                row[i] = reading.row[i] * self.unit.powi(-(i as i32));
+            }
+        }
+        row
+    }
+
     /// Sets `step` to the transition from instant k to k + 1.
     fn step<const N: usize>(&self, readings: &Readings, k: usize, step: &mut Transition<N>) {
         let h = (readings.time[k + 1] - readings.time[k]).max(0.0) / self.unit;
@@ -245,7 +272,7 @@ fn filter<const N: usize>(
     .unwrap_or(0);
     let time = TimeScale::new(&readings.time[..n], N);
     let unit = time.unit;
-    let rows: [State<N>; 2] = time.rows(readings);
+    let [position, velocity]: [State<N>; 2] = time.rows(readings);
     let mut log_likelihood = 0.0;
     let (mut mean, mut covariance): Estimate<N> = initial_state(readings, n, unit);
     let mut step = Transition::over(0.0);
@@ -257,15 +284,21 @@ fn filter<const N: usize>(
                 step.carried(&covariance) + step.noise * (intensity[k - 1] * time.intensity);
         }
         let before = (mean, covariance);
-        let pair = [
+        let linear = readings
+            .linear
+            .get(k)
+            .map_or((0.0, f64::INFINITY), |r| (r.value, r.variance));
+        let read = [
             (readings.position[k], readings.position_variance[k]),
             (
                 readings.velocity[k] * unit,
                 readings.velocity_variance[k] * unit * unit,
             ),
+            linear,
         ];
-        let mut both = [None, None];
-        for ((row, (value, variance)), kept) in rows.iter().zip(pair).zip(&mut both) {
+        let rows = [position, velocity, time.linear_row(readings, k)];
+        let mut all = [None, None, None];
+        for ((row, (value, variance)), kept) in rows.iter().zip(read).zip(&mut all) {
             if variance.is_finite() && value.is_finite() {
                 let update = Update::new(row, variance, &covariance);
                 let innovation = value - row.dot(&mean);
@@ -277,11 +310,11 @@ fn filter<const N: usize>(
                 *kept = Some((update, innovation));
             }
         }
-        if both[1].is_some() {
+        if all[1].is_some() {
             // The velocity was scaled: converts its density back to per (m/s).
             log_likelihood += unit.ln();
         }
-        visit(before, both, (mean, covariance));
+        visit(before, all, (mean, covariance));
     }
     FilterOutput {
         time,

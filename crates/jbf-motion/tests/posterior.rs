@@ -1,6 +1,8 @@
 //! The smoother and the whitening compared with dense linear algebra, and their invariances.
 
-use jbf_motion::{smooth, whiten, Readings, Smoothed};
+use jbf_motion::{
+    estimate, smooth, whiten, Known, LinearReading, Passes, ReadingErrors, Readings, Smoothed,
+};
 use nalgebra::{DMatrix, DVector, SMatrix};
 
 const SAMPLES: usize = 9;
@@ -15,6 +17,7 @@ struct Record {
     velocity_variance: Vec<f64>,
     intensity: Vec<f64>,
     delay: f64,
+    linear: Vec<LinearReading>,
 }
 
 impl Record {
@@ -35,11 +38,23 @@ impl Record {
             velocity_variance: vec![1e-4; SAMPLES],
             intensity: vec![50.0, 80.0, 5.0, 5.0, 2000.0, 60.0, 30.0, 10.0],
             delay: 0.02,
+            linear: Vec::new(),
         };
         record.position_variance[2] = INF;
         record.velocity_variance[5] = INF;
         record.position_variance[6] = 9e-6;
         record
+    }
+
+    /// Adds forces `2 a + 0.5 v - p + e` at all instants but one.
+    fn with_forces(mut self) -> Self {
+        let reading = |k: usize| LinearReading {
+            row: [-1.0, 0.5, 2.0],
+            value: -19.0 * self.position[k] + 0.5 * self.velocity[k] + 0.1 * k as f64,
+            variance: if k == 4 { INF } else { 0.25 },
+        };
+        self.linear = (0..SAMPLES).map(reading).collect();
+        self
     }
 
     fn smooth<const N: usize>(&self) -> Smoothed<N> {
@@ -51,6 +66,7 @@ impl Record {
                 velocity: &self.velocity,
                 velocity_variance: &self.velocity_variance,
                 velocity_delay: self.delay,
+                linear: &self.linear,
             },
             &self.intensity,
         )
@@ -78,6 +94,13 @@ fn dense<const N: usize>(record: &Record) -> (DVector<f64>, DMatrix<f64>) {
             row[N * k + 3] = record.delay.powi(2) / 2.0;
         }
         add(row, record.velocity[k], record.velocity_variance[k]);
+        if let Some(reading) = record.linear.get(k) {
+            let mut row = DVector::zeros(N * SAMPLES);
+            for i in 0..3 {
+                row[N * k + i] = reading.row[i];
+            }
+            add(row, reading.value, reading.variance);
+        }
     }
     for k in 0..SAMPLES - 1 {
         let h = record.time[k + 1] - record.time[k];
@@ -107,10 +130,9 @@ fn dense<const N: usize>(record: &Record) -> (DVector<f64>, DMatrix<f64>) {
 
 #[test]
 fn posterior_equals_dense_least_squares_for_uneven_steps_and_missing_readings() {
-    fn of_order<const N: usize>() {
-        let record = Record::new();
+    fn of_order<const N: usize>(record: &Record) {
         let found = record.smooth::<N>();
-        let (mean, covariance) = dense::<N>(&record);
+        let (mean, covariance) = dense::<N>(record);
         for k in 0..SAMPLES {
             for i in 0..N {
                 let sd = covariance[(N * k + i, N * k + i)].sqrt();
@@ -124,8 +146,10 @@ fn posterior_equals_dense_least_squares_for_uneven_steps_and_missing_readings() 
             }
         }
     }
-    of_order::<3>();
-    of_order::<4>();
+    for record in [Record::new(), Record::new().with_forces()] {
+        of_order::<3>(&record);
+        of_order::<4>(&record);
+    }
 }
 
 #[test]
@@ -260,6 +284,7 @@ fn motion_is_finite_with_one_reading_or_none() {
                     velocity: &[f64::NAN],
                     velocity_variance: &[INF],
                     velocity_delay: 0.0,
+                    linear: &[],
                 },
                 &[],
             );
@@ -286,11 +311,67 @@ fn motion_between_exact_velocity_readings_is_recovered_at_fine_steps() {
                 velocity: &velocity,
                 velocity_variance: &variance,
                 velocity_delay: 0.0,
+                linear: &[],
             },
             &vec![1e-2; n - 1],
         );
         for (k, mean) in found.mean.iter().enumerate() {
             assert!((mean[1] - velocity[k]).abs() < 1e-4, "{N} {k}");
+        }
+    }
+    of_order::<3>();
+    of_order::<4>();
+}
+
+#[test]
+fn steps_divided_between_readings_have_the_same_factors_if_each_keeps_one() {
+    fn of_order<const N: usize>() {
+        let n = 60;
+        let times: Vec<f64> = (0..n).map(|k| 0.01 * k as f64).collect();
+        let corner = |t: f64| 20.0 * (t - 0.305).max(0.0).powi(2);
+        let noise = |k: usize| 1e-5 * ((7 * k % 11) as f64 - 5.0);
+        let factors = |parts: usize| {
+            let steps = parts * (n - 1);
+            let time: Vec<f64> = (0..=steps)
+                .map(|i| 0.01 * i as f64 / parts as f64)
+                .collect();
+            let read = |i: usize| match i % parts {
+                0 => corner(times[i / parts]) + noise(i / parts),
+                _ => f64::NAN,
+            };
+            let position: Vec<f64> = (0..=steps).map(read).collect();
+            let nothing = vec![f64::NAN; steps + 1];
+            let ones = vec![1.0; steps + 1];
+            let continues: Vec<bool> = (0..steps).map(|i| i % parts > 0).collect();
+            let record = jbf_motion::Record {
+                time: &time,
+                position: &position,
+                position_shape: &ones,
+                position_floor: 1e-12,
+                velocity: &nothing,
+                velocity_shape: &ones,
+                velocity_floor: 1e-12,
+                assigned: 0.0,
+                linear: &[],
+                continues: &continues,
+            };
+            let errors = ReadingErrors {
+                position_variance: 1e-9,
+                velocity_variance: 1.0,
+                stamp_variance: 0.0,
+                intensity: 1.0,
+                velocity_delay: 0.0,
+            };
+            let passes = Passes {
+                normal: 0,
+                robust: 3000,
+            };
+            let start = vec![1.0; steps];
+            let (_, found) = estimate::<N>(&record, errors, start, passes, Known::Everything);
+            found.into_iter().step_by(parts).collect::<Vec<_>>()
+        };
+        for (whole, divided) in factors(1).iter().zip(factors(3)) {
+            assert!((whole - divided).abs() < 1e-3 * whole, "{whole} {divided}");
         }
     }
     of_order::<3>();

@@ -1,8 +1,8 @@
 //! Smoother of a recorded motion, and whitening of residuals for its errors.
 
 use jbf_motion::{
-    estimate, log_likelihood, lower_bound, smooth, Passes, ReadingErrors, Readings, Record,
-    Smoothed,
+    estimate, log_likelihood, lower_bound, smooth, Known, LinearReading, Passes, ReadingErrors,
+    Readings, Record, Smoothed,
 };
 use numpy::ndarray::{Array2, Array3, ArrayView2, ArrayView3};
 use numpy::{
@@ -38,6 +38,14 @@ pub struct Errors {
 /// Variances of position, velocity and time stamps, the intensity, and the factors.
 type Estimated<'py> = (f64, f64, f64, f64, Bound<'py, PyArray1<f64>>);
 
+/// Coefficients, values and variances of linear readings, and `jbf_motion::Record::continues`.
+type Linear<'py> = (
+    PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, bool>,
+);
+
 impl Errors {
     fn of_readings(&self) -> ReadingErrors {
         ReadingErrors {
@@ -72,7 +80,27 @@ impl MotionReadings {
             velocity_shape: &self.velocity_shape,
             velocity_floor: self.velocity_floor,
             assigned: self.assigned,
+            linear: &[],
+            continues: &[],
         }
+    }
+
+    /// Returns linear readings and shared factors, if there is one for each instant and each step.
+    fn linear(&self, read: &Linear<'_>) -> PyResult<(Vec<LinearReading>, Vec<bool>)> {
+        let (rows, values) = (read.0.as_array(), read.1.as_array());
+        let (variances, continues) = (read.2.as_array(), read.3.as_array());
+        let n = self.time.len();
+        let lengths = [values.len(), variances.len(), continues.len() + 1];
+        if rows.dim() != (n, 3) || lengths != [n; 3] {
+            let shapes = format!("rows {:?}, {} values", rows.dim(), values.len());
+            return Err(PyValueError::new_err(format!("{shapes} for {n} instants")));
+        }
+        let reading = |k: usize| LinearReading {
+            row: [rows[[k, 0]], rows[[k, 1]], rows[[k, 2]]],
+            value: values[k],
+            variance: variances[k],
+        };
+        Ok(((0..n).map(reading).collect(), continues.to_vec()))
     }
 
     /// Returns the arrays as vectors, if they have n - 1 and n values.
@@ -210,24 +238,39 @@ impl MotionReadings {
     /// Estimates the errors of the readings and the factors of the intensity from start values; see
     /// `jbf_motion::estimate`.
     ///
-    /// Returns the variances of position, velocity and time stamps, the intensity and the factors.
+    /// `known` is "nothing", "intensity" or "everything"; see `jbf_motion::Known`. `linear` are measured linear functions of the motion, with their coefficients of position,
+    /// velocity and acceleration, (n, 3), values and variances. Returns the variances of position,
+    /// velocity and time stamps, the intensity and the factors.
     ///
     /// # Errors
     /// As for `log_likelihood`.
+    #[pyo3(signature = (errors, corners, passes, known, linear=None))]
     fn estimated<'py>(
         &self,
         py: Python<'py>,
         errors: Errors,
         corners: PyReadonlyArray1<'_, f64>,
         passes: (usize, usize),
-        fixed: bool,
+        known: &str,
+        linear: Option<Linear<'_>>,
     ) -> PyResult<Estimated<'py>> {
         let corners = corners.as_array().to_vec();
         if corners.len() != self.time.len().saturating_sub(1) {
             let lengths = format!("{} factors for {} instants", corners.len(), self.time.len());
             return Err(PyValueError::new_err(lengths));
         }
-        let (start, record) = (errors.of_readings(), self.record());
+        let linear = linear.map_or(Ok(Default::default()), |read| self.linear(&read))?;
+        let (start, mut record) = (errors.of_readings(), self.record());
+        (record.linear, record.continues) = (&linear.0, &linear.1);
+        let known = match known {
+            "nothing" => Known::Nothing,
+            "intensity" => Known::Intensity,
+            "everything" => Known::Everything,
+            other => {
+                let problem = format!("known must be nothing, intensity or everything ({other})");
+                return Err(PyValueError::new_err(problem));
+            }
+        };
         let passes = Passes {
             normal: passes.0,
             robust: passes.1,
@@ -240,7 +283,7 @@ impl MotionReadings {
                 start,
                 corners,
                 passes,
-                fixed
+                known
             )
         })?;
         Ok((

@@ -16,14 +16,20 @@ import numpy.typing as npt
 from jbf.estimation.delays import common_delay_step, delay_slope
 from jbf.estimation.errors_in_motion import ErrorsInMotion
 from jbf.estimation.noise import WHITE
-from jbf.estimation.prepared import Prepared, coasting
+from jbf.estimation.posterior_motions import (
+    moved,
+    posteriors,
+    rougher,
+    with_corners_of_forces,
+    with_posteriors,
+)
+from jbf.estimation.prepared import coasting
 from jbf.estimation.problem import Problem
 from jbf.estimation.samples import Samples
 from jbf.estimation.search import search
 from jbf.estimation.solution import Solution
 from jbf.models.delayed_reading import TAU
 from jbf.records.findings.finding import Finding
-from jbf.records.motion.estimated_motion import EstimatedMotion
 
 Array = npt.NDArray[np.float64]
 ROUNDS = 8
@@ -35,11 +41,6 @@ It is a numerical tolerance.
 """
 EVALUATIONS = 20
 """Evaluations of each fit. It limits the effort only."""
-STEP = 0.5
-"""Step of the numerical derivatives by the motion, in standard errors of the motion.
-
-It is a numerical resolution.
-"""
 SIMPLEX = 0.3
 """Size of the first simplex in the logarithms of noise and scale. It only starts a search."""
 EXACT_RECORD = 1e-12
@@ -78,6 +79,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
         if e.delayed
     ]
     best = min(ends, key=lambda end: end.deviance) if len(ends) > 1 else ends[0]
+    best = _with_corners_of_forces(problem, best)
     motion = best.solution.samples.motion
     if motion is None:
         return best.problem, best.solution
@@ -104,9 +106,37 @@ def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Prob
     """
     before = problem.campaign.samples.motion
     delayed = before is not None and before.by_delay is not None
-    problem, solution = _likeliest_smoothness(problem, solution)
+    without = with_posteriors(problem, [m and m.with_corners_of(None) for m in posteriors(problem)])
+    problem, solution = _likeliest_smoothness(without, _near(without, solution))
     motion = estimate_motion_errors(problem, solution)
+    if motion.mean_share(solution.samples.weight) > problem.campaign.settings.motion.min_share:
+        problem = with_corners_of_forces(problem, solution, motion)
+        solution = _near(problem, solution)
+        motion = estimate_motion_errors(problem, solution)
     return problem, _fitted(problem, solution, motion, delayed=delayed)
+
+
+def _with_corners_of_forces(first: Problem, end: _End) -> _End:
+    """Locate the corners of the motion by the forces, and continue the iteration.
+
+    Parameters
+    ----------
+    first
+        Problem before the correction of a delay.
+    """
+    motion = end.solution.samples.motion
+    least = first.campaign.settings.motion.min_share
+    if motion is None or motion.mean_share(end.solution.samples.weight) < least:
+        return end
+    located = with_corners_of_forces(end.problem, end.solution, motion)
+    again = with_posteriors(first, posteriors(located))
+    near = _near(again, end.solution)
+    return _iterated(again, near, end.clock_s, late_s=end.late_s, delays=end.delayed)
+
+
+def _near(problem: Problem, solution: Solution) -> Solution:
+    """Residuals and derivatives of a problem with the parameters of another solution."""
+    return problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,12 +149,16 @@ class _End:
         The original problem, and the one with the force's delay corrected.
     delayed
         Whether a delay of the force was estimated.
+    clock_s, late_s
+        Delay of the clock of the force, and the total delay, s.
     """
 
     first: Problem
     problem: Problem
     solution: Solution
     delayed: bool
+    clock_s: float
+    late_s: float
 
     @cached_property
     def deviance(self) -> float:
@@ -137,14 +171,27 @@ class _End:
         return deviance * counts[0] / max(counts[1], 1)
 
 
-def _iterated(first: Problem, solution: Solution, clock_s: float, *, delays: bool = True) -> _End:
+def _iterated(
+    first: Problem,
+    solution: Solution,
+    clock_s: float,
+    *,
+    late_s: float | None = None,
+    delays: bool = True,
+) -> _End:
     """Iterate the fit with a delay `clock_s` of the force.
 
-    With `delays`, a significant delay common to all runs is estimated as well.
+    Parameters
+    ----------
+    late_s
+        Total delay at which the iteration starts, s; by default that of the clock.
+    delays
+        Whether a significant delay common to all runs is estimated as well.
     """
-    problem, late_s, settings = first, clock_s, first.campaign.settings.motion
+    problem, settings = first, first.campaign.settings.motion
+    late_s = clock_s if late_s is None else late_s
     delays = delays and first.campaign.force_has_clock
-    if clock_s != 0.0:
+    if late_s != 0.0:
         problem = _delayed(first, late_s)
         solution = problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
     for _ in range(ROUNDS):
@@ -165,14 +212,14 @@ def _iterated(first: Problem, solution: Solution, clock_s: float, *, delays: boo
         changes = [a - b for a, b in zip(before.residuals, solution.residuals, strict=True)]
         if solution.samples.rms(changes) < SETTLED * motion.noise:
             break
-    return _End(first, problem, solution, late_s != clock_s)
+    return _End(first, problem, solution, late_s != clock_s, clock_s, late_s)
 
 
 def _with_smoothing(end: _End) -> Array:
     """Change of each search variable if the motion is smoothed less, shape (k,)."""
     problem, solution = end.problem, end.solution
     factor = problem.campaign.settings.motion.roughness_factor
-    other = _rougher(problem, factor, same_corners=True)
+    other = rougher(problem, factor, same_corners=True)
     near = other.solution(solution.values, solution.samples, WHITE)
     near = _fitted(other, near, estimate_motion_errors(other, near), delayed=end.delayed)
     return problem.encode(near.values) - problem.encode(solution.values)
@@ -202,7 +249,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
     least, _ = fitted_with(problem)
     for change in (1.0 / INTENSITY_STEP, INTENSITY_STEP):
         while LEAST_INTENSITY < factor * change < 1.0 / LEAST_INTENSITY:
-            tried = _rougher(first, factor * change)
+            tried = rougher(first, factor * change)
             deviance, refitted = fitted_with(tried)
             if deviance >= least - settings.motion.min_smoothness_gain:
                 break
@@ -210,25 +257,6 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         if factor != 1.0:
             break
     return problem, solution
-
-
-def _rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> Problem:
-    """Return the problem with the noise intensity of the motion multiplied by a factor.
-
-    See `Smoothed.rougher`.
-    """
-    prepared = []
-    for p in problem.campaign.prepared:
-        motion = p.motion.rougher(p.run.time_s, factor, same_corners=same_corners)
-        mass = coasting(p.rig)
-        if mass is not None:
-            p = replace(p, friction=-mass * motion.acceleration)
-        recorded = p.recorded
-        if recorded is not None:
-            again = recorded[1].rougher(recorded[0], factor, same_corners=same_corners)
-            recorded = (recorded[0], again)
-        prepared.append(replace(p, motion=motion, recorded=recorded))
-    return problem.with_campaign(replace(problem.campaign, prepared=tuple(prepared)))
 
 
 def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMotion:
@@ -242,8 +270,8 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
     predicted = [p.friction - r for p, r in zip(prepared, solution.residuals, strict=True)]
     sensitivity = [np.zeros((len(f), 3)) for f in predicted]
     for axis in range(3):
-        moved, steps = zip(*(_moved(p, axis) for p in prepared), strict=True)
-        other = problem.chain.predict(solution.values, [p.core for p in moved])
+        changed, steps = zip(*(moved(p, axis) for p in prepared), strict=True)
+        other = problem.chain.predict(solution.values, [p.core for p in changed])
         for derivatives, before, after, step in zip(
             sensitivity, predicted, other, steps, strict=True
         ):
@@ -354,29 +382,3 @@ def _delayed(first: Problem, late_s: float) -> Problem:
         first.campaign, prepared=prepared, samples=Samples.of(prepared, first.campaign.settings)
     )
     return first.with_campaign(campaign.with_findings([finding]))
-
-
-def _moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
-    """Return a run with one component of its motion changed, and the change, shape (n,).
-
-    The change is a fraction of a standard error, in powers of m (or rad) and s.
-    """
-
-    def off(motion: EstimatedMotion) -> tuple[EstimatedMotion, Array]:
-        errors = motion.errors
-        assert errors is not None
-        step = STEP * np.sqrt(np.maximum(errors.covariance[:, axis, axis], 0.0))
-        step = np.where(motion.resting, 0.0, step)
-        if axis == 0:
-            moved = replace(motion, angle_rad=motion.angle_rad + step / errors.arm_m)
-        elif axis == 1:
-            moved = replace(motion, velocity=motion.velocity + step)
-        else:
-            moved = replace(motion, acceleration=motion.acceleration + step)
-        return moved, step
-
-    recorded = prepared.recorded
-    if recorded is not None:
-        recorded = (recorded[0], off(recorded[1])[0])
-    moved, step = off(prepared.motion)
-    return replace(prepared, motion=moved, recorded=recorded), step

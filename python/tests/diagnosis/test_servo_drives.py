@@ -144,3 +144,13 @@ def test_acceleration_error_of_a_hand_guided_drive_is_below_7_percent_of_its_jum
         squares.append((p.motion.acceleration - true)[counted] ** 2)
     error = float(np.sqrt(np.mean(np.concatenate(squares))))
     assert error < 0.062 * jump
+
+
+def test_filtered_differences_of_coarse_counts_do_not_make_the_motion_rough() -> None:
+    """The errors of such a speed are pulses of up to 1 rad/s at each count, not white noise."""
+    simulated, campaign = campaign_of(4734)
+    for p, record in zip(campaign.prepared, simulated.records, strict=True):
+        assert record.velocity is not None
+        reading = np.std(record.velocity - record.true_velocity)
+        true = np.interp(p.run.time_s, record.time_s, record.true_velocity)
+        assert np.std(p.motion.velocity - true) < 0.4 * reading

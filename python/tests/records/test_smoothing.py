@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 from jbf.records.motion.even_clock import even_clock
-from jbf.records.motion.readings import ReadingErrors, Readings
-from jbf.records.motion.smoothing import is_even, smooth
+from jbf.records.motion.reading_errors import is_even
+from jbf.records.motion.readings import ForceReadings, ReadingErrors, Readings
+from jbf.records.motion.smoothing import smooth
 from known_motions import Array, quantised
 from read_motions import COUNT, FINE, NOISE, STEP_S, motion_of, readings_of
 
@@ -200,3 +201,30 @@ def test_lower_bound_is_just_below_the_likelihood_by_quadrature(order: int) -> N
     likelihood = np.max(logs) + np.log(np.sum(np.exp(logs - np.max(logs))) * step**2)
     bound = three.lower_bound(errors, three.corners(errors, 200))
     assert likelihood - 2.0 < bound < likelihood
+
+
+def test_forces_place_a_corner_in_the_step_in_which_the_acceleration_jumps() -> None:
+    """Forces are read between the samples of a coarse encoder, and one reading is missing."""
+    corner_s = 1.5022
+    time = STEP_S * np.arange(600)
+    after = np.maximum(time - corner_s, 0.0)
+    position = 0.3 * time - 3.0 * after**2
+    readings = readings_of(position, np.gradient(position, STEP_S)).positions()
+    smoothed = smooth(readings)
+    instants = time[:-1] + 0.3 * STEP_S
+    rows = np.tile([0.0, 0.5, 2.0], (len(instants), 1))
+    true = 2.0 * np.where(instants > corner_s, -6.0, 0.0)
+    true += 0.5 * (0.3 - 6.0 * np.maximum(instants - corner_s, 0.0))
+    noisy = true + np.random.default_rng(3).normal(0.0, 0.05, len(true))
+    variances = np.full(len(true), 0.05**2)
+    variances[100] = np.inf
+    located = smoothed.with_corners_of(ForceReadings(instants, rows, noisy, variances))
+    step = int(corner_s / STEP_S)
+    assert abs(int(np.argmax(located.corners)) - step) <= 1
+    acceleration = np.where(time > corner_s, -6.0, 0.0)
+    # Without the forces, the corner is smoothed over several steps, with too small an error.
+    worst = [
+        np.max(np.abs(m.mean[:, 2] - acceleration) / np.sqrt(m.covariance[:, 2, 2]))
+        for m in (smoothed, located)
+    ]
+    assert worst[1] < 3.0 < worst[0]

@@ -29,6 +29,7 @@ from jbf.records.motion.corrected_records import (
 from jbf.records.motion.even_clock import even_clock
 from jbf.records.motion.first_stroke import begins_with_oscillation
 from jbf.records.motion.position import recorded_position
+from jbf.records.motion.reading_errors import is_even
 from jbf.records.motion.readings import AT_REST, ReadingErrors, Readings
 from jbf.records.motion.rests import (
     backward_near_rest,
@@ -40,7 +41,7 @@ from jbf.records.motion.rests import (
     without_swings,
 )
 from jbf.records.motion.roughness import local_noise, noise_of, quantum_of
-from jbf.records.motion.smoothing import Smoothed, is_even, smooth
+from jbf.records.motion.smoothing import Smoothed, smooth
 from jbf.records.run import Run
 
 Array = npt.NDArray[np.float64]
@@ -134,21 +135,15 @@ class EstimatedMotion:
         """Columns that were discarded as a whole, or converted."""
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
-    def rougher(
-        self, time_s: Array, factor: float, *, same_corners: bool = False
-    ) -> EstimatedMotion:
-        """Posterior mean with the noise intensity multiplied by a factor (`Smoothed.rougher`).
+    def with_posterior(self, time_s: Array, smoothed: Smoothed) -> EstimatedMotion:
+        """Return the motion with another posterior of the same readings.
 
         Parameters
         ----------
         time_s
             The instants of this motion, s.
-        same_corners
-            True to keep the factors of the corners instead of estimating them again.
         """
-        if self.errors is None or self.errors.smoothed is None:
-            return self
-        smoothed = self.errors.smoothed.rougher(factor, same_corners=same_corners)
+        assert self.errors is not None
         mean, errors = replace(self.errors, smoothed=smoothed).at(time_s)
         velocity = np.where(self.resting, 0.0, mean[:, 1])
         # As in `estimate_motion`: with an unknown first sign a model starts at rest.

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from jbf._core import MotionReadings, SmoothedMotion
 
 Array = npt.NDArray[np.float64]
+IndexArray = npt.NDArray[np.intp]
 
 SPAN = 5
 """Number of samples over which a first estimate of the speed is averaged."""
@@ -46,6 +47,28 @@ class ReadingErrors:
     velocity_delay_s: float = 0.0
 
 
+@dataclass(frozen=True, eq=False)
+class ForceReadings:
+    """Forces as linear functions of position, velocity and acceleration.
+
+    Attributes
+    ----------
+    instants_s
+        Instants, s, shape (n,).
+    rows
+        Coefficients of position, velocity and acceleration, shape (n, 3).
+    values
+        Values, in the unit of the force, shape (n,).
+    variances
+        Error variances of the values; infinite for a sample that is not used.
+    """
+
+    instants_s: Array
+    rows: Array
+    values: Array
+    variances: Array
+
+
 @dataclass(frozen=True)
 class Readings:
     """Readings of a motion; all arrays of shape (n,).
@@ -71,6 +94,39 @@ class Readings:
     position_shape: Array
     velocity_shape: Array
 
+    def at(self, instants_s: Array) -> tuple[Readings, IndexArray, IndexArray]:
+        """Add instants without readings.
+
+        Returns
+        -------
+        readings : Readings
+            Readings at the union of the instants.
+        samples, added : ndarray of int
+            Indices of the original samples and of the added instants in it.
+        """
+        union, index = np.unique(np.concatenate([self.time_s, instants_s]), return_inverse=True)
+        samples, added = index[: len(self.time_s)], index[len(self.time_s) :]
+
+        def spread(values: Array, missing: float) -> Array:
+            spread_values = np.full(len(union), missing)
+            spread_values[samples] = values
+            return spread_values
+
+        readings = replace(
+            self,
+            time_s=union,
+            position=spread(self.position, np.nan),
+            velocity=spread(self.velocity, np.nan),
+            position_shape=spread(self.position_shape, 1.0),
+            velocity_shape=spread(self.velocity_shape, 1.0),
+        )
+        return readings, samples, added
+
+    def positions(self) -> Readings:
+        """Return the readings without the measured velocities."""
+        assigned = self.velocity_shape <= AT_REST
+        return replace(self, velocity=np.where(assigned, self.velocity, np.nan))
+
     def part(self, part: slice) -> Readings:
         """Return the readings of a part of the samples."""
         return replace(
@@ -89,7 +145,8 @@ class Readings:
         time = self.time_s
         step = float(time[-1] - time[0]) / max(len(time) - 1, 1)
         slope = np.nan_to_num(np.gradient(self.position, step))
-        return np.convolve(slope, np.ones(SPAN) / SPAN, "same")
+        span = min(SPAN, len(time))
+        return np.convolve(slope, np.ones(span) / span, "same")
 
     def __getstate__(self) -> dict[str, Any]:
         # The copy for the core cannot be pickled.
@@ -129,7 +186,12 @@ class Readings:
         return self._core.lower_bound(errors, corners, self.first_speed())
 
     def estimated(
-        self, errors: ReadingErrors, corners: Array, passes: tuple[int, int]
+        self,
+        errors: ReadingErrors,
+        corners: Array,
+        passes: tuple[int, int],
+        *,
+        known_intensity: bool = False,
     ) -> tuple[ReadingErrors, Array]:
         """Errors and factors by expectation-maximisation from starting values.
 
@@ -137,9 +199,11 @@ class Readings:
         ----------
         passes
             Largest numbers of passes with normal noise, for a start, and with a t distribution.
+        known_intensity
+            Whether the intensity keeps its starting value.
         """
         position, velocity, stamp, intensity, factors = self._core.estimated(
-            errors, corners, passes, False
+            errors, corners, passes, "intensity" if known_intensity else "nothing"
         )
         found = replace(
             errors,
@@ -150,6 +214,34 @@ class Readings:
         )
         return found, factors
 
-    def corners(self, errors: ReadingErrors, passes: int) -> Array:
-        """Estimate the intensity factors in `passes` passes, with known errors."""
-        return self._core.estimated(errors, np.ones(len(self.time_s) - 1), (0, passes), True)[-1]
+    def corners(
+        self, errors: ReadingErrors, passes: int, forces: ForceReadings | None = None
+    ) -> Array:
+        """Estimate the factor of the noise intensity in each step, with known errors.
+
+        Parameters
+        ----------
+        passes
+            Number of passes of expectation-maximisation.
+        forces
+            Forces that are used as further readings of the motion.
+
+        Returns
+        -------
+        Array
+            Factors, shape (n - 1,).
+        """
+        ones = np.ones(len(self.time_s) - 1)
+        if forces is None:
+            return self._core.estimated(errors, ones, (0, passes), "everything")[-1]
+        joint, _, at_forces = self.at(forces.instants_s)
+        count = len(joint.time_s)
+        rows, values, variances = np.zeros((count, 3)), np.zeros(count), np.full(count, np.inf)
+        rows[at_forces], values[at_forces] = forces.rows, forces.values
+        variances[at_forces] = forces.variances
+        # The instants of the forces divide steps between readings, which keep one factor each.
+        step = np.searchsorted(self.time_s, joint.time_s[:-1], "right") - 1
+        step = np.clip(step, 0, len(ones) - 1)
+        linear = (rows, values, variances, np.diff(step, prepend=-1) == 0)
+        factors = joint._core.estimated(errors, ones[step], (0, passes), "everything", linear)[-1]
+        return factors[np.searchsorted(step, np.arange(len(ones)))]

@@ -1,0 +1,110 @@
+"""Other posteriors of the motion of all runs of a problem."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.estimation.prepared import Prepared, coasting
+from jbf.estimation.problem import Problem
+from jbf.estimation.solution import Solution
+from jbf.records.motion.estimated_motion import EstimatedMotion
+from jbf.records.motion.readings import ForceReadings
+from jbf.records.motion.smoothing import Smoothed
+
+Array = npt.NDArray[np.float64]
+STEP = 0.5
+"""Step of the numerical derivatives by the motion, in standard errors of the motion.
+
+It is a numerical resolution.
+"""
+
+
+def posteriors(problem: Problem) -> list[Smoothed | None]:
+    """Posterior of the motion of each run; None where it is not known."""
+    errors = [p.motion.errors for p in problem.campaign.prepared]
+    return [None if e is None else e.smoothed for e in errors]
+
+
+def with_posteriors(problem: Problem, motions: Sequence[Smoothed | None]) -> Problem:
+    """Return the problem with other posteriors of the motions; None keeps that of a run."""
+    prepared = []
+    for p, smoothed in zip(problem.campaign.prepared, motions, strict=True):
+        if smoothed is not None:
+            motion = p.motion.with_posterior(p.run.time_s, smoothed)
+            mass, recorded = coasting(p.rig), p.recorded
+            if mass is not None:
+                p = replace(p, friction=-mass * motion.acceleration)
+            if recorded is not None:
+                recorded = (recorded[0], recorded[1].with_posterior(recorded[0], smoothed))
+            p = replace(p, motion=motion, recorded=recorded)
+        prepared.append(p)
+    return problem.with_campaign(replace(problem.campaign, prepared=tuple(prepared)))
+
+
+def rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> Problem:
+    """Return the problem with the noise intensity of the motion multiplied by a factor.
+
+    See `Smoothed.rougher`.
+    """
+    motions = [m and m.rougher(factor, same_corners=same_corners) for m in posteriors(problem)]
+    return with_posteriors(problem, motions)
+
+
+def with_corners_of_forces(problem: Problem, solution: Solution, errors: ErrorsInMotion) -> Problem:
+    """Return the problem with corners of the motion where the forces require them.
+
+    See `Smoothed.with_corners_of`.
+    """
+    if not problem.campaign.force_has_clock:
+        return problem
+    plain = problem.samples_at(solution.values)
+    motions: list[Smoothed | None] = []
+    for smoothed, p, residual, rows, weight in zip(
+        posteriors(problem),
+        problem.campaign.prepared,
+        solution.residuals,
+        errors.sensitivity,
+        plain.weight,
+        strict=True,
+    ):
+        if smoothed is None:
+            motions.append(None)
+            continue
+        mean, _, _ = smoothed.at(p.run.time_s)
+        with np.errstate(divide="ignore"):
+            variances = np.where(weight > 0.0, (errors.noise / weight) ** 2, np.inf)
+        values = np.einsum("ni,ni->n", rows, mean[:, :3]) + residual
+        forces = ForceReadings(p.run.time_s, rows, values, variances)
+        motions.append(smoothed.with_corners_of(forces))
+    return with_posteriors(problem, motions)
+
+
+def moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
+    """Return a run with one component of its motion changed, and the change, shape (n,).
+
+    The change is a fraction of a standard error, in powers of m (or rad) and s.
+    """
+
+    def off(motion: EstimatedMotion) -> tuple[EstimatedMotion, Array]:
+        errors = motion.errors
+        assert errors is not None
+        step = STEP * np.sqrt(np.maximum(errors.covariance[:, axis, axis], 0.0))
+        step = np.where(motion.resting, 0.0, step)
+        if axis == 0:
+            changed = replace(motion, angle_rad=motion.angle_rad + step / errors.arm_m)
+        elif axis == 1:
+            changed = replace(motion, velocity=motion.velocity + step)
+        else:
+            changed = replace(motion, acceleration=motion.acceleration + step)
+        return changed, step
+
+    recorded = prepared.recorded
+    if recorded is not None:
+        recorded = (recorded[0], off(recorded[1])[0])
+    motion, step = off(prepared.motion)
+    return replace(prepared, motion=motion, recorded=recorded), step

@@ -90,10 +90,10 @@ class Policy:
                 )
 
     def least_share(self, motion_share: float) -> float:
-        """Minimum share of the mean square that structure, a law or a filter must explain.
+        """Minimum share of the mean square that structure or a law must explain.
 
         The errors of the motion contribute this share of the variance, and their covariance is
-        estimated. An effect that filters a force or a motion can explain the same share.
+        estimated.
 
         Parameters
         ----------
@@ -102,8 +102,15 @@ class Policy:
         """
         return min(motion_share, self.motion.max_structure_share)
 
+    def least_filter_share(self, motion_share: float) -> float:
+        """Minimum share that an effect that filters a force or a motion must explain.
+
+        Such an effect smooths the errors of the motion and explains a part of their share.
+        """
+        return self.motion.min_filter_ratio * motion_share
+
     def least_effect_share(self, motion_share: float) -> float:
-        """Minimum share of the mean square that an effect other than a filter must explain."""
+        """Minimum share of the mean square that any other effect must explain."""
         return min(motion_share, self.motion.max_effect_share)
 
     def with_values(self, values: Mapping[str, Any]) -> Policy:

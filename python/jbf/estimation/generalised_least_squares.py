@@ -99,10 +99,10 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 
 
 def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Estimate the errors of the motion for a model with more effects, and refit once.
+    """Estimate the errors of the motion for a model with more effects, and refit.
 
     The noise of the force, and scale and smoothness of the motion's errors, are estimated. A
-    corrected delay is projected out of the residuals as before.
+    corrected delay is projected out of the residuals as before; otherwise a delay is estimated.
     """
     before = problem.campaign.samples.motion
     delayed = before is not None and before.by_delay is not None
@@ -113,6 +113,10 @@ def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Prob
         problem = with_corners_of_forces(problem, solution, motion)
         solution = _near(problem, solution)
         motion = estimate_motion_errors(problem, solution)
+    if not delayed:
+        end = _iterated(problem, solution, 0.0)
+        if end.delayed:
+            return end.problem, end.solution
     return problem, _fitted(problem, solution, motion, delayed=delayed)
 
 
@@ -234,7 +238,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
         return problem, solution
     settings = problem.campaign.settings
     motion = estimate_motion_errors(problem, solution)
-    if motion.mean_share(solution.samples.weight) < settings.conditions.max_motion_share:
+    if motion.mean_share(solution.samples.weight) < settings.motion.min_share:
         return problem, solution
     samples = solution.samples
 

@@ -2,6 +2,7 @@
 
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import jbf
@@ -53,6 +54,8 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
         (4045, "viscous_thinning"),
         (4315, "torque_proportional"),
         (4617, "torque_proportional"),
+        # The delay of the force appears only when the effect is in the model.
+        pytest.param(4735, "stribeck_excess", marks=pytest.mark.extended),
     ],
 )
 def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:
@@ -90,6 +93,43 @@ def test_held_out_errors_of_a_law_include_samples_of_the_initial_state_transient
     errors = held_out_errors(elastic, ()).errors
     for e, counted in zip(errors, campaign.samples.counted, strict=True):
         assert np.array_equal(np.isfinite(e), counted)
+
+
+def from_rest(name: str, torque: Callable[[float], float], seconds: float, seed: int) -> jbf.Run:
+    """A motor that a torque accelerates from rest, integrated in steps of 1 ms, read at 50 Hz."""
+    coulomb, viscous, inertia = 0.6, 0.37, 0.043
+    velocity, angle, rows = 0.0, 0.0, []
+    for time in np.arange(0.0, seconds, 0.02):
+        driving = torque(time)
+        for _ in range(20):
+            side = np.sign(velocity) if abs(velocity) > 1e-6 else np.sign(driving)
+            sticks = abs(velocity) < 1e-6 and abs(driving) <= coulomb
+            accelerating = 0.0 if sticks else driving - coulomb * side - viscous * velocity
+            after = velocity + 1e-3 * accelerating / inertia
+            velocity = 0.0 if velocity * after < 0.0 else after
+            angle += 1e-3 * velocity
+        rows.append((time, angle, velocity, driving))
+    columns = np.array(rows)
+    random = np.random.default_rng(seed)
+    columns[:, 1] = np.round(columns[:, 1] / 3e-3) * 3e-3
+    columns[:, 2:] += random.normal(0.0, (0.025, 0.02), (len(columns), 2))
+    time, angle, speed, force = columns.T
+    return jbf.Run.from_arrays(time, speed, force, angle_rad=angle, name=name)
+
+
+def test_no_filter_is_named_where_it_would_smooth_the_errors_of_the_acceleration() -> None:
+    """The acceleration at the start of a step is known only from the samples after it."""
+    runs = [
+        from_rest("ramp up", lambda t: 0.25 * t, 16.0, 5),
+        from_rest("ramp down", lambda t: -0.25 * t, 16.0, 6),
+        from_rest("step up", lambda t: 5.0, 3.5, 7),
+        from_rest("step down", lambda t: -5.0, 3.5, 8),
+    ]
+    rig = jbf.Rig(drive=jbf.Drive(motion="rotary", friction="torque"))
+    diagnosis = jbf.diagnose(rig, runs, law="coulomb")
+    assert (diagnosis.verdict, diagnosis.effects) == ("adequate", ()), diagnosis.summary()
+    inertia = diagnosis.fit["inertia.m_e"]
+    assert abs(inertia.value - 0.043) < 3.0 * inertia.stderr
 
 
 def campaign_of(seed: int) -> tuple[servosim.Campaign, Campaign]:

@@ -81,7 +81,8 @@ NUMERICAL = {
         diagnosis.residual_structure.periodic: MOST_BINS PADDING
         estimation.delays: FINE_S
         estimation.delay_scan: COARSE FINE
-        estimation.generalised_least_squares: STEP INTENSITY_STEP
+        estimation.generalised_least_squares: INTENSITY_STEP
+        estimation.posterior_motions: STEP
         estimation.identifiability: SHARES
         estimation.pitches: MOST_BINS PADDING
         estimation.prepared: FINER

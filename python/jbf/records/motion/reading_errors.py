@@ -64,7 +64,7 @@ STAMP_ERRORS = (0.01, 0.05, 0.2)
 """Standard errors of the instants that are tried, in samples."""
 START_GAIN = 10.0
 """Minimum gain in the lower bound for an additional starting value."""
-CHANNEL_GAIN = 0.02
+CHANNEL_GAIN = 0.05
 """Gain in the lower bound of the positions, per sample, from which the velocity contradicts them.
 
 The gain is that of an intensity that is estimated from the positions alone.
@@ -103,7 +103,7 @@ def estimate_errors(
     """
     start = _of_likeliest_order(readings.part(_longest_path_window(readings, CHOSEN)))
     few = readings.part(_longest_path_window(readings, LONGEST))
-    by_positions = _of_positions(readings)
+    by_positions = _of_positions(readings, start.order)
     errors, corners = _consistent(few, start, by_positions)
     if starts:
         most = few.lower_bound(errors, corners) + START_GAIN
@@ -134,14 +134,26 @@ class _OfPositions:
     bound: float
 
 
-def _of_positions(readings: Readings) -> _OfPositions | None:
-    """Estimate the errors from the positions alone; None if only one channel was recorded."""
+def _of_positions(readings: Readings, order: int) -> _OfPositions | None:
+    """Estimate the errors from the positions alone; None if only one channel was recorded.
+
+    Parameters
+    ----------
+    order
+        Order of the derivative that is noise.
+    """
     if not _both_read(readings):
         return None
     few = readings.part(_longest_path_window(readings, CHOSEN)).positions()
-    start, ones = _of_likeliest_order(few), np.ones(len(few.time_s) - 1)
-    errors, corners = few.estimated(start, ones, PASSES)
-    return _OfPositions(few, errors, few.lower_bound(errors, corners))
+    start, _ = _likeliest_stamps(few)
+    start, _ = _likeliest_intensity(few, replace(start, order=order))
+    errors, _ = few.estimated(start, np.ones(len(few.time_s) - 1), PASSES)
+    return _OfPositions(few, errors, _bound_of(few, errors))
+
+
+def _bound_of(readings: Readings, errors: ReadingErrors) -> float:
+    """Lower bound of the log-likelihood with these errors, and corners for them."""
+    return readings.lower_bound(errors, readings.corners(errors, LONG_PASSES))
 
 
 def _consistent(
@@ -153,14 +165,12 @@ def _consistent(
     would be taken for a rough motion. The intensity is then that of the positions alone.
     """
     errors, corners = _delayed(readings, start)
-    if by_positions is None:
+    if by_positions is None or by_positions.errors.order != errors.order:
         return errors, corners
-    positions = by_positions.readings
-    bound = positions.lower_bound(errors, positions.corners(errors, LONG_PASSES))
-    if by_positions.bound - bound < CHANNEL_GAIN * len(positions.time_s):
+    gain = by_positions.bound - _bound_of(by_positions.readings, errors)
+    if gain < CHANNEL_GAIN * len(by_positions.readings.time_s):
         return errors, corners
-    of_positions = by_positions.errors
-    tried = replace(start, intensity=of_positions.intensity, order=of_positions.order)
+    tried = replace(start, intensity=by_positions.errors.intensity)
     return _delayed(readings, tried, known_intensity=True)
 
 

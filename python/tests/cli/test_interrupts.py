@@ -68,7 +68,8 @@ def test_interrupted_fit_returns_the_best_parameters_so_far() -> None:
         best = stopped.value.fit
         assert (best.converged, best.message) == (False, "interrupted")
         rms.append(best.rms)
-    assert rms[0] >= rms[1] >= 0.999 * complete.rms
+    # The best parameters have the largest likelihood; the RMS may differ slightly in order.
+    assert 1.0001 * rms[0] >= rms[1] >= 0.999 * complete.rms
 
 
 def stop_at_candidates(message: str, done: int, total: int) -> None:

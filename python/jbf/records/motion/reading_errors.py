@@ -64,7 +64,7 @@ STAMP_ERRORS = (0.01, 0.05, 0.2)
 """Standard errors of the instants that are tried, in samples."""
 START_GAIN = 10.0
 """Minimum gain in the lower bound for an additional starting value."""
-CHANNEL_GAIN = 0.05
+CHANNEL_GAIN = 0.15
 """Gain in the lower bound of the positions, per sample, from which the velocity contradicts them.
 
 The gain is that of an intensity that is estimated from the positions alone.

@@ -54,6 +54,8 @@ def test_drive_without_hidden_effects_is_adequate(seed: int, machine: set[str]) 
         (4045, "viscous_thinning"),
         (4315, "torque_proportional"),
         (4617, "torque_proportional"),
+        # The delay of the force is negligible next to the error of a model without the effect.
+        (4753, "cogging"),
         # The delay of the force appears only when the effect is in the model.
         pytest.param(4735, "stribeck_excess", marks=pytest.mark.extended),
     ],

@@ -9,7 +9,11 @@ import numpy.typing as npt
 
 from jbf.diagnosis.terms.proposal import Model, Proposal, price_of_term
 from jbf.estimation.campaign import Campaign
-from jbf.estimation.generalised_least_squares import with_motion_errors_again
+from jbf.estimation.errors_in_motion import ErrorsInMotion
+from jbf.estimation.generalised_least_squares import (
+    with_motion_errors,
+    with_motion_errors_again,
+)
 from jbf.estimation.solution import Solution
 
 Array = npt.NDArray[np.float64]
@@ -18,26 +22,39 @@ Array = npt.NDArray[np.float64]
 def errors_of_motion(model: Model) -> Proposal | None:
     """Propose motion errors re-estimated (noise, scale, smoothness) with the present effects.
 
-    The gain is relative to the likelihood with the present motion errors. None if the noise has not
-    decreased by the minimum ratio of the policy since they were estimated.
+    They may have been negligible next to the error of a model with fewer effects. The gain is
+    relative to the likelihood with the present motion errors. None if they are negligible, or if
+    the noise has not decreased by the minimum ratio of the policy since they were estimated.
     """
-    before = model.campaign.samples.motion
-    if before is None:
+    campaign, solution = model.campaign, model.solution
+    before = campaign.samples.motion
+    if before is not None:
+        again, after = with_motion_errors_again(model.problem, solution)
+        motion = after.samples.motion
+        assert motion is not None
+        if motion.noise * model.policy.motion.min_noise_ratio > before.noise:
+            return None
+    elif campaign.rig.drive is not None:
+        before = _none(solution)
+        again, after = with_motion_errors(model.problem, solution)
+        motion = after.samples.motion
+    else:
         return None
-    solution = model.solution
-    again, after = with_motion_errors_again(model.problem, solution)
-    motion = after.samples.motion
-    assert motion is not None
-    if motion.noise * model.policy.motion.min_noise_ratio > before.noise:
+    if motion is None:
         return None
-    of_before, of_after = _common_weights((model.campaign, solution), (again.campaign, after))
+    of_before, of_after = _common_weights((campaign, solution), (again.campaign, after))
     gain = before.deviance(solution.residuals, of_before)
     gain -= motion.deviance(after.residuals, of_after)
     # A problem with a shifted force has samples of its own.
-    campaign = again.campaign
-    campaign = replace(campaign, samples=replace(campaign.samples, motion=motion))
-    price = price_of_term(model.policy, 2)
-    return Proposal(campaign, again, after, gain, price)
+    with_errors = replace(again.campaign, samples=replace(again.campaign.samples, motion=motion))
+    return Proposal(with_errors, again, after, gain, price_of_term(model.policy, 2))
+
+
+def _none(solution: Solution) -> ErrorsInMotion:
+    """Return errors of the motion that are zero, with the noise of a solution."""
+    runs = len(solution.residuals)
+    sensitivity = tuple(np.zeros((len(r), 3)) for r in solution.residuals)
+    return ErrorsInMotion((None,) * runs, sensitivity, max(solution.rms, 1e-150))
 
 
 def _common_weights(

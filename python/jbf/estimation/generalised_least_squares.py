@@ -293,6 +293,9 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
     largest = max(float(np.max(np.abs(f), initial=0.0)) for f in predicted)
     most = max(solution.samples.rms(solution.residuals), EXACT_RECORD * largest, 1e-150)
 
+    smallest = problem.campaign.settings.motion.min_noise_share * solution.samples.rms(predicted)
+    lowest = float(np.clip(np.log(max(smallest, 1e-150) / most), LEAST_NOISE, 0.0))
+
     def at(x: Array) -> ErrorsInMotion:
         return replace(motion, noise=most * float(np.exp(x[0])), scale=float(np.exp(x[1])))
 
@@ -303,7 +306,7 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
 
     # A second minimum exists at low noise, where the motion's errors explain the whole residual.
     starts = [
-        np.array([noise, scale])
+        np.array([max(noise, lowest), scale])
         for noise in (-1.0, -3.0, LEAST_NOISE + 1.0)
         for scale in (-0.5, 0.0, 0.7)
     ]
@@ -312,7 +315,7 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
         deviance,
         start,
         method="Nelder-Mead",
-        bounds=[(LEAST_NOISE, 0.5), (-3.0, 3.0)],
+        bounds=[(lowest, 0.5), (-3.0, 3.0)],
         options={
             "xatol": 0.02,
             "fatol": 0.1,

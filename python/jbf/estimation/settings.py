@@ -322,6 +322,12 @@ class MotionSettings:
         "mean share below which a delay of the force is not attributed to the clocks",
         "the motion is exact: the model lacks an effect",
     )
+    min_noise_share: float = documented(
+        1e-3,
+        "standard deviation of the noise, relative to the RMS force, below which it is not "
+        "estimated",
+        "accuracy of a friction model and of a rig's parameters; a command has no noise of its own",
+    )
     scale_prior: float = documented(
         1.0,
         "prior standard deviation of the logarithm of the scale of the motion's errors",

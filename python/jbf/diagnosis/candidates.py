@@ -1,4 +1,4 @@
-"""Candidate models of a diagnosis and the state of their fits.
+"""Candidate models of a diagnosis (sets of effects added to a law) and the state of their fits.
 
 Each set of effects passes through several states. Its score is tested, it is ranked by a few steps
 of a fit, it converges, and further peaks of a multimodal likelihood are searched. Each state is
@@ -42,19 +42,23 @@ Progress = Callable[[str, int, int], None]
 Array = npt.NDArray[np.float64]
 
 RANKING_EVALUATIONS = 6
-"""Number of evaluations of a fit before candidates are ranked.
+"""Largest number of model evaluations of the approximate fit by which a candidate is ranked.
 
 Only competitive candidates are fitted further. It limits the computing time only.
 """
 
 
 def many_peaks(effects: Iterable[str]) -> bool:
-    """Whether the likelihood of one of these effects has many local maxima."""
+    """Whether the likelihood of a model with any of these effects has many local maxima."""
     return any(find_effect(name).peaks for name in effects)
 
 
 class Candidates:
-    """A campaign under a law, the candidate effects, and every fit made so far."""
+    """Campaign with a base law, the effects that may be added to it, and every fit made so far.
+
+    `clock` defines the time constant of the film (`journal` or `thesis`). The solutions of
+    `before`, of an earlier form of the campaign, are starting values.
+    """
 
     def __init__(
         self,
@@ -74,7 +78,7 @@ class Candidates:
         self._levels: dict[frozenset[str], Level] = {}
 
     def of(self, campaign: Campaign) -> Candidates:
-        """Return the candidates of another campaign of the same runs; fits start from these."""
+        """Return the candidates of a changed campaign; the fits start from present solutions."""
         self.before = None
         again = Candidates(campaign, self.law, self.clock, self.policy, self.progress, self)
         # Valid until the level is calibrated for a model of the new campaign.
@@ -85,19 +89,19 @@ class Candidates:
 
     @cached_property
     def names(self) -> list[str]:
-        """Effects that are compatible with the law and testable in these records."""
+        """Names of the effects that are compatible with the law and testable in these runs."""
         pages = (e for e in catalogue().values() if reason_not_applicable(e, self.law) is None)
         return [e.name for e in pages if self.campaign.missing_requirement(e) is None]
 
     @cached_property
     def not_tried(self) -> dict[str, str]:
-        """Effects that are compatible with the law but not testable in these records, by name."""
+        """Effects that are compatible with the law but not testable in these runs, with reasons."""
         pages = [e for e in catalogue().values() if reason_not_applicable(e, self.law) is None]
         reasons = {e.name: self.campaign.missing_requirement(e) for e in pages}
         return {name: reason for name, reason in reasons.items() if reason is not None}
 
     def fitted(self, effects: Iterable[str]) -> Fitted:
-        """Return the fit of a set of effects in its present state."""
+        """Return the cached fit of a set of effects, or a new one whose `state` is `posed`."""
         key = frozenset(effects)
         if key not in self._fitted:
             problem = Problem(self.campaign, self.law, self.clock, tuple(key))
@@ -105,14 +109,14 @@ class Candidates:
         return self._fitted[key]
 
     def values_of(self, effects: Iterable[str]) -> dict[str, float] | None:
-        """Parameter values by name for a set of effects; None if it has not been fitted."""
+        """Fitted parameter values by name for a set of effects; None if it has not been ranked."""
         fitted = self._fitted.get(frozenset(effects))
         if fitted is None or fitted.state in ("posed", "looked"):
             return None
         return fitted.named_values()
 
     def fitted_extensions(self, effects: Iterable[str]) -> dict[str, Fitted]:
-        """Fitted sets with exactly one more effect, by the name of that effect."""
+        """Fits of sets with exactly one more effect than these, by the name of that effect."""
         present = frozenset(effects)
         extensions = {}
         for key, fitted in self._fitted.items():
@@ -124,7 +128,7 @@ class Candidates:
     # ---- state of the fits ------------------------------------------------------------------
 
     def score_test(self, effects: Sequence[str], near: Solution) -> float:
-        """Score test of added effects in a smaller model, before any of them is fitted.
+        """Gain that a score test predicts for effects added to a smaller model, before any fit.
 
         Parameters
         ----------
@@ -138,8 +142,8 @@ class Candidates:
         float
             Gain in twice the log likelihood that one Gauss-Newton step predicts from the null of
             the added effects, with the parameters of the law free; the maximum over all starting
-            values. Infinite where the null cannot be reached by a step, or where an effect moves or
-            spreads jumps or has a free initial state.
+            values. Infinite where the null cannot be reached by a step, or where an effect shifts
+            or smooths friction jumps or has a free initial state.
         """
         fitted = self.fitted(effects)
         if fitted.score is None:
@@ -171,13 +175,13 @@ class Candidates:
     # ---- the level of the tests -------------------------------------------------------------
     @property
     def level(self) -> Level:
-        """Significance level of the tests; that of the base law until it is calibrated."""
+        """Acceptance threshold for the gain of an effect; before calibration that of the law."""
         if self._level is None:
             self._level = self._level_given(())
         return self._level
 
     def calibrate(self, present: Sequence[str]) -> None:
-        """Calibrate the level by the frequency of large chance gains in the residual of a model."""
+        """Calibrate `level`, the acceptance threshold, by the residual of the present model."""
         key = frozenset(present)
         if key not in self._levels:
             tested = [self.fitted((*present, name)) for name in self.names if name not in key]
@@ -190,13 +194,14 @@ class Candidates:
         self._level = self._levels[key]
 
     def _level_given(self, present: Sequence[str]) -> Level:
+        """Acceptance threshold in white noise, for the residual of the model with these effects."""
         base = self.converge(present)
         samples = effective_share(base) * base.samples.count
         least = self.policy.least_effect_share(self.campaign.motion_share)
         return Level.shared(self.policy, len(self.names), samples, base.rms, least)
 
     def rank(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
-        """Fit these effects approximately, for ranking, from the solution of a smaller model."""
+        """Fit a model with these effects approximately, for ranking, from a smaller one."""
         fitted = self.fitted(effects)
         if fitted.state in ("posed", "looked"):
             way = fitted.approach or self._approach(fitted, effects, near)
@@ -205,7 +210,7 @@ class Candidates:
         return fitted.current_solution()
 
     def look(self, effects: Sequence[str], near: Solution) -> Fitted:
-        """Fit these effects by a few steps, from the solution of a smaller model."""
+        """Fit a model with these effects by a few steps, from the solution of a smaller model."""
         fitted = self.fitted(effects)
         if fitted.state == "posed":
             fitted.approach = self._approach(fitted, effects, near)
@@ -215,7 +220,7 @@ class Candidates:
         return fitted
 
     def _approach(self, fitted: Fitted, effects: Sequence[str], near: Solution | None) -> Approach:
-        """Search of a fit, started from the solution of a smaller model."""
+        """Create the unfinished search for the fit of these effects, with its starting values."""
         seeds: list[Mapping[str, float]] = [{}]
         if near is not None:
             near_values = self._values_of(near)
@@ -234,13 +239,13 @@ class Candidates:
         return Approach(fitted.problem, seeds, each=each, stepped=fitted.stepped)
 
     def rank_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
-        """Rank several sets of effects, each from the solution of a smaller model."""
+        """Rank several sets of effects (`rank`), each from the solution of a smaller model."""
         # Start the largest problems first.
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         self._each("trying", lambda effects: self.rank(effects, near), order, near)
 
     def look_all(self, sets: Sequence[Sequence[str]], near: Solution) -> None:
-        """Fit several sets of effects by a few steps each, from the solution of a smaller model."""
+        """Fit several sets of effects by a few steps (`look`) from a smaller model's solution."""
         order = sorted(sets, key=lambda effects: -len(self.fitted(effects).problem.open))
         self._each("looking at", lambda effects: self.look(effects, near), order, near)
 
@@ -255,7 +260,7 @@ class Candidates:
         sets: Sequence[Sequence[str]],
         near: Solution,
     ) -> None:
-        """Process every set of effects in parallel and report progress."""
+        """Apply a function to each set of effects in parallel threads and report progress."""
         done = in_parallel(work, sets, fits_at_once(self.campaign, self.law, self.names))
         for i, effects in enumerate(sets):
             added = ", ".join(name for name in effects if name not in near.effects)
@@ -263,7 +268,7 @@ class Candidates:
             next(done)
 
     def converge(self, effects: Sequence[str], near: Solution | None = None) -> Solution:
-        """Fit these effects to convergence."""
+        """Return the converged solution of the fit of these effects."""
         fitted = self.fitted(effects)
         if fitted.state != "converged":
             fitted.solution = settle(fitted.problem, self.rank(effects, near))
@@ -271,7 +276,7 @@ class Candidates:
         return fitted.current_solution()
 
     def search_peaks(self, effects: Sequence[str]) -> Solution:
-        """Search for a higher maximum of the likelihood of a set of effects.
+        """Search for a higher maximum of the likelihood of a model with these effects.
 
         The fit of fewer effects may have converged to another maximum. Each set is searched once.
         """
@@ -309,12 +314,12 @@ class Candidates:
         return fitted.current_solution()
 
     def idle(self, solution: Solution) -> tuple[str, ...]:
-        """Effects whose parameters have their null values in a solution."""
+        """Effects without influence in a solution: all their parameters have their null values."""
         problem = self.fitted(solution.effects).problem
         return idle_effects(problem.effects, problem.parameters, solution.values.tolist())
 
     def confirmation(self, present: Sequence[str], name: str) -> Confirmation:
-        """Held-out confirmation of one added effect.
+        """Compare the held-out errors of a model with and without one added effect.
 
         For a run that alone determines a parameter, its halves are held out in turn, in both fits.
         """
@@ -332,7 +337,7 @@ class Candidates:
     def held_out_parts(
         self, effects: Sequence[str], halved: Sequence[int] = (), *, alternate: bool = False
     ) -> list[HeldOutPart]:
-        """Held-out predictions of each run.
+        """Held-out predictions of all runs, each from a fit to the other runs.
 
         Parameters
         ----------
@@ -360,7 +365,7 @@ class Candidates:
         return extrapolated_runs(self.campaign)
 
     def held_out_rms(self, effects: Sequence[str]) -> float:
-        """Held-out RMS, N.
+        """Root mean square of the held-out prediction errors of a model with these effects, N.
 
         Runs are held out of the fit one at a time. A run whose speed or load is beyond the
         range of all others is held out in parts.
@@ -370,11 +375,12 @@ class Candidates:
         return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
 
     def _values_of(self, near: Solution) -> dict[str, float]:
+        """Parameter values of a solution, by name."""
         names = self.fitted(near.effects).problem.names
         return dict(zip(names, near.values.tolist(), strict=True))
 
     def _required_square(self, near: Solution | None) -> float:
-        """Sum of squares below which a larger model has a relevant gain, N^2."""
+        """Sum of squares below which a model with more effects has a relevant gain, N^2."""
         if near is None:
             return np.inf
         every = self.campaign.samples
@@ -383,6 +389,6 @@ class Candidates:
         return square * float(np.exp(-shows / samples))
 
     def tell(self, message: str, done: int, total: int) -> None:
-        """Report progress."""
+        """Report progress to the user's callback, if there is one."""
         if self.progress is not None:
             self.progress(message, done, total)

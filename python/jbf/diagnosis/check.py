@@ -54,17 +54,17 @@ class Answer:
 
     @property
     def right(self) -> bool:
-        """Whether exactly the hidden effects were named."""
+        """Whether the diagnosis named exactly the effects in the simulation."""
         return set(self.effects) == set(self.hidden) and self.verdict != "failed"
 
     @property
     def false(self) -> bool:
-        """Whether a named effect was not hidden and neither was any of its alternatives."""
+        """Whether a named effect was not simulated, and no effect confounded with it either."""
         groups = [{name, *self.alternatives.get(name, ())} for name in self.effects]
         return any(not names & set(self.hidden) for names in groups)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return a JSON-serialisable dict, the input of `answer_of`."""
+        """Return a JSON-serialisable dict, from which `answer_of` creates the result again."""
         return {
             "hidden": list(self.hidden),
             "draw": self.draw,
@@ -75,7 +75,7 @@ class Answer:
 
 
 def answer_of(table: Mapping[str, Any]) -> Answer:
-    """Create an `Answer` from the output of `Answer.to_dict`."""
+    """Create the result of one simulated campaign from the output of `Answer.to_dict`."""
     others = {k: tuple(v) for k, v in table["alternatives"].items()}
     hidden, effects = tuple(table["hidden"]), tuple(table["effects"])
     return Answer(hidden, int(table["draw"]), table["verdict"], effects, others)
@@ -83,7 +83,7 @@ def answer_of(table: Mapping[str, Any]) -> Answer:
 
 @dataclass(frozen=True)
 class Rate:
-    """Frequency of an outcome in a number of campaigns.
+    """Frequency of an outcome among simulated campaigns, with its confidence interval.
 
     Attributes
     ----------
@@ -103,7 +103,7 @@ class Rate:
 
     @classmethod
     def of(cls, what: str, outcomes: Sequence[bool]) -> Rate:
-        """Compute the rate of true values in a sequence of outcomes."""
+        """Compute the frequency of True outcomes and its confidence interval."""
         from scipy import stats  # most of a second to import
 
         count, campaigns = sum(outcomes), len(outcomes)
@@ -144,7 +144,7 @@ class Check(Result):
 
     @property
     def rates(self) -> tuple[Rate, ...]:
-        """Rates of each outcome, those without hidden effects first."""
+        """Frequencies of correct and false results, first in campaigns without hidden effects."""
         rates: list[Rate] = []
         for hidden in sorted({a.hidden for a in self.answers}, key=len):
             answers = [a for a in self.answers if a.hidden == hidden]
@@ -173,7 +173,17 @@ class Check(Result):
 
 @dataclass(frozen=True)
 class _Task:
-    """A campaign to simulate and diagnose."""
+    """A campaign to simulate and diagnose.
+
+    Attributes
+    ----------
+    model, runs
+        Model that generates the records, and runs with the motions.
+    hidden, draw
+        Effects in the simulation, and index of the random draw.
+    policy
+        Thresholds of the diagnosis.
+    """
 
     model: Model
     runs: tuple[Run, ...]
@@ -206,7 +216,7 @@ def check(
     campaigns
         Number of campaigns with the effects, and number without them.
     policy
-        Numbers of the diagnoses.
+        Thresholds of the diagnoses.
     executor
         Any `concurrent.futures` executor, a Dask client's `get_executor()` included; not shut down.
         Without one, campaigns are processed sequentially.
@@ -271,7 +281,7 @@ def check(
 
 
 def identity(model: Model, runs: Iterable[Run], policy: Policy = DEFAULT) -> str:
-    """Hash of a model, its runs and the policy; results with other hashes are not comparable."""
+    """Hash of a model, its runs and the policy; only results with equal hashes may be combined."""
     digest = hashlib.sha256(model.to_toml().encode())
     digest.update(repr(policy).encode())
     for run in runs:
@@ -280,6 +290,7 @@ def identity(model: Model, runs: Iterable[Run], policy: Policy = DEFAULT) -> str
 
 
 def _answered(tasks: Sequence[_Task], executor: Executor | None) -> Iterator[Answer]:
+    """Simulate and diagnose campaigns, and return each result as soon as it is available."""
     if executor is None:
         yield from map(_answer, tasks)
         return

@@ -1,4 +1,4 @@
-"""Confirmation of a candidate's gain by held-out runs."""
+"""Confirmation of a candidate effect by the prediction errors of held-out runs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Names = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Confirmation:
-    """Held-out errors with a candidate, compared with those of the present effects alone.
+    """Comparison of the held-out errors of a model with and without a candidate effect.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Confirmation:
         halved: Names = (),
         prepared: Sequence[Prepared] = (),
     ) -> Confirmation:
-        """Compute the confirmation from two fits and their held-out runs.
+        """Compare two fitted models, without and with the candidate, by their held-out predictions.
 
         Parameters
         ----------
@@ -117,23 +117,23 @@ class Confirmation:
         Parameters
         ----------
         evidence
-            Evidence of the candidate.
+            Evidence of the candidate, in twice the log likelihood.
         gained
             Gain in mean square in the fit, N^2.
         policy
-            Numbers of the decision.
+            Thresholds of the decision.
         """
         share = (self.before_n**2 - self.after_n**2) / max(gained, 1e-300)
         times = self.after_n / max(self.before_n, 1e-300)
         return held_out_runs_confirm(evidence, self.density, share, self.better, policy, times)
 
     def describe(self, unit: str) -> str:
-        """Describe the held-out error."""
+        """Describe the held-out RMS with the candidate, for the ledger."""
         what = "runs" if not self.halved else f"runs and halves of {_listed(self.halved)}"
         return f"RMS of held-out {what} {self.after_n:.4g} {unit}"
 
     def describe_gain(self, unit: str) -> str:
-        """Describe the held-out error and the share of the gain in the predictive density."""
+        """Describe the held-out RMS and the confirmed share of the gain in log likelihood."""
         return f"{self.describe(unit)}, {self.density:.0%} of the gain in their log density"
 
 
@@ -144,7 +144,7 @@ def _unit_ratios(
     counted: Sequence[npt.NDArray[np.bool_]],
     settings: HeldOutSettings,
 ) -> Array:
-    """Log ratios of the mean squares without and with a candidate, shape (units,)."""
+    """Log ratios of held-out mean squares without and with a candidate, shape (units,)."""
     units = independent_units({i: counted[i] for i in before}, prepared, settings)
     squares = np.array(
         [(np.mean(before[i][rows] ** 2), np.mean(after[i][rows] ** 2)) for i, rows in units]
@@ -155,7 +155,7 @@ def _unit_ratios(
 
 
 def _chance(ratios: Array, min_units: int) -> float:
-    """p-value of the mean (Student's t, one-sided)."""
+    """p-value of a positive mean log ratio (one-sided t-test); 1 below `min_units` ratios."""
     if len(ratios) < min_units:
         return 1.0
     error = float(np.std(ratios, ddof=1)) / np.sqrt(len(ratios))
@@ -165,6 +165,7 @@ def _chance(ratios: Array, min_units: int) -> float:
 
 
 def _rms(errors: Array) -> float:
+    """Root mean square of errors; zero without errors."""
     return float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
 
 
@@ -174,7 +175,7 @@ def _density_share(
     held_out: Sequence[HeldOutPart],
     richer_held_out: Sequence[HeldOutPart],
 ) -> float:
-    """Gain in held-out log predictive density as a share of the gain in the fit.
+    """Gain in held-out log predictive density, divided by the gain in log likelihood of the fit.
 
     Both gains use the same samples and the same whitening.
     """
@@ -188,6 +189,7 @@ def _density_share(
 
 
 def _listed(names: Collection[str]) -> str:
+    """First name of a list and the number of the others, as text."""
     first, *more = names
     return first if not more else f"{first} and {len(more)} more"
 
@@ -210,6 +212,8 @@ def held_out_runs_confirm(
 
     Parameters
     ----------
+    evidence
+        Evidence of the candidate, in twice the log likelihood.
     density
         Gain in twice the log predictive density, as a share of the gain in the log likelihood.
     gained_share

@@ -28,12 +28,24 @@ SURE = 0.95
 
 
 def decoy_gains(directions: Sequence[Directions]) -> list[Array]:
-    """Gains of the decoys in twice the log likelihood, shape (`DRAWS`,) for each candidate."""
+    """Gain of each decoy candidate in each of `DRAWS` random shifts.
+
+    Parameters
+    ----------
+    directions
+        Score directions of the candidates.
+
+    Returns
+    -------
+    list of arrays
+        Gains in twice the log likelihood, one array of shape (`DRAWS`,) per candidate.
+    """
     random = np.random.default_rng(DRAWS)
     return [_gains(one, random) for one in directions]
 
 
 def _gains(one: Directions, random: np.random.Generator) -> Array:
+    """Gains of one candidate in twice the log likelihood, for random shifts, shape (`DRAWS`,)."""
     scores = np.zeros((DRAWS, one.ways.shape[1]))
     for way, noise in zip(
         np.split(one.ways, one.ends), np.split(one.innovations, one.ends), strict=True
@@ -50,5 +62,5 @@ def _gains(one: Directions, random: np.random.Generator) -> Array:
 
 
 def rate_below(named: int, draws: int) -> float:
-    """Upper confidence limit of the rate `named / draws` (Clopper & Pearson 1934)."""
+    """Upper confidence limit of a rate of `named` in `draws` draws (Clopper & Pearson 1934)."""
     return float(special.betaincinv(named + 1, draws - named, SURE)) if named < draws else 1.0

@@ -1,4 +1,4 @@
-"""Drives: machine terms and errors of the motion.
+"""Machine terms (inertia, weight, offset) of a drive, and errors of its recorded motion.
 
 A motor accelerates its load and carries its weight, independently of friction. Inertia or mass,
 weight and offset are part of the initial model of the diagnosis of a drive; they are not missing
@@ -22,20 +22,22 @@ TERMS = (OFFSET, "inertia", "gravity")
 
 
 def machine_of(candidates: Candidates, present: Iterable[str]) -> Names:
-    """Machine terms among the effects of a model; empty for a rig without a drive."""
+    """Machine terms among the effects `present` in a model; empty for a rig without a drive."""
     if candidates.campaign.rig.drive is None:
         return ()
     return tuple(name for name in present if name in TERMS)
 
 
 def with_errors_of_motion(candidates: Candidates, base: Names) -> Campaign | None:
-    """Return the campaign of a drive with the errors of its motion in the likelihood.
+    """Return a drive's campaign with the covariance of the motion's errors in the likelihood.
 
     The force is corrected by a time delay common to all runs. Returns None for a rig without a
     drive, or if these errors are negligible.
 
     Parameters
     ----------
+    candidates
+        Cached fits of the campaign.
     base
         Machine terms of the model with which the errors are estimated.
     """

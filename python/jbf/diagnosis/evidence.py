@@ -21,14 +21,14 @@ from jbf.estimation.solution import Solution
 
 
 def price_of(candidates: Candidates, parameters: int) -> float:
-    """Threshold for the gain of a model with this number of additional parameters."""
+    """Acceptance threshold for the gain of a model with this number of additional parameters."""
     return candidates.level.price(parameters, candidates.campaign.samples.count)
 
 
 def evidence(
     candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
 ) -> float:
-    """Evidence for the richer of two models.
+    """Log-likelihood gain of a richer model over a simpler one, less the acceptance threshold.
 
     The effective number of samples is smaller where the residual of the richer model is correlated.
     An effect with its parameters at the null has no positive evidence: its gain is due to the
@@ -37,7 +37,8 @@ def evidence(
     Parameters
     ----------
     anywhere
-        Include an intermittent gain, which is evidence of structure but not of this effect.
+        Count a gain that occurs in a part of the record only. It is evidence of residual structure
+        but not of this effect, and is otherwise reduced.
     """
     gain = likelihood_gain(richer, simpler)
     if gain > 0.0 and _within_steps(candidates.campaign, richer, simpler):
@@ -57,7 +58,7 @@ def evidence(
 
 
 def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> float:
-    """Log-likelihood gain of the richer model, less the threshold, if all samples are independent.
+    """Gain of the richer model less the threshold, if all samples are treated as independent.
 
     It is in twice the log likelihood and is used for a model that independent units confirm.
     """
@@ -72,9 +73,9 @@ def full_gain(candidates: Candidates, richer: Solution, simpler: Solution) -> fl
 
 
 def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution) -> bool:
-    """Whether the added effects include a filter that explains no more than the motion's errors.
+    """Whether an added smoothing effect explains no more than the errors of the motion.
 
-    A filter is an effect that smooths a force or a motion.
+    Smoothing effects filter a force or a motion and can thereby reduce errors of the motion.
     """
     if not SMOOTHS_FORCE & (set(richer.effects) - set(simpler.effects)):
         return False
@@ -85,7 +86,7 @@ def _filters_motion(candidates: Candidates, richer: Solution, simpler: Solution)
 
 
 def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bool:
-    """Whether two models differ by less than the quantisation error of a mean reading."""
+    """Whether two models differ by less (RMS) than the quantisation error of the force."""
     samples = common_samples(richer.samples, simpler.samples)
     differences = [b - a for a, b in zip(richer.residuals, simpler.residuals, strict=True)]
     return bool(samples.rms(differences) < campaign.steps_rms(simpler.rms))
@@ -94,11 +95,11 @@ def _within_steps(campaign: Campaign, richer: Solution, simpler: Solution) -> bo
 def evidence_on_common_samples(
     candidates: Candidates, richer: Solution, simpler: Solution, *, anywhere: bool = False
 ) -> float:
-    """Evidence for the richer of two models, with the simpler one fitted to the same samples.
+    """Evidence for the richer of two models, after a refit of the simpler one to the same samples.
 
-    An effect that moves jumps excludes the samples next to them. These samples may have biased the
-    simpler model, or have made its noise appear larger or smoother. That gain is not attributed to
-    the effect.
+    An effect that shifts friction jumps excludes the samples next to them. These samples may have
+    biased the simpler model, or have made its noise appear larger or smoother. That gain is not
+    attributed to the effect.
     """
     gain = evidence(candidates, richer, simpler, anywhere=anywhere)
     if richer.samples is simpler.samples or gain <= 0.0:
@@ -112,7 +113,7 @@ def evidence_on_common_samples(
 def swap_cost(
     candidates: Candidates, effects: tuple[str, ...], current: Solution, near: Solution
 ) -> float:
-    """Decrease of the evidence if these effects replace those of `current`.
+    """Loss of evidence if the current model is replaced by the model with these effects.
 
     Parameters
     ----------
@@ -125,6 +126,7 @@ def swap_cost(
     share = effective_share(current)
 
     def cost(solution: Solution) -> float:
+        """Loss of evidence if a solution replaces the current one."""
         lost = share * likelihood_gain(current, solution)
         return lost + price_of(candidates, solution.free) - price_of(candidates, current.free)
 

@@ -31,12 +31,13 @@ class Fitted:
     Attributes
     ----------
     state
-        `posed`, `looked` (a few steps), `ranked` (enough steps for ranking) or `converged`.
+        `posed` (not yet computed), `looked` (a few steps), `ranked` (enough steps for ranking) or
+        `converged`.
     score
-        Gain predicted by its score test relative to the first smaller model, in twice the log
-        likelihood; infinite if the null cannot be reached by a step.
+        Gain predicted by the score test of the added effects in the first smaller model, in twice
+        the log likelihood; infinite if the null cannot be reached by a step.
     directions
-        Score directions of its test, kept until the level of the tests has been calibrated.
+        Score directions of that test, kept until the level of the tests has been calibrated.
     stepped
         Parameter values after one step from the null, the starting values for a weak effect.
     approach, least
@@ -65,22 +66,22 @@ class Fitted:
     halves: dict[tuple[int, bool], list[HeldOutPart]] = field(default_factory=dict)
 
     def current_solution(self) -> Solution:
-        """Return the present solution."""
+        """Return the present solution of the fit, converged or not."""
         assert self.solution is not None
         return self.solution
 
     def improve(self, better: Solution) -> None:
-        """Accept a better solution of the same problem and discard results of the earlier one."""
+        """Replace the solution by a better one, and discard its outdated held-out predictions."""
         if better is not self.solution:
             self.solution = better
             self.held_out, self.halves = [], {}
 
     def named_values(self) -> dict[str, float]:
-        """Parameter values by name."""
+        """Parameter values of the present solution, by name."""
         return dict(zip(self.problem.names, self.current_solution().values.tolist(), strict=True))
 
     def predict(self, motion: Driven) -> tuple[Array, Array]:
-        """Friction under a motion, and its derivatives with respect to the search variables."""
+        """Friction of the fitted model under a motion, and its Jacobian in the search variables."""
         problem, values = self.problem, self.current_solution().values
         ((friction, slopes),) = problem.chain.jacobian(values, [motion], problem.open)
         return friction, bounded(slopes, np.where(problem.log, values, 1.0)[problem.open])
@@ -88,12 +89,12 @@ class Fitted:
 
 @dataclass
 class Reached:
-    """Model at the start of the last round, which is the result of an interrupted diagnosis.
+    """Model at the start of the last round, the result of a diagnosis that is interrupted.
 
     Attributes
     ----------
     candidates, present
-        Candidates that include the fit, and effects of the model; None before the first fit.
+        Cached fits, and effects of the model; None before the first fit.
     """
 
     candidates: Candidates | None = None

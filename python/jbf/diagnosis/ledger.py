@@ -1,4 +1,4 @@
-"""Ledger of a diagnosis: steps, candidates tried in each step, and residual structure."""
+"""Ledger of a diagnosis: the model after each step, and the candidates tried in each step."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ REPLACED = "added first, but not needed with the effects added later"
 
 @dataclass(frozen=True)
 class Trial:
-    """One candidate at one step of the ledger.
+    """Result of one candidate effect in one step of the ledger.
 
     Attributes
     ----------
     effect
         Name of the candidate.
     rms
-        Fit RMS with it, N.
+        RMS of the residual of the fit with the candidate, N.
     evidence
         Twice the gain in log likelihood, less the acceptance threshold for the candidate's
         parameters; above zero the model with the candidate is better.
@@ -74,7 +74,7 @@ class Extrapolation:
 
 @dataclass(frozen=True)
 class Step:
-    """Model after one addition; the first step is the base law.
+    """Model after the addition of an effect or term; the first step is the base law.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Step:
     noise_rms
         Noise floor, N; zero if unknown.
     trials
-        Candidates for the next addition.
+        Results of the candidates for the next addition.
     extrapolations
         Errors of runs whose speed or load is beyond the range of all others; `held_out_rms`
         includes parts of these runs.
@@ -114,7 +114,17 @@ class Step:
 
 @dataclass(frozen=True)
 class Remainder:
-    """Residual structure that no effect of the catalogue explains."""
+    """Residual structure that no effect of the catalogue explains.
+
+    Attributes
+    ----------
+    axis
+        Kind of structure, for example the quantity over which the residual has a pattern.
+    where
+        Description of the structure.
+    share
+        Share of the mean square of the residual, 0 to 1.
+    """
 
     axis: str
     where: str
@@ -126,9 +136,20 @@ class Remainder:
 
 
 def with_final_outcomes(steps: Sequence[Step], present: Names, doubted: Names) -> list[Step]:
-    """Update the outcome of each addition in all steps of the ledger."""
+    """Return the ledger with the final outcome of each added effect.
+
+    Parameters
+    ----------
+    steps
+        The ledger.
+    present
+        Effects of the final model.
+    doubted
+        Effects of the final model that are not named, because they may be confounders.
+    """
 
     def final_outcome(trial: Trial) -> Trial:
+        """Trial of an added effect with the outcome `confounder` or `replaced` where it applies."""
         if trial.outcome == "added" and trial.effect in doubted:
             return replace(trial, outcome="confounder", reason=CONFOUNDER)
         if trial.outcome == "added" and trial.effect not in present:

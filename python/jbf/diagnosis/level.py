@@ -1,4 +1,4 @@
-"""Significance level of the tests: threshold for the gain of an effect.
+"""Acceptance threshold for the gain of an effect, from the false-alarm rate of a campaign.
 
 The false-alarm rate is the fraction of campaigns without a missing effect in which any candidate
 may be named. The Bonferroni correction for the number of candidates gives the significance level of
@@ -49,7 +49,7 @@ It determines the numerical resolution of the level.
 
 @dataclass(frozen=True)
 class Level:
-    """Threshold for a gain in twice the log likelihood.
+    """Acceptance threshold for the gain of an effect, in twice the log likelihood.
 
     Attributes
     ----------
@@ -87,10 +87,16 @@ class Level:
         noise_rms: float,
         least_share: float = 0.0,
     ) -> Level:
-        """Return the level in white noise with a Bonferroni correction for the candidates.
+        """Return the threshold in white noise; the candidates share the false-alarm rate.
+
+        The significance level of one candidate follows by the Bonferroni correction.
 
         Parameters
         ----------
+        policy
+            False-alarm rate, artefact margin and minimum effect size.
+        candidates
+            Number of candidate effects.
         samples
             Number of independent samples.
         noise_rms
@@ -105,26 +111,27 @@ class Level:
 
     @property
     def critical(self) -> float:
-        """Gain of one parameter that noise exceeds with probability `chance`."""
+        """Gain that a parameter without effect exceeds with probability `chance`."""
         return _gain_from_noise(self.chance)
 
     @property
     def white_noise_threshold(self) -> float:
-        """Critical gain of one parameter in white noise, with the Bonferroni correction."""
+        """Gain that one parameter exceeds in white noise at the Bonferroni-corrected level."""
         return _gain_from_noise(self.false_alarm_rate / max(self.candidates, 1))
 
     @property
     def significant(self) -> float:
-        """Threshold for the gain of one parameter, including the artefact margin.
+        """Gain of one parameter from which an effect is significant, with the artefact margin.
 
-        It is the larger of `critical` and `white_noise_threshold` plus the artefact margin.
+        It is ``max(critical, white_noise_threshold + artefact_margin)``.
         """
         return max(self.critical, self.white_noise_threshold + self.artefact_margin)
 
     def price(self, parameters: int, samples: int) -> float:
-        """Threshold for the gain of a number of parameters.
+        """Acceptance threshold for the gain of an effect with a given number of parameters.
 
-        Each parameter beyond the first adds the penalty of Schwarz (1978).
+        It is ``max(significant, min_gain)``, plus the penalty ``log(samples)`` of Schwarz (1978)
+        for each parameter beyond the first.
         """
         more = max(parameters, 1) - 1
         return max(self.significant, self.min_gain) + more * float(np.log(max(samples, 1)))
@@ -140,25 +147,28 @@ class Level:
 
 @cache
 def _gain_from_noise(chance: float) -> float:
-    """Gain of one parameter, in twice the log likelihood, that noise exceeds with `chance`."""
+    """Gain in twice the log likelihood that one parameter exceeds by chance."""
     return float(special.chdtri(1, chance))
 
 
 @dataclass(frozen=True, eq=False)
 class Directions:
-    """Score directions of the parameters of an effect in the space of the innovations.
+    """Part of the Jacobian of an effect that the rest of the model cannot reproduce.
+
+    The rows are those of the whitened likelihood (innovations), the columns the score directions of
+    the parameters of the effect.
 
     Attributes
     ----------
     ways
-        Orthonormal columns, orthogonal to the derivatives of the model without the effect, shape
-        (n, k).
+        Orthonormal basis of this part, orthogonal to the Jacobian of the model without the effect,
+        shape (n, k).
     innovations
         Innovations of the model without the effect, scaled to unit variance, shape (n,).
     counted
-        Factors on the squared scores relative to white noise, shape (k,).
+        Factors on the squared scores, below one in autocorrelated noise, shape (k,).
     blocks
-        First row of each block.
+        First row of each block of the wild bootstrap.
     ends
         First row of each run but the first.
     """
@@ -173,7 +183,7 @@ class Directions:
     def of(
         cls, innovations: Array, effect: Array, law: Array, samples: Samples, share: float
     ) -> Directions:
-        """Compute the directions from rows of a likelihood.
+        """Compute the score directions of an effect from the whitened rows of a likelihood.
 
         Parameters
         ----------
@@ -205,10 +215,17 @@ class Directions:
         return cls(ways, unit, counted, blocks_of(samples, share), ends)
 
     def by_block(self, innovations: Array, blocks: Places) -> Array:
-        """Scores of noise by block, shape (blocks, k).
+        """Sums of the scores of given innovations over each block, shape (blocks, k).
 
-        The noise is the residual without the part that candidates could explain. Scores have unit
-        variance in noise with the assumed autocorrelation.
+        The innovations are the residual without the part that candidates could explain. Scores have
+        unit variance in noise with the assumed autocorrelation.
+
+        Parameters
+        ----------
+        innovations
+            Innovations, shape (n,).
+        blocks
+            First row of each block.
         """
         scores: Array = np.add.reduceat(self.ways * innovations[:, None], blocks, axis=0)
         return scores * np.sqrt(self.counted)
@@ -224,7 +241,7 @@ _stacked_rows: WeakKeyDictionary[Solution, tuple[Array, Array]] = WeakKeyDiction
 
 
 def _rows(near: Solution) -> tuple[Array, Array]:
-    """Innovations of a solution and their derivatives, cached for the tests of all candidates."""
+    """Whitened residuals of a solution and their Jacobian, cached for all score tests."""
     if near not in _stacked_rows:
         _stacked_rows[near] = near.stacked()
     return _stacked_rows[near]
@@ -233,15 +250,27 @@ def _rows(near: Solution) -> tuple[Array, Array]:
 def score_test(
     problem: Problem, starts: Sequence[Array], near: Solution, added: Collection[str]
 ) -> tuple[float, Directions, Array]:
-    """Score test at several starting values equivalent to a smaller model; the largest gain.
+    """Score test of added effects at several starting values equivalent to a smaller model.
 
-    Derivatives are computed from thinned records if the records are long.
+    The starting values with the largest predicted gain are used. The Jacobian is computed from
+    thinned records if the records are long.
+
+    Parameters
+    ----------
+    problem
+        Model with the added effects.
+    starts
+        Parameter values at which the added effects have no influence.
+    near
+        Solution of the smaller model.
+    added
+        Names of the added effects.
 
     Returns
     -------
     tuple
-        The predicted gain (`score_gain`), the directions of the added effects, and the values after
-        one step from the starting values with the largest gain.
+        The predicted gain (`score_gain`), the score directions of the added effects, and the
+        parameter values after one step from the selected starting values.
     """
     thinned = problem.thinned
     # Samples next to jumps, which the smaller model excludes, would favour any effect.
@@ -274,7 +303,7 @@ def score_test(
 
 
 def _explained(ways: Array, target: Array) -> Array:
-    """Projection of `target` on the span of unit columns, which may be collinear."""
+    """Projection of `target` on the span of unit columns `ways`, which may be collinear."""
     size, axes = np.linalg.eigh(ways.T @ ways)
     resolved = size > 1e-12 * size[-1]
     step = axes[:, resolved] @ ((axes[:, resolved].T @ (ways.T @ target)) / size[resolved])
@@ -283,7 +312,7 @@ def _explained(ways: Array, target: Array) -> Array:
 
 
 def _largest_common_group(directions: list[Directions]) -> list[Directions]:
-    """Largest group of directions with an equal number of samples.
+    """Largest group of candidates whose score directions refer to the same number of samples.
 
     A candidate that excludes samples cannot be tested on the residual of the others.
     """
@@ -293,11 +322,11 @@ def _largest_common_group(directions: list[Directions]) -> list[Directions]:
 
 
 def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
-    """Reduce the significance level until sign-reversed residuals meet the false-alarm rate.
+    """Reduce the significance level until sign-reversed residuals attain the false-alarm rate.
 
     The part of the residual that candidates could explain is removed first, because it is under
-    test. Some candidates have no score direction, for example an effect that moves the instants of
-    jumps, whose derivative at the null is zero. For these, and for candidates with other samples,
+    test. Some candidates have no score direction, for example an effect that shifts friction jumps
+    in time, whose derivative at the null is zero. For these, and for candidates with other samples,
     the Bonferroni correction is used.
     """
     tested = _largest_common_group([d for d in directions if d.ways.size])
@@ -328,7 +357,7 @@ def calibrated(level: Level, directions: Sequence[Directions]) -> Level:
 
 
 def with_decoys(level: Level, directions: Sequence[Directions], samples: int) -> Level:
-    """Return the level with the number of decoy campaigns that exceed the threshold."""
+    """Return the threshold with the number of decoy campaigns in which a decoy exceeds it."""
     tested = [d for d in directions if d.ways.size]
     if not tested:
         return level

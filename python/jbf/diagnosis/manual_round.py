@@ -38,8 +38,7 @@ class ManualRound:
     comparison
         Comparison of the model with the records.
     power
-        Smallest strength at which each candidate is detectable in these runs, in addition to the
-        model.
+        Detection limit of each candidate in these runs, in addition to the model.
     """
 
     fit: Fit
@@ -69,7 +68,7 @@ def manual_round(
     effects
         Effects of the model.
     law, clock
-        The base law and its clock.
+        Base law, and the definition of the time constant of its film.
     policy
         Thresholds and settings of the tests.
     progress
@@ -83,6 +82,11 @@ def manual_round(
         An unknown name, a missing column, or runs without motion.
     Stopped
         The computation was interrupted; the exception holds the fit, or the best solution so far.
+
+    Returns
+    -------
+    ManualRound
+        The fit, the candidates tried, the comparison with the records, and the detection limits.
     """
     if progress is not None:
         progress("fitting", 0, 0)

@@ -1,4 +1,4 @@
-"""Diagnosis of many campaigns, each separately, with any executor."""
+"""Diagnosis of many independent campaigns in parallel processes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Given = tuple[Rig, Sequence[Run]] | PathLike
 """A rig with its runs, or a folder that contains `rig.toml` and the runs as CSV."""
 
 OPTIONS = ("law", "clock", "limits", "policy")
-"""Options of `diagnose` that may be given for all campaigns."""
+"""Names of the options of `diagnose` that apply to all campaigns."""
 
 
 def diagnose_many(
@@ -81,6 +81,7 @@ def diagnose_many(
     results: dict[str, Diagnosis | JbfError] = {}
 
     def keep(name: str, result: Diagnosis | JbfError) -> None:
+        """Store the result of a campaign and report progress."""
         results[name] = result
         if progress is not None:
             outcome = result.verdict if isinstance(result, Diagnosis) else str(result)
@@ -100,6 +101,7 @@ def diagnose_many(
 
 
 def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError:
+    """Diagnose one campaign; an error of the package is returned, not raised."""
     try:
         pair = given if isinstance(given, tuple) else read_campaign(given)
         if len(pair) != 2:
@@ -114,4 +116,5 @@ def _diagnosed(given: Given, options: Mapping[str, Any]) -> Diagnosis | JbfError
 
 
 def _lost(error: BaseException) -> JbfError:
+    """Convert the failure of a worker process to an error that names its cause."""
     return JbfError(f"the worker process failed: {type(error).__name__}: {error}".rstrip(": "))

@@ -20,10 +20,11 @@ from jbf.estimation.settings import Settings, documented
 
 @dataclass(frozen=True)
 class Policy:
-    """Numbers that determine a verdict.
+    """Thresholds and settings that determine a verdict.
 
-    Four of them are chosen by the user. The others are grouped into sections by purpose; those of
-    the estimation are in `estimation`. Evidence is in units of twice the log likelihood.
+    Four of them are chosen by the user: the false-alarm rate, the artefact margin and the two
+    minimum effect sizes. The others are grouped into sections by purpose; those of the estimation
+    are in `estimation`. Evidence is in units of twice the log likelihood.
 
     Examples
     --------
@@ -90,31 +91,31 @@ class Policy:
                 )
 
     def least_share(self, motion_share: float) -> float:
-        """Minimum share of the mean square that structure or a law must explain.
+        """Minimum share of the mean square that residual structure or a better law must explain.
 
-        The errors of the motion contribute this share of the variance, and their covariance is
-        estimated.
+        The minimum increases with the contribution of the motion's errors, because their covariance
+        is only estimated.
 
         Parameters
         ----------
         motion_share
-            Mean share of the motion's errors in the variance.
+            Mean share of the motion's errors in the variance of the residual.
         """
         return min(motion_share, self.motion.max_structure_share)
 
     def least_filter_share(self, motion_share: float) -> float:
-        """Minimum share that an effect that filters a force or a motion must explain.
+        """Minimum share of the mean square that a smoothing effect (filter) must explain.
 
         Such an effect smooths the errors of the motion and explains a part of their share.
         """
         return self.motion.min_filter_ratio * motion_share
 
     def least_effect_share(self, motion_share: float) -> float:
-        """Minimum share of the mean square that any other effect must explain."""
+        """Minimum share of the mean square that an effect that does not smooth must explain."""
         return min(motion_share, self.motion.max_effect_share)
 
     def with_values(self, values: Mapping[str, Any]) -> Policy:
-        """Return the policy with other values, by dotted name.
+        """Return a copy of the policy with some values replaced, given by dotted name.
 
         Raises
         ------
@@ -131,7 +132,7 @@ class Policy:
         return changed
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the values by dotted name, JSON-serialisable."""
+        """Return all values by dotted name, JSON-serialisable."""
         return {name: getattr(owner, leaf) for name, owner, leaf, _ in _numbers(self)}
 
     @classmethod
@@ -144,7 +145,7 @@ class Policy:
 
 
 def _numbers(section: Any, before: str = "") -> Iterator[tuple[str, Any, str, Mapping[Any, Any]]]:
-    """Dotted name, owner, name and metadata of each number in a section and its subsections."""
+    """Dotted name, section, field name and metadata of each number of a policy section."""
     for f in fields(section):
         value = getattr(section, f.name)
         if is_dataclass(value):
@@ -154,6 +155,7 @@ def _numbers(section: Any, before: str = "") -> Iterator[tuple[str, Any, str, Ma
 
 
 def _replaced(section: Any, path: list[str], value: Any) -> Any:
+    """Copy of a policy section in which the field at `path` has another value."""
     first, *rest = path
     inner = _replaced(getattr(section, first), rest, value) if rest else value
     return replace(section, **{first: inner})

@@ -14,7 +14,7 @@ SET_BEFORE = "fixed before any campaign was examined"
 
 @dataclass(frozen=True)
 class Patterns:
-    """Residual structure along an axis."""
+    """Thresholds for patterns of the residual along an axis, for example over the speed."""
 
     min_share: float = documented(
         LEAST_SHARE, "share of the mean square that a pattern must explain", "as in a comparison"
@@ -28,7 +28,7 @@ class Patterns:
 
 @dataclass(frozen=True)
 class Tones:
-    """Residual structure at one frequency."""
+    """Thresholds for residual structure at one frequency."""
 
     chance: float = documented(
         1e-7, "probability of a spectral line by chance, over all lines of a run", SET_BEFORE
@@ -44,7 +44,7 @@ class Tones:
 
 @dataclass(frozen=True)
 class Ripples:
-    """Periodic residual structure over the travel.
+    """Thresholds for periodic residual structure over the travel.
 
     The significance level and the share of the mean square are those of `Tones`.
     """
@@ -78,7 +78,7 @@ class Ripples:
 
 @dataclass(frozen=True)
 class Replicates:
-    """Residual structure that repeats with the motion."""
+    """Thresholds for residual structure that repeats with a periodic motion."""
 
     min_sigma: float = documented(5.0, "minimum correlation, in standard errors", FIVE_SIGMA)
     min_share: float = documented(
@@ -96,7 +96,7 @@ class Replicates:
 
 @dataclass(frozen=True)
 class Bursts:
-    """Residual structure at isolated instants."""
+    """Thresholds for residual structure at isolated instants."""
 
     min_sigma: float = documented(
         5.0, "standard deviations beyond which an innovation is large", FIVE_SIGMA
@@ -114,7 +114,7 @@ class Bursts:
 
 @dataclass(frozen=True)
 class Constancy:
-    """Constancy of the parameters over the runs."""
+    """Thresholds for parameters that differ between runs."""
 
     chance: float = documented(1e-8, "significance level of the disagreement", SET_BEFORE)
     min_ratio: float = documented(
@@ -132,7 +132,7 @@ class Constancy:
 
 @dataclass(frozen=True)
 class Strokes:
-    """Friction levels that differ between strokes.
+    """Thresholds for friction levels that differ between strokes.
 
     The share of the mean square is that of `Patterns`, the significance level that of `Constancy`.
     """

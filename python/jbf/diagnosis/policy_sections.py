@@ -15,7 +15,7 @@ ONE_IN_TEN_THOUSAND = "1 campaign in 10,000"
 
 @dataclass(frozen=True)
 class Selection:
-    """Acceptance, exchange and removal of effects."""
+    """Thresholds for the acceptance, exchange and removal of effects."""
 
     max_effects: int = documented(
         5,
@@ -60,13 +60,13 @@ class Selection:
 
     @property
     def tie(self) -> float:
-        """Difference in evidence that corresponds to the weight `min_weight`."""
+        """Difference in evidence at which an effect has the posterior weight `min_weight`."""
         return 2.0 * math.log(1.0 / self.min_weight - 1.0)
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Confirmation by held-out runs."""
+    """Thresholds for the confirmation of effects and terms by held-out runs."""
 
     min_gain_share: float = documented(
         0.5,
@@ -95,7 +95,7 @@ class HeldOut:
 
 @dataclass(frozen=True)
 class Search:
-    """Selection of the candidates to fit, and of those to fit to convergence."""
+    """Criteria by which candidates are fitted approximately or to convergence."""
 
     min_score_share: float = documented(
         0.3,
@@ -152,7 +152,7 @@ class Search:
 
 @dataclass(frozen=True)
 class Terms:
-    """Terms of the observation model."""
+    """Thresholds for terms of the observation model."""
 
     chance: float = documented(
         1e-4,
@@ -174,7 +174,7 @@ class Terms:
 
 @dataclass(frozen=True)
 class Delays:
-    """Significance of delays by run and of a clock drift."""
+    """Thresholds for time delays of runs and a clock drift."""
 
     max_searches: int = documented(
         3,
@@ -193,7 +193,7 @@ class Delays:
 
 @dataclass(frozen=True)
 class Quantisation:
-    """Bias of the readings of a converter with coarse quantisation."""
+    """Thresholds for the bias of readings of a converter with coarse quantisation."""
 
     min_bias_change: float = documented(
         0.01,
@@ -209,7 +209,7 @@ class Quantisation:
 
 @dataclass(frozen=True)
 class NoiseVariance:
-    """Heteroscedastic and heavy-tailed noise."""
+    """Thresholds for heteroscedastic and heavy-tailed noise."""
 
     min_ratio: float = documented(
         1.25,
@@ -247,7 +247,7 @@ class NoiseVariance:
 
 @dataclass(frozen=True)
 class Motion:
-    """Errors of the estimated motion."""
+    """Thresholds that depend on the errors of the estimated motion."""
 
     max_structure_share: float = documented(
         0.08,
@@ -278,7 +278,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Limitations:
-    """Conclusions that the motions of the runs do not support."""
+    """Thresholds for conclusions that the motions of the runs do not support."""
 
     min_reverse_share: float = documented(
         0.01,
@@ -305,7 +305,7 @@ class Limitations:
 
 @dataclass(frozen=True)
 class Laws:
-    """Comparison of base laws."""
+    """Thresholds for the comparison of base laws."""
 
     tie_sigma: float = documented(
         2.0,
@@ -327,7 +327,7 @@ class Laws:
 
 @dataclass(frozen=True)
 class Experiments:
-    """Proposed runs."""
+    """Thresholds for the proposal of further runs."""
 
     min_evidence: float = documented(
         25.0,

@@ -69,12 +69,13 @@ def diagnose(
     runs
         Recorded runs with friction; several different motions help to distinguish effects.
     law, clock
-        Base law and its clock. `auto` selects, among the laws that the rig allows, the one with the
-        smallest held-out error without effects.
+        Base law, and the definition of the time constant of its film (`journal` or `thesis`). The
+        law `auto` selects, among the laws that the rig allows, the one with the smallest held-out
+        error without effects.
     limits
         Limits of the rig for the next experiment; by default those of the runs.
     policy
-        Numbers that determine the verdict.
+        Thresholds and settings that determine the verdict.
     progress
         Called with a message, the number of finished trials of the round and the total number.
 
@@ -184,7 +185,7 @@ def _diagnose(
 
 
 def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
-    """Laws to diagnose: the selected law, after the best memoryless law if it is elastic."""
+    """Names of the laws to diagnose: the selected one, preceded by a memoryless one if elastic."""
     first = laws[0].law
     if not find_law(first).has_bristle:
         return (first,)
@@ -193,7 +194,7 @@ def _to_diagnose(laws: Sequence[LawTried]) -> tuple[str, ...]:
 
 
 def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], margin: float) -> bool:
-    """Whether a law without effects predicts better than another law with its effects."""
+    """Whether the best law without effects may predict better than another law with its effects."""
     alone = {t.law: t.held_out_rms for t in laws}
     first, last = best.steps[0], best.steps[-1]
     improved = last.held_out_rms / max(first.held_out_rms, 1e-300)
@@ -201,7 +202,7 @@ def _may_predict_better(law: str, best: Diagnosis, laws: Sequence[LawTried], mar
 
 
 def _held_out_errors(answers: Sequence[Diagnosis], recorded: Campaign) -> list[float]:
-    """Held-out RMS of final models on common samples, in the unit of the force.
+    """Held-out RMS of the final models of several diagnoses on common samples, unit of the force.
 
     It is computed as the fit RMS on these samples, times the ratio of held-out RMS to fit RMS.
     """
@@ -305,18 +306,18 @@ def _with_law(
 
 
 def _values(fit: Fit) -> dict[str, float]:
-    """Parameter values by name."""
+    """Parameter values of a fit, by name."""
     return {name: parameter.value for name, parameter in fit.parameters.items()}
 
 
 def _before(candidates: Candidates) -> Comparison:
-    """Compare the law, including the machine terms, with the records."""
+    """Compare the base law, including the machine terms, with the records."""
     base = start_model(candidates)
     bare = finish(candidates.fitted(base).problem, candidates.converge(base))
     return compare_prepared(bare.model, candidates.campaign)
 
 
 def _rivals(present: Names, name: str, others: Names) -> list[Names]:
-    """Models that fit equally well: with this effect, or with one of its alternatives."""
+    """Models that fit equally well: the present one, and those with an effect replaced."""
     rest = tuple(e for e in present if e != name)
     return [present, *((*rest, other) for other in others)]

@@ -50,23 +50,25 @@ class Diagnosis(Result):
     next_experiment
         Description of a further run that would reduce the ambiguity; None if none is proposed.
     fit
-        The final fit; `model` is its model.
+        The final fit; the property `model` is its model.
+    elapsed_s
+        Computing time, s.
     before, after
         Comparison of the base law and of the final model with the runs.
     not_tried
         Effects that are compatible with the law but not testable in these runs, with reasons.
     not_detectable
-        Effects that are not detectable in these runs at a usual strength.
+        Effects that are not detectable in these runs at their typical strength.
     level
-        Threshold for the gain of an effect, and its false-alarm rate.
+        Acceptance threshold for the gain of an effect, and its false-alarm rate.
     power
-        Smallest detectable strength of each effect that is not in the model; empty if there is
-        residual structure.
+        Detection limits of each effect that is not in the model; empty if there is residual
+        structure.
     experiment
         Motion of the next run, if a run can discriminate between alternatives or reveal
         undetectable effects.
     policy
-        Numbers that determined the verdict.
+        Thresholds and settings that determined the verdict.
     findings
         Recording artefacts by run, and their corrections.
     confounders
@@ -128,7 +130,7 @@ class Diagnosis(Result):
 
     @property
     def model(self) -> Model:
-        """The final model."""
+        """Final model: the law with its effects and fitted parameters."""
         return self.fit.model
 
     def summary(self, full: bool = False) -> str:
@@ -173,5 +175,5 @@ class Diagnosis(Result):
         }
 
     def report(self, path: PathLike) -> None:
-        """Write the HTML report; equivalent to `save_html`."""
+        """Write the result as an HTML report; equivalent to `save_html`."""
         self.save_html(path)

@@ -33,7 +33,7 @@ from jbf.models.catalogue import can_be_added
 
 @dataclass(frozen=True)
 class Selected:
-    """Result of the selection.
+    """Result of the stepwise selection of effects and terms.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Selected:
     steps
         The ledger, one step per round.
     refused
-        Effects that fit better but do not improve the held-out predictions.
+        Reports on effects that fit better but do not improve the held-out predictions.
     """
 
     candidates: Candidates
@@ -57,11 +57,12 @@ NOT_FINISHED = "computing time limit reached: not all further effects were teste
 
 
 def select(candidates: Candidates) -> Selected:
-    """Add effects and terms of the observation model, the largest evidence first.
+    """Add effects and terms of the observation model in rounds, the largest evidence first.
 
-    The selection ends when no further one is accepted. It starts with the law and the machine terms
-    of a drive. If no effect is accepted and the residual has structure, all candidates and then
-    pairs of them are fitted, since the score of a strong effect at its null may be small.
+    The selection ends when no further effect or term is accepted. It starts with the law and the
+    machine terms of a drive. If no effect is accepted and the residual has structure, all
+    candidates and then pairs of them are fitted, since the score of a strong effect at its null may
+    be small.
 
     Raises
     ------
@@ -135,7 +136,7 @@ def _select(candidates: Candidates, completed: list[Selected]) -> Selected:
 
 
 def _evidence_of_leader(candidates: Candidates, present: Names, trial_round: Round) -> float:
-    """Evidence for the leading effect, or its full gain if independent units confirmed it."""
+    """Evidence for the effect selected in a round, or its full gain if confirmed by units."""
     leader = next(t for t in trial_round.trials if t.effect == trial_round.leader)
     if leader.evidence > 0.0:
         return leader.evidence
@@ -144,13 +145,13 @@ def _evidence_of_leader(candidates: Candidates, present: Names, trial_round: Rou
 
 
 def remainder_of(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    """Residual structure of a model."""
+    """Residual structure of the model with the present effects."""
     problem, solution = candidates.fitted(present).problem, candidates.converge(present)
     return find_residual_structure(problem, solution, candidates.policy)
 
 
 def _grown(candidates: Candidates, present: Names, trial_round: Round) -> Names:
-    """Add the leading candidate and remove effects that it makes unnecessary.
+    """Add the effect selected in a round, and remove effects that become unnecessary.
 
     A candidate that is tied with the leader is used instead if this results in fewer effects.
     """
@@ -210,7 +211,7 @@ def _pair(candidates: Candidates, present: Names, trial_round: Round) -> Names:
 
 
 def _promising(candidates: Candidates, present: Names) -> list[str]:
-    """Candidates with the largest scores relative to a model."""
+    """Candidate effects with the largest score statistics relative to the present model."""
     near = candidates.converge(present)
     names = [n for n in candidates.names if n not in present and can_be_added(n, present)]
     candidates.score_all([(*present, name) for name in names], near)
@@ -220,7 +221,7 @@ def _promising(candidates: Candidates, present: Names) -> list[str]:
 
 
 def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -> Remainder:
-    """Residual structure that reports the effect limit and the leading candidate beyond it."""
+    """Report that the largest number of effects is reached although `leader` would be added."""
     base, richer = candidates.converge(present), candidates.converge((*present, leader))
     unit = candidates.campaign.rig.quantities.force
     where = (
@@ -231,7 +232,7 @@ def _effect_limit_reached(candidates: Candidates, present: Names, leader: str) -
 
 
 def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> Step:
-    """Create a step of the ledger: a model, its errors, and the candidates tried with it."""
+    """Create the step of the ledger for a model: its errors, and the candidates tried with it."""
     solution = candidates.converge(effects)
     noise_rms = noise_floor(candidates.campaign.prepared, solution.samples)
     held_out_n = candidates.held_out_rms(effects)
@@ -240,7 +241,7 @@ def step(candidates: Candidates, effects: Names, trials: tuple[Trial, ...]) -> S
 
 
 def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolation, ...]:
-    """Prediction errors of runs beyond the range of all others in speed or load."""
+    """Prediction errors of runs whose speed or load is beyond the range of all other runs."""
     if not candidates.beyond:
         return ()
     unit, names = candidates.campaign.rig.quantities, candidates.campaign.samples.runs
@@ -258,7 +259,7 @@ def _extrapolations(candidates: Candidates, effects: Names) -> tuple[Extrapolati
 
 
 def _refused(candidates: Candidates, present: Names) -> tuple[Remainder, ...]:
-    """Report a candidate with a better fit, overall or in parts, but no better held-out prediction.
+    """Report an unaccepted candidate that fits better but does not predict held-out runs better.
 
     Samples next to friction jumps are excluded, since a run-specific clock error of less than a
     sample can affect them.

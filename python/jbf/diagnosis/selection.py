@@ -34,7 +34,7 @@ Names = tuple[str, ...]
 Follow = Literal["promising", "shown", "all"]
 
 LESS = 0.95
-"""Ratio of RMS values below which the ledger reports a better fit.
+"""Ratio of RMS values, with to without a candidate, from which the ledger reports a better fit.
 
 It affects the text only.
 """
@@ -45,7 +45,7 @@ SMOOTH = "fits better, but the residual is so strongly correlated that this may 
 
 @dataclass(frozen=True)
 class Ranked:
-    """A candidate relative to a model.
+    """Evidence and solution of a candidate effect in addition to a model.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Ranked:
 
 @dataclass(frozen=True)
 class Round:
-    """One round of trials relative to a model.
+    """Result of one round: each candidate tried in addition to a model, and the one to add.
 
     Attributes
     ----------
@@ -85,10 +85,12 @@ class Round:
 
 
 def try_candidates(candidates: Candidates, present: Names, follow: Follow = "promising") -> Round:
-    """Fit every candidate in addition to the present effects and select the one to add.
+    """Test every candidate in addition to the present effects, and select the one to add.
 
     Parameters
     ----------
+    candidates, present
+        Cached fits, and the effects of the present model.
     follow
         Candidates to fit: those that may have the largest evidence after a few steps (`promising`),
         those with a sufficient score (`shown`), or all. For a strong effect, the score at its null
@@ -153,10 +155,11 @@ def try_candidates(candidates: Candidates, present: Names, follow: Follow = "pro
 def _by_units(
     candidates: Candidates, present: Names, ranked: Sequence[Ranked], trials: list[Trial]
 ) -> tuple[str | None, list[Trial]]:
-    """Candidate with the largest likelihood gain that independent units confirm.
+    """Select the candidate with the largest likelihood gain that independent units confirm.
 
     In a correlated residual few samples are independent, and a slow or constant effect has little
-    evidence. Runs or strokes are independent even then.
+    evidence. Runs or strokes (the units) are independent even then. Returns its name, or None, and
+    the updated trials.
     """
     base = candidates.converge(present)
     gains = {
@@ -179,12 +182,12 @@ def _by_units(
 
 
 def units_confirm(candidates: Candidates, rest: Names, name: str) -> bool:
-    """Whether an effect improves the prediction of independent units significantly."""
+    """Whether an effect added to `rest` significantly improves predictions of independent units."""
     return candidates.confirmation(rest, name).units_confirm(candidates.level.chance)
 
 
 def needed(candidates: Candidates, current: Names, name: str, simpler: Solution) -> bool:
-    """Whether an effect of a model has evidence or is confirmed by independent units."""
+    """Whether an effect of the current model has evidence or is confirmed by independent units."""
     full = candidates.converge(current)
     if evidence(candidates, full, simpler) >= 0.0:
         return True
@@ -206,12 +209,12 @@ def _gain_is_from_local_minimum(
 
 
 def _has_larger_rms(candidate: Ranked, least_n: float, policy: Policy) -> bool:
-    """Whether a candidate has a much larger RMS than the best candidate with evidence."""
+    """Whether a candidate's RMS exceeds that of the best candidate, `least_n`, too far."""
     return candidate.solution.rms > policy.selection.max_rms_ratio * least_n
 
 
 def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow) -> list[Ranked]:
-    """Evaluate the candidates in addition to the present effects, sorted by decreasing evidence.
+    """Compute the evidence of each candidate in addition to the present effects, largest first.
 
     The fits of competitive candidates are converged.
     """
@@ -269,7 +272,7 @@ def _rank(candidates: Candidates, present: Names, base: Solution, follow: Follow
 def _cannot_reach_leader(
     candidates: Candidates, present: Names, shown: Sequence[str], base: Solution
 ) -> dict[str, float]:
-    """Candidates that cannot have the largest evidence, with upper limits of their evidence."""
+    """Upper limits of the evidence of candidates that cannot have the largest evidence."""
     policy = candidates.policy
     candidates.look_all([(*present, name) for name in shown], base)
     looked = {name: candidates.look((*present, name), base) for name in shown}
@@ -286,7 +289,7 @@ def _cannot_reach_leader(
 
 
 def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
-    """Effects that still have evidence after a change of the sample weights or the campaign."""
+    """Remove effects that have no evidence after a change of the sample weights or the campaign."""
     current = tuple(effects)
     for name in effects:
         if not can_be_removed(name, current):
@@ -299,7 +302,7 @@ def still_needed(candidates: Candidates, effects: Sequence[str]) -> Names:
 
 
 def start_model(candidates: Candidates) -> Names:
-    """Machine terms of a drive that the runs require, estimated jointly with the law.
+    """Select the machine terms of a drive that the runs require, estimated jointly with the law.
 
     The fit with each term starts from the fit without it, since a search from the starting values
     of all terms may end at a weight of zero. A term without evidence is kept if the held-out error
@@ -344,7 +347,7 @@ def reconsider(
 
 
 def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[str]) -> Names:
-    """Review each effect once."""
+    """Review each effect once: keep, remove or replace it, and return the resulting effects."""
     current = present
     for name in present:
         if len(current) < 2 or name not in current or not can_be_removed(name, current):
@@ -371,11 +374,11 @@ def _questioned(candidates: Candidates, present: Names, unconfirmed: frozenset[s
 
 
 def weights(candidates: Candidates, present: Names) -> dict[str, dict[str, float]]:
-    """Posterior weights of each effect and of its alternatives, at equal prior odds.
+    """Posterior weights of each effect and its alternatives, at equal prior odds, by name.
 
-    Alternatives are the candidates with at least the minimum weight in a comparison with the effect
-    alone (Kass & Raftery 1995). The effect is first, the others follow by weight. An effect without
-    alternatives has weight one.
+    The alternatives of an effect are the candidates that have at least the minimum weight if
+    compared with this effect only (Kass & Raftery 1995). The effect is first, the others follow by
+    weight. An effect without alternatives has weight one.
     """
     full = candidates.converge(present)
     posterior: dict[str, dict[str, float]] = {}

@@ -35,7 +35,7 @@ LEVEL, STIFFNESS = "F_c", "sigma_0"
 
 
 def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
-    """Return the verdict on a campaign.
+    """Return the verdict on a campaign (`adequate`, `missing`, `ambiguous` or `unexplained`).
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def verdict(*, effects: int, alternatives: int, remains: bool) -> Verdict:
 
 
 def name_is_supported(gain: float, disagreement: float | None, policy: Policy) -> bool:
-    """Whether an effect is named in the presence of residual structure.
+    """Whether an effect may be named although the residual has structure.
 
     An effect is judged by its own evidence, independently of other structure. A confounder,
     however, requires different parameters in each run.
@@ -104,13 +104,14 @@ def confounders(candidates: Candidates, present: Names, remains: Sequence[Remain
 def effects_without_estimate(
     parameters: Mapping[str, ParameterValue], effects: Names, policy: Policy
 ) -> Names:
-    """Find the effects whose strength is held, or not significantly different from its null.
+    """Find effects whose strength is held fixed, or not significantly different from its null.
 
     The strengths are the parameters with a null (amplitudes, stiffnesses), not those without
     (periods, phases). A parameter with an infinite null is compared with zero.
     """
 
     def estimated(name: str, page: Parameter) -> bool:
+        """Whether a strength parameter is estimated and significantly different from its null."""
         value = parameters.get(name)
         if value is None or value.stderr is None:
             return False  # a held parameter has no standard error
@@ -129,7 +130,7 @@ def effects_without_estimate(
 
 
 def best_predicting(candidates: Candidates, present: Names, named: Names) -> Names:
-    """Effects with or without the confounders, whichever have the smaller held-out error."""
+    """Select the present or the named effects, whichever have the smaller held-out error."""
     if named == present:
         return present
     error, error_named = (candidates.held_out_rms(names) for names in (present, named))
@@ -139,7 +140,7 @@ def best_predicting(candidates: Candidates, present: Names, named: Names) -> Nam
 def limitations(
     campaign: Campaign, parameters: Mapping[str, float], policy: Policy
 ) -> tuple[str, ...]:
-    """Describe each conclusion that the motions do not support, independently of the model.
+    """Describe each conclusion that the recorded motions do not support, for any model.
 
     Parameters
     ----------

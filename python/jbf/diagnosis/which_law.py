@@ -45,7 +45,7 @@ not identifiable, and it predicts no better than `stribeck`.
 
 @dataclass(frozen=True)
 class LawTried:
-    """Predictive performance of a law together with the machine terms.
+    """Held-out error of a law that is fitted together with the machine terms.
 
     Attributes
     ----------
@@ -74,12 +74,12 @@ class LawTried:
 
 @dataclass(frozen=True, eq=False)
 class HeldOut:
-    """Held-out errors of prediction.
+    """Held-out prediction errors of one law.
 
     Attributes
     ----------
     errors
-        Record minus prediction, N, one array per run; NaN at samples that do not count.
+        Record minus prediction, N, one array per run; NaN at excluded samples.
     white
         Errors whitened with the covariance of the motion errors, if it is known.
     """
@@ -89,7 +89,7 @@ class HeldOut:
 
 
 def allowed(rig: Rig) -> list[str]:
-    """Laws whose requirements a rig satisfies."""
+    """Names of the laws whose required quantities a rig defines."""
     allowed_laws = []
     for name in laws():
         if name in ON_REQUEST:
@@ -103,7 +103,7 @@ def allowed(rig: Rig) -> list[str]:
 
 
 def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str]]:
-    """Allowed laws that the records can resolve, and the reasons for excluding the others.
+    """Allowed laws that the records can resolve, and the reasons for excluding others, by name.
 
     A law is excluded if its film is too fast for the records, or if it has memory and the records
     contain steady states only.
@@ -123,7 +123,7 @@ def followed(campaign: Campaign, clock: Clock) -> tuple[list[str], dict[str, str
 
 
 def comparable(campaign: Campaign, clock: Clock, policy: Policy) -> Campaign:
-    """Return the campaign with motion errors estimated under the simplest law.
+    """Return the campaign with the errors of the motion estimated under the simplest law.
 
     All laws are then compared with the same motion errors.
     """
@@ -173,16 +173,16 @@ def _compared(
     policy: Policy,
     campaign: Campaign,
 ) -> list[LawTried]:
-    """Rank laws by held-out errors, with the minimum difference that motion errors require."""
+    """Rank laws by held-out errors, with the tie limit that the motion's errors require."""
     errors, white = [h.errors for h in held_out], [h.white for h in held_out]
     share = policy.least_share(campaign.motion_share)
     return compared(names, parameters, errors, policy, white=white, least_share=share)
 
 
 def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldOut | None:
-    """Held-out errors of a law with the machine terms.
+    """Held-out errors of a law with the machine terms, within a share of the computing budget.
 
-    None if its share of the computing budget is exceeded.
+    Returns None if the share is exceeded.
     """
     limited = replace(campaign, work=campaign.work.part(policy.laws.budget_share))
     try:
@@ -194,10 +194,10 @@ def _within(campaign: Campaign, law: str, clock: Clock, policy: Policy) -> HeldO
 
 
 def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut:
-    """Prediction errors of each run from a fit to the others.
+    """Prediction errors of each run by a model fitted to the other runs.
 
-    For a bristle law they include the samples of the initial-state transient: other laws predict
-    these samples, and in an application the initial state is unknown.
+    For a bristle law the errors include the samples of the initial-state transient: other laws
+    predict these samples, and in an application the initial state is unknown.
     """
     solution, problem = candidates.converge(effects), candidates.fitted(effects).problem
     samples = solution.samples
@@ -216,7 +216,7 @@ def held_out_errors(candidates: Candidates, effects: tuple[str, ...]) -> HeldOut
 
 
 def _with_starts(samples: Samples, every: Samples) -> Samples:
-    """Add the samples of another selection that precede the first selected sample of each run."""
+    """Add to a selection the samples of `every` before the first selected sample of each run."""
     counted = []
     for selected, other in zip(samples.counted, every.counted, strict=True):
         start = int(np.argmax(selected)) if selected.any() else 0
@@ -234,14 +234,16 @@ def compared(
     white: Sequence[Sequence[Array]] | None = None,
     least_share: float = 0.0,
 ) -> list[LawTried]:
-    """Rank models by their held-out errors, best first, and determine ties with the best.
+    """Rank models by their held-out errors, best first, and mark those tied with the best.
 
     Parameters
     ----------
+    names, parameters
+        Names of the models, and their numbers of parameters.
     errors
-        Held-out errors of each model, N, one array per run; NaN at samples that do not count.
+        Held-out errors of each model, N, one array per run; NaN at excluded samples.
     white
-        `errors` whitened with the covariance of the motion errors, if it is known. They determine
+        `errors` whitened with the covariance of the motion errors, if it is known. These determine
         the ranking, since an elastic law would smooth acceleration errors next to a reversal.
     least_share
         Minimum relative difference of the mean squares of models that are not tied.

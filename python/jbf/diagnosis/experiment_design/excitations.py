@@ -1,4 +1,4 @@
-"""Motions that a rig can make, from which the next experiment is chosen."""
+"""Generation of the motions that a rig can make, among which the next experiment is chosen."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from jbf.records.run_requirements import run_on
 Array = npt.NDArray[np.float64]
 
 COLUMNS = {*COLUMNS_OF_EVERY_RUN, "angle_rad", "position_m"}
-"""Columns of a proposed run."""
+"""Names of the columns that a proposed run can contain."""
 MOST_SAMPLES = 6000
 """Largest number of samples of a proposed run. It enters no verdict."""
 RATES_RAD_S = (0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
-"""Rates of the sines, rad/s. It enters no verdict."""
+"""Angular frequencies of sinusoidal motions, rad/s. It enters no verdict."""
 SHARES = (1.0, 0.3, 0.1, 0.02)
-"""Amplitudes of the sines, as shares of the largest speed. It enters no verdict."""
+"""Amplitudes of sinusoidal motions, as shares of the largest speed. It enters no verdict."""
 STOP_SHARES = (0.4, 1.0)
 """Amplitudes of stop-and-go motions, as shares of the largest speed. It enters no verdict."""
 REST_S = 8.0
 """Duration of a rest of a stop-and-go motion, s. It enters no verdict."""
 USUAL_RATE_RAD_S = 2.0
-"""Rate of a sine at which a drive is assumed to reach its largest speed. It enters no verdict."""
+"""Angular frequency of the sine that defines a default acceleration. It enters no verdict."""
 REACH = 0.98
-"""Share of the travel that a motion is designed for; the rest covers the sampling.
+"""Share of the travel limit that a motion may cover; the rest is a margin for sampling errors.
 
 It enters no verdict.
 """
@@ -49,21 +49,22 @@ LONGEST_S = 86400.0
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of the rig; values that are None are taken from the runs.
+    """Limits of speed, load, temperature and travel of a rig; None: taken from the recorded runs.
 
     Attributes
     ----------
     velocity, acceleration
-        Largest surface speed and acceleration. From the runs: the largest values recorded, and at
-        least the acceleration of a sine of the largest speed at 2 rad/s.
+        Largest surface speed and acceleration, m/s and m/s^2 (rad/s and rad/s^2 for a rotary
+        drive). From the runs: the largest values recorded, and at least the acceleration of a sine
+        of the largest speed at 2 rad/s.
     duration_s
-        Length of the run.
+        Duration of the run, s.
     load_n
-        Smallest and largest load on a bearing; the same value twice for a fixed load. From the
+        Smallest and largest load on a bearing, N; the same value twice for a fixed load. From the
         runs: the recorded loads.
     temperature_c
-        Lowest and highest temperature to record at, C. From the runs: the recorded temperatures,
-        where they differ.
+        Lowest and highest temperature at which to record, C. From the runs: the recorded
+        temperatures, where they differ.
     travel
         Largest distance between two positions of a run, in m (rad for a rotary drive). Motions
         start near the lower end, in the positive direction. From the runs: the largest distance
@@ -120,7 +121,7 @@ class Limits:
             )
 
     def filled(self, campaign: Campaign) -> Limits:
-        """Return the limits with None replaced by the values of the runs."""
+        """Return the limits with each None replaced by the value of the recorded runs."""
         motions = [p.motion for p in campaign.prepared]
         top = self.velocity or max(float(np.max(np.abs(m.velocity))) for m in motions)
         recorded = max(float(np.quantile(np.abs(m.acceleration), 0.999)) for m in motions)
@@ -161,9 +162,16 @@ class Excitation:
 
 
 def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Iterator[Excitation]:
-    """Generate motions within complete limits; each begins at rest.
+    """Generate motions within the limits of a rig; each begins at rest.
 
-    Without a travel, the path is not limited.
+    Parameters
+    ----------
+    limits
+        Limits without None; only the travel may be None, which does not limit the path.
+    step_s
+        Sampling interval, s.
+    speed_unit
+        Unit of the speed in the descriptions.
     """
     loads = (None,) if limits.load_n is None else tuple(dict.fromkeys(limits.load_n))
     temperatures = (
@@ -189,7 +197,7 @@ def excitations(limits: Limits, step_s: float, speed_unit: str = "m/s") -> Itera
 
 
 def path_of(velocity: Array, step_s: float) -> Array:
-    """Path of a motion from its start, from the speed at equal time steps."""
+    """Distance from the start of a motion, integrated from its speed at equal time steps."""
     mean = 0.5 * (velocity[1:] + velocity[:-1])
     path: Array = np.concatenate(([0.0], np.cumsum(mean * step_s)))
     return path
@@ -203,7 +211,19 @@ def _within(path: Array, travel: float) -> bool:
 def _motions(
     t: Array, top: float, acceleration: float, reach: float, unit: str
 ) -> Iterator[tuple[str, Array]]:
-    """Generate motions that cover at most `reach` where their speed can be lowered for it."""
+    """Generate motions with their descriptions, as pairs of text and velocity.
+
+    Parameters
+    ----------
+    t
+        Time, s.
+    top, acceleration
+        Largest speed and acceleration.
+    reach
+        Largest distance to cover; the speed is reduced to comply with it where that is possible.
+    unit
+        Unit of the speed in the descriptions.
+    """
     duration = float(t[-1]) if len(t) else 0.0
     # The start lasts long enough that its acceleration is at most half of the limit.
     start = np.clip(t * 0.5 * acceleration / top, 0.0, 1.0)
@@ -230,32 +250,34 @@ def _motions(
 
 
 def _sine(speed: float, w: float, unit: str) -> str:
+    """Describe a sinusoidal motion of given speed amplitude and angular frequency."""
     return f"a two-way sine of {speed:.3g} {unit} at {w:g} rad/s"
 
 
 def _sine_speed(speed: float, w: float, reach: float) -> float:
-    """Amplitude of a sine at rate `w` that covers at most `reach`."""
+    """Speed amplitude, at most `speed`, of a sine of angular frequency `w` that covers `reach`."""
     return min(speed, 0.5 * reach * w)
 
 
 def _stops(speed: float, unit: str) -> str:
+    """Describe a stop-and-go motion of given speed."""
     return f"stop and go to {speed:.3g} {unit}, both directions, with rests of {REST_S:g} s"
 
 
 def _stop_speed(speed: float, acceleration: float, reach: float) -> float:
-    """Speed of a stop-and-go motion whose ramps cover at most half of `reach`."""
+    """Speed, at most `speed`, of a stop-and-go motion whose ramps cover at most half of `reach`."""
     return min(speed, 0.5 * reach, float(np.sqrt(0.5 * reach * acceleration / 1.05)))
 
 
 def _stop_and_go(t: Array, speed: float, acceleration: float, reach: float) -> tuple[Array, float]:
-    """Velocity of a stop-and-go motion, and the duration of one forward and backward stroke, s."""
+    """Velocity of a stop-and-go motion, and the duration of a forward and a backward stroke, s."""
     ramp = max(1.0, 1.05 * speed / acceleration)
     hold = min(3.0, reach / speed - ramp)
     return _strokes(t, speed, ramp, hold, REST_S), 2.0 * (2.0 * ramp + hold + REST_S)
 
 
 def _strokes(t: Array, speed: float, ramp: float, hold: float, rest: float) -> Array:
-    """Velocity of strokes in alternate directions, each after a rest; durations in s."""
+    """Velocity of strokes in alternating directions with a rest before each; durations in s."""
     cycle = 2.0 * ramp + hold + rest
     phase = np.mod(t, cycle)
     height = np.clip(np.minimum(phase - rest, cycle - phase) / ramp, 0.0, 1.0)
@@ -266,9 +288,9 @@ def _strokes(t: Array, speed: float, ramp: float, hold: float, rest: float) -> A
 def _mixed(
     t: Array, top: float, acceleration: float, reach: float, unit: str
 ) -> Iterator[tuple[str, Array]]:
-    """Combined motions: stop and go, a fast sine, and a fast sine of small stroke in sequence.
+    """Generate sequences of stop and go, a fast sine, and a fast sine of small stroke.
 
-    Each part ends at rest, where the next part begins.
+    Each item is a description and a velocity. Each part ends at rest, where the next part begins.
     """
     duration = float(t[-1]) if len(t) else 0.0
     # The highest rates that the acceleration limit allows.
@@ -300,14 +322,24 @@ def _mixed(
 def runs_to_play(
     rig: Rig, limits: Limits, step_s: float, *, linear: bool
 ) -> Iterator[tuple[Excitation, Run, Driven]]:
-    """Generate every motion within complete limits, as a run and as the input of a model."""
+    """Generate every motion within the limits, with its run and the input of a model.
+
+    Parameters
+    ----------
+    rig, limits
+        The rig, and its limits without None.
+    step_s
+        Sampling interval, s.
+    linear
+        Whether the motion is that of a slide, with positions in place of angles.
+    """
     for excitation in excitations(limits, step_s, rig.quantities.speed):
         run = run_from_motion(rig, excitation, step_s, linear=linear)
         yield excitation, run, core_motion(rig, run, known_motion(run, rig.radius_m))
 
 
 def run_from_motion(rig: Rig, excitation: Excitation, step_s: float, *, linear: bool) -> Run:
-    """Convert a motion to a run, with the position of a slide or the angle of a shaft."""
+    """Convert a motion to a run, with positions of a slide (`linear`) or angles of a shaft."""
     velocity = excitation.velocity
     time = np.arange(len(velocity)) * step_s
     path = path_of(velocity, step_s)
@@ -330,5 +362,5 @@ def run_from_motion(rig: Rig, excitation: Excitation, step_s: float, *, linear: 
 
 
 def missing_columns(effects: Iterable[str]) -> set[str]:
-    """Columns that effects require and a proposed run lacks."""
+    """Columns that the given effects require and that a proposed run cannot contain."""
     return {column for name in effects for column in find_effect(name).columns} - COLUMNS

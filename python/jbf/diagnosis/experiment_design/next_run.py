@@ -1,4 +1,4 @@
-"""Proposal of the next run.
+"""Proposal of the next run to record.
 
 A proposed run either discriminates between models that fit equally well, or shows effects that are
 not detectable in the present runs.
@@ -44,7 +44,7 @@ It is a numerical tolerance.
 
 @dataclass(frozen=True)
 class Experiment:
-    """A run to record next.
+    """Proposed run to record next, with the expected difference between the rival models.
 
     Attributes
     ----------
@@ -53,9 +53,9 @@ class Experiment:
     run
         The motion: time, speed, angle or position, load; without friction.
     separation_n
-        RMS difference between the rival models in this run after a new fit, N.
+        RMS difference between the rival models in this run after a refit of their parameters, N.
     separation_sigma
-        `separation_n` in units of the noise.
+        `separation_n` in standard deviations of the noise.
     evidence
         Expected value of twice the log-likelihood ratio between the rival models.
 
@@ -78,12 +78,12 @@ class Experiment:
     evidence: float
 
     def write_csv(self, path: PathLike) -> None:
-        """Write the motion as a CSV file."""
+        """Write the proposed motion as a CSV file."""
         self.run.write_csv(path)
 
 
 class Rival:
-    """A fitted model and the information of the present runs about its parameters."""
+    """A model to discriminate from others, and the Fisher information of the present runs."""
 
     def __init__(self, fitted: Fitted) -> None:
         self.problem, self.solution = fitted.problem, fitted.current_solution()
@@ -96,14 +96,18 @@ class Rival:
         """Sum of squared differences from another model after a refit, in noise variances.
 
         The refit uses the new motion and the present runs (T-optimality, Atkinson & Fedorov 1975;
-        here to first order). The part that the parameters can reproduce is not evidence.
+        here to first order). The part of the difference that the parameters of this model can
+        reproduce is excluded.
 
         Parameters
         ----------
         prediction
             Friction of this model under the new motion and its derivatives, from `predict`.
         truth
-            Friction of the other model.
+            Friction of the other model, N.
+
+        step_s
+            Sampling interval of the motion, s.
         """
         noise = self.solution.noise
         gap = noise.innovations(truth - prediction[0], step_s)
@@ -114,7 +118,7 @@ class Rival:
 
 
 def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits, float]:
-    """Complete the limits, and choose the sampling interval of a proposed run, s."""
+    """Complete the limits of a rig from its runs, and return them with a sampling interval, s."""
     filled = (limits or Limits()).filled(candidates.campaign)
     step_s = float(np.median([p.step_s for p in candidates.campaign.prepared]))
     most_s = filled.duration_s / LEAST_SAMPLES
@@ -122,7 +126,7 @@ def filled_limits(candidates: Candidates, limits: Limits | None) -> tuple[Limits
 
 
 def travel_words(given: Limits | None, filled: Limits, unit: str) -> str:
-    """Name the travel of a proposed run, and whether it was recorded or given."""
+    """Describe the travel limit of a proposed run, and whether it was recorded or given."""
     if filled.travel is None:
         return ""
     recorded = "" if given is not None and given.travel is not None else "recorded "
@@ -132,7 +136,7 @@ def travel_words(given: Limits | None, filled: Limits, unit: str) -> str:
 def motions(
     candidates: Candidates, limits: Limits, step_s: float
 ) -> Iterator[tuple[Excitation, Run, Driven]]:
-    """Generate every motion that the rig can make, with the path that the recorded runs have."""
+    """Generate every motion within the limits, rotary or linear like the recorded runs."""
     linear = any(p.run.position_m is not None for p in candidates.campaign.prepared)
     return runs_to_play(candidates.campaign.rig, limits, step_s, linear=linear)
 
@@ -143,7 +147,7 @@ Rank = tuple[float, ...]
 def _best_motion(
     candidates: Candidates, limits: Limits, step_s: float, rank: Callable[[Driven], Rank]
 ) -> tuple[Rank, Excitation, Run, Driven] | None:
-    """Motion with the largest rank, the first of equal ones; None if all ranks are zero."""
+    """Motion with the largest rank (the first of equal ones); None if the rank of all is zero."""
     best: tuple[Rank, Excitation, Run, Driven] | None = None
     for excitation, run, motion in motions(candidates, limits, step_s):
         value = rank(motion)
@@ -155,7 +159,7 @@ def _best_motion(
 def propose(
     candidates: Candidates, rivals: Sequence[Sequence[Names]], limits: Limits | None = None
 ) -> Experiment | str:
-    """Propose the run that best discriminates between rival models, or explain the lack of one.
+    """Propose the run that best discriminates between rival models, or explain why none does.
 
     Parameters
     ----------
@@ -164,7 +168,12 @@ def propose(
     rivals
         Groups of models, each a tuple of effects; all models of a group fit equally well.
     limits
-        Limits of the rig.
+        Limits of the rig; by default those of the runs.
+
+    Returns
+    -------
+    Experiment or str
+        The proposed run, or the reason why no run within the limits discriminates.
     """
     every = [effects for group in rivals for effects in group]
     missing = missing_columns(name for effects in every for name in effects)
@@ -178,6 +187,7 @@ def propose(
         models[effects] = Rival(candidates.fitted(effects))
 
     def least_separation(motion: Driven) -> Rank:
+        """Smallest separation within a group of rivals, for the ranking of a motion."""
         predictions = {effects: model.predict(motion) for effects, model in models.items()}
         # The least separated pair determines whether the run discriminates between the models.
         least = min(
@@ -209,6 +219,7 @@ def propose(
 
 
 def _names(rivals: Sequence[Sequence[Names]]) -> str:
+    """Describe the groups of rival models by the effects in which they differ."""
     groups = []
     for group in rivals:
         shared = set.intersection(*(set(effects) for effects in group))
@@ -218,10 +229,10 @@ def _names(rivals: Sequence[Sequence[Names]]) -> str:
 
 
 def undetectable_effects(candidates: Candidates, present: Names, powers: Iterable[Power]) -> Names:
-    """Candidates that are not detectable in these runs at their usual strength.
+    """Candidate effects whose typical strength is below the detection limit of the present runs.
 
-    The parameters of the law can reproduce them, they are small compared with the noise, or they
-    affect only samples that do not count.
+    Each of these effects is small compared with the noise, can be reproduced by the parameters of
+    the law, or affects excluded samples only.
     """
     hidden = {p.effect for p in powers if p.hidden}
     return tuple(
@@ -235,7 +246,7 @@ def undetectable_effects(candidates: Candidates, present: Names, powers: Iterabl
 
 
 def _changes(candidates: Candidates, present: Names, name: str) -> bool:
-    """Whether an effect at its usual strength changes any prediction of these runs."""
+    """Whether an effect with the catalogue's typical strength changes the predicted friction."""
     without = candidates.fitted(present).problem.predict(candidates.converge(present).values)
     richer, values = at_usual_strength(candidates, present, name)
     with_it = richer.predict(values)
@@ -245,7 +256,13 @@ def _changes(candidates: Candidates, present: Names, name: str) -> bool:
 def propose_detection_run(
     candidates: Candidates, present: Names, hidden: Sequence[str], limits: Limits | None = None
 ) -> Experiment | str:
-    """Propose the run that would show most of the effects not detectable in the present runs."""
+    """Propose the run that makes most of the presently undetectable effects `hidden` detectable.
+
+    Returns
+    -------
+    Experiment or str
+        The proposed run, or the reason why no motion within the limits shows the effects.
+    """
     filled, step_s = filled_limits(candidates, limits)
     candidates.converge(present)
     base = Rival(candidates.fitted(present))
@@ -257,6 +274,7 @@ def propose_detection_run(
     settings = candidates.policy.experiments
 
     def evidence_in(motion: Driven) -> dict[str, float]:
+        """Non-centrality of each hidden effect, at its typical strength, in a motion."""
         prediction = base.predict(motion)
         return {
             name: base.separation(prediction, problem.chain.predict(values, [motion])[0], step_s)
@@ -264,6 +282,7 @@ def propose_detection_run(
         }
 
     def expected_detections(motion: Driven) -> Rank:
+        """Expected number of detected effects in a motion, and a total log evidence for ties."""
         evidence = evidence_in(motion)
         chances = (
             mean_detection_probability(evidence[name], prices[name], settings.strengths)
@@ -294,15 +313,15 @@ def propose_detection_run(
 
 
 def mean_detection_probability(evidence: float, price: float, strengths: Sequence[float]) -> float:
-    """Probability of detecting an effect of uncertain strength.
+    """Probability that an effect is detected, averaged over several possible strengths.
 
     Parameters
     ----------
     evidence
-        Non-centrality at the usual strength.
+        Non-centrality of the test at the typical strength.
     price
-        Threshold for the gain.
+        Threshold for the gain in twice the log likelihood.
     strengths
-        Multiples of the usual strength, equally likely.
+        Strengths as multiples of the typical one, each equally likely.
     """
     return float(np.mean(detection_probability(price, 1, np.array(strengths) ** 2 * evidence)))

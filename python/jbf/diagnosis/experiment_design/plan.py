@@ -1,6 +1,6 @@
 """Design of runs: motions of a rig that best show and discriminate possible missing effects.
 
-The Fisher information on the parameters of the law, and on each effect at its usual strength, is
+The Fisher information on the parameters of the law, and on each effect at its typical strength, is
 the sum over the runs. Runs are chosen one after the other (a greedy exact design: Atkinson, Donev &
 Tobias 2007, ch. 12).
 
@@ -44,7 +44,7 @@ from jbf.threads import one_blas_thread
 Array = npt.NDArray[np.float64]
 
 ENOUGH, MORE = 4.0, 0.05
-"""Sufficient multiple of an effect's threshold, and the weight of information beyond it.
+"""Information on an effect, in multiples of its threshold, that suffices; weight of any excess.
 
 It enters no verdict.
 """
@@ -62,7 +62,7 @@ It only limits the input.
 
 @dataclass(frozen=True, repr=False)
 class Plan(Result):
-    """Runs to record.
+    """Planned runs to record, with their detection limits.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Plan(Result):
     words
         Description of each motion.
     planned
-        Power of these runs.
+        Detection limits of effects in these runs.
     travel_limit
         Largest distance between two positions of a run, in m (rad for a rotary drive); None if it
         is not limited.
@@ -210,7 +210,7 @@ def plan(
 
 
 def _effects(candidates: Candidates, model: Model) -> list[Strength]:
-    """Effects that at least one of the motions can show."""
+    """Effects, not in the model, that at least one of the possible motions can show."""
     return [
         strength
         for name in candidates.names
@@ -226,7 +226,11 @@ def _motion_information(
     motion: Driven,
     noise_rms: float,
 ) -> Array:
-    """Information of a motion about the p parameters and the e effects, shape (p + e, p + e)."""
+    """Fisher information of a motion, shape (p + e, p + e).
+
+    The first p rows belong to the parameters of the law, the others to the e effects at their
+    typical strength.
+    """
     fitted = candidates.fitted(model.effects)
     friction, slopes = fitted.predict(motion)
     changes = [e.problem.chain.predict(e.values(1.0), [motion])[0] - friction for e in effects]
@@ -238,7 +242,24 @@ def _motion_information(
 
 
 def _chosen(information: Sequence[Array], free: int, prices: Array, count: int) -> list[int]:
-    """Choose motions one by one to maximise their joint criterion."""
+    """Choose motions one by one to maximise their joint design criterion.
+
+    Parameters
+    ----------
+    information
+        Fisher information of each motion.
+    free
+        Number of parameters of the law, the first rows of the information.
+    prices
+        Thresholds for the gains of the effects, shape (e,).
+    count
+        Number of motions to choose, with repetitions.
+
+    Returns
+    -------
+    list of int
+        Indices of the chosen motions.
+    """
     chosen: list[int] = []
     total = np.zeros_like(information[0])
     for _ in range(count):
@@ -256,16 +277,26 @@ def _chosen(information: Sequence[Array], free: int, prices: Array, count: int) 
 def _criterion_without_best(
     chosen: Sequence[int], information: Sequence[Array], free: int, prices: Array
 ) -> float:
-    """Criterion of motions without the most informative one."""
+    """Design criterion of chosen motions without the one whose removal reduces it most."""
     total = np.sum([information[k] for k in chosen], axis=0)
     return min(_design_criterion(total - information[k], free, prices) for k in set(chosen))
 
 
 def _design_criterion(information: Array, free: int, prices: Array) -> float:
-    """Design criterion: sum of log information of each effect in multiples of its threshold.
+    """Design criterion of a set of motions: larger where each effect is more clearly detectable.
 
-    The information excludes the part shared with the law, whose parameters are the first `free`
-    ones, and with the most similar effect.
+    The information on an effect, less the part shared with the law and with the most similar
+    effect, is divided by the effect's threshold. The criterion is the sum of ``log(1 + min(m,
+    ENOUGH))`` over these multiples m, plus `MORE` times the logarithm of any excess.
+
+    Parameters
+    ----------
+    information
+        Fisher information of the motions, shape (free + e, free + e).
+    free
+        Number of parameters of the law, the first rows of the information.
+    prices
+        Thresholds for the gains of the effects, shape (e,).
     """
     of_law, of_effects = information[:free, :free], information[free:, free:]
     covariance = np.linalg.pinv(of_law, rcond=1e-10, hermitian=True)

@@ -1,4 +1,4 @@
-"""Detection limits of effects in the present runs."""
+"""Detection limits of effects in recorded runs: the strength from which a test has 80 % power."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Names = tuple[str, ...]
 LEVELS = (0.80, 0.95)
 """Detection probabilities for which a strength is computed. It enters no verdict."""
 MOST_STRENGTHS = 14
-"""Largest number of strengths evaluated for each. It limits the effort only."""
+"""Largest number of strengths evaluated for each detection limit. It limits the effort only."""
 EXPONENTS = (1.0, 8.0)
 """Range of the exponents with which the non-centrality may grow with strength.
 
@@ -43,18 +43,18 @@ AGREES = 0.05
 It is a numerical tolerance.
 """
 NEARLY_ALL = 0.97
-"""Share of the gain above which a refitted noise model is considered to absorb no part of it.
+"""Share of a gain that must remain after a refit of the noise model to be treated as unchanged.
 
 It enters no verdict.
 """
 BEYOND = 1.2
-"""Factor on the strength at which that share is evaluated.
+"""Factor on the detectable strength at which the share compared with `NEARLY_ALL` is evaluated.
 
 It avoids a strength at which the colour of the noise just reaches its threshold. It enters no
 verdict.
 """
 MOST_ITERATIONS = 3
-"""Iterations of the distinguishable strength for effects that move jumps.
+"""Iterations of the distinguishable strength for effects that shift friction jumps.
 
 It limits the effort only.
 """
@@ -62,7 +62,7 @@ It limits the effort only.
 
 @dataclass(frozen=True)
 class Power:
-    """Power of the test for one effect in runs of the same design.
+    """Detection limits of one effect in runs of a given design.
 
     Attributes
     ----------
@@ -70,12 +70,13 @@ class Power:
         The effect, the parameter whose distance from its null is its strength, and its unit.
     detectable_80, detectable_95
         Parameter value from which the effect is detected with 80 % and 95 % power; None if no value
-        within the bounds is detectable.
+        within the bounds is detectable (ISO 11843).
     always
         True for an effect that is detectable at any strength (presliding in runs with rests); the
         values are then the weakest of the catalogue.
     share_80
-        RMS change of the friction at `detectable_80`, as a share of the friction's RMS.
+        RMS change of the friction at `detectable_80`, as a share of the friction's RMS; None where
+        `detectable_80` is None.
     distinguishable_80
         Parameter value from which, with 80 % power, the effect is detected and no other effect fits
         as well; None if the effect is confounded at any strength.
@@ -105,7 +106,7 @@ class Power:
 def power(
     candidates: Candidates, present: Names, names: Iterable[str] | None = None
 ) -> tuple[Power, ...]:
-    """Compute the power of the runs for each effect that is not in the model.
+    """Compute the detection limits of each effect that is not in the model.
 
     Parameters
     ----------
@@ -135,7 +136,7 @@ def power(
 
 @dataclass(frozen=True)
 class _Detectable:
-    """Detectable strength of an effect, and its change of the record there.
+    """Detectable strength of an effect, and the change of the friction at this strength.
 
     Attributes
     ----------
@@ -145,7 +146,7 @@ class _Detectable:
         Detectable strength for each of `LEVELS`, in multiples of the usual strength; nan if no
         strength is sufficient.
     change
-        Change of the record at the first strength.
+        Change of the predicted friction at the first strength.
     share
         RMS change of the friction, as a share of the friction's RMS.
     """
@@ -159,6 +160,7 @@ class _Detectable:
 
     @classmethod
     def of(cls, candidates: Candidates, runs: PresentRuns, model: Strength) -> _Detectable:
+        """Compute the detectable strengths of an effect in the present runs."""
         parameters = max(len(model.problem.open) - runs.base.free, 1)
         price = price_of(candidates, parameters)
         discounts = runs.discounts(runs.unexplained(runs.change(model, 1.0))[:, 0])
@@ -181,18 +183,19 @@ class _Detectable:
         return Change.of(runs, self.model, factor * _finite_or_one(self.times[0]))
 
     def parameter_value(self, times: float) -> float | None:
-        """Value of the parameter at a multiple of the usual strength; None if it is not finite."""
+        """Strength parameter at a multiple of the typical strength; None if not finite."""
         return float(self.model.values(times)[self.model.which]) if np.isfinite(times) else None
 
 
 def _finite_or_one(times: float) -> float:
+    """A multiple of the typical strength, or one if it is not finite."""
     return times if np.isfinite(times) else 1.0
 
 
 def _required_multiples(
     runs: PresentRuns, model: Strength, least: list[float], near: float = 1.0
 ) -> list[float]:
-    """Multiples of the usual strength that give each of the required non-centralities."""
+    """Multiples of the typical strength that attain the required non-centralities `least`."""
     multiples, times, last = [], near, least[0]
     for wanted in least:
         # The non-centrality is nearly proportional to the square of the strength.
@@ -206,7 +209,7 @@ def _required_multiples(
 def non_centrality(
     price: float, parameters: int, chance: float, discounts: tuple[float, ...] = (1.0,)
 ) -> float:
-    """Non-centrality at which a chi-square variable exceeds a threshold with given probability.
+    """Non-centrality at which a noncentral chi-square variable exceeds a threshold, by probability.
 
     Parameters
     ----------
@@ -222,6 +225,7 @@ def non_centrality(
     prices = price / np.array(discounts)
 
     def surplus(root: float) -> float:
+        """Excess of the detection probability at the squared `root` over the required one."""
         return float(np.mean(detection_probability(prices, parameters, root**2))) - chance
 
     top = float(np.sqrt(np.max(prices))) + 10.0
@@ -229,7 +233,7 @@ def non_centrality(
 
 
 def _sufficient_multiple(runs: PresentRuns, model: Strength, wanted: float, times: float) -> float:
-    """Multiple of the usual strength that gives a required non-centrality, or nan.
+    """Multiple of the typical strength that attains the non-centrality `wanted`, or nan.
 
     The search assumes a power law, at first with exponent two and then with the exponent observed
     between successive strengths. If the non-centrality increases abruptly (a lag below one sampling
@@ -265,7 +269,7 @@ def _sufficient_multiple(runs: PresentRuns, model: Strength, wanted: float, time
 
 
 def _power(runs: PresentRuns, effects: Mapping[str, _Detectable], name: str, tie: float) -> Power:
-    """Power for one effect, relative to the changes of all other effects."""
+    """Detection limits of one effect, in comparison with the changes by all other effects."""
     effect = effects[name]
     factor, confounded = np.inf, []
     if np.isfinite(effect.times[0]):
@@ -308,10 +312,11 @@ def _power(runs: PresentRuns, effects: Mapping[str, _Detectable], name: str, tie
 def _sizes_at(
     runs: PresentRuns, effect: _Detectable, rivals: Mapping[str, _Detectable], factor: float
 ) -> dict[str, float]:
-    """Unexplained parts, per unit of strength, at a multiple of the detectable strength.
+    """Size of the part of an effect that each rival cannot reproduce, per unit of strength.
 
-    A rival is evaluated only if it or the effect moves jumps, because the changes are then not
-    proportional to the strength.
+    The sizes are evaluated at `factor` times the detectable strength. A rival is evaluated only if
+    it or the effect shifts friction jumps, because the changes are then not proportional to the
+    strength.
     """
     change = effect.change_at(runs, factor)
     return {
@@ -322,6 +327,7 @@ def _sizes_at(
 
 
 def _weakest(model: Strength, times: float) -> bool:
+    """Whether a multiple of the typical strength is the weakest that the bounds allow."""
     return bool(
         np.isfinite(times) and np.array_equal(model.values(0.1 * times), model.values(times))
     )

@@ -32,13 +32,13 @@ NEVER = 30.0
 It enters no verdict.
 """
 MOST = 9.0
-"""Limit of the squared change of one sample, in units of the noise variance.
+"""Largest squared change of one sample that is included, in units of the noise variance.
 
 A single larger change is not evidence of a law. It is an outlier, or the uncertain instant of a
 reversal. It enters no verdict.
 """
 FURTHER = 2.0
-"""Factor on the detectable strength at which a rival is also evaluated.
+"""Factor on the detectable strength at which the change by a rival is also evaluated.
 
 The shape of its change is different there where it is not proportional to the strength. It enters
 no verdict.
@@ -46,9 +46,12 @@ no verdict.
 
 
 def bounded_square(change: Array) -> float:
-    """Sum of squares of the unexplained part of a change, in units of the noise variance.
+    """Sum of squares of a change in which each sample contributes at most `MOST`.
 
-    The contribution of each sample is limited to `MOST`.
+    Parameters
+    ----------
+    change
+        Change in units of the noise standard deviation, one value per sample.
     """
     # Limit before squaring: with almost no noise the square would overflow.
     return float(np.sum(np.minimum(np.abs(change), np.sqrt(MOST)) ** 2))
@@ -56,7 +59,7 @@ def bounded_square(change: Array) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """Change of the record by an effect of given strength, and its parameter derivatives.
+    """Change of the predicted friction by an effect of given strength, and its Jacobian.
 
     Attributes
     ----------
@@ -76,7 +79,7 @@ class Change:
 
     @classmethod
     def of(cls, runs: PresentRuns, model: Strength, times: float) -> Change:
-        """Compute the change by an effect at a multiple of its usual strength."""
+        """Compute the change of the friction by an effect at a multiple of its typical strength."""
         problem, values = model.problem.thinned, model.values(times)
         shares, change = runs.shares(model, times), runs.change(model, times)
         by = [i for i in problem.open if problem.names[i].startswith(f"{model.name}.")]
@@ -89,13 +92,13 @@ class Change:
 
     @cached_property
     def span(self) -> Array:
-        """Orthonormal columns that span `unexplained`."""
+        """Orthonormal basis of the columns of `unexplained`."""
         return spanned(self.unexplained)
 
     def on_shared_samples(
         self, other: Change, runs: PresentRuns, columns: slice = ALL_COLUMNS
     ) -> Array:
-        """`unexplained` on the samples that another effect also uses, for selected columns."""
+        """Selected columns of `unexplained` on the samples that another effect also uses."""
         if other.shares is None:
             return self.unexplained[:, columns]
         shares = [np.ones(len(s)) for s in other.shares] if self.shares is None else self.shares
@@ -109,7 +112,7 @@ class Change:
 
 
 def distinguishable_size(effect: Change, rival: Change, runs: PresentRuns) -> float:
-    """Size of the part of an effect that a rival cannot reproduce, in units of the noise."""
+    """Norm of the part of an effect that a rival cannot reproduce, in units of the noise."""
     change = effect.on_shared_samples(rival, runs, slice(1))[:, 0]
     span = rival.span if effect.shares is None else spanned(rival.on_shared_samples(effect, runs))
     return float(np.sqrt(bounded_square(change - span @ (span.T @ change))))
@@ -121,7 +124,7 @@ def distinction_probability(size: float, least: float) -> float:
     Parameters
     ----------
     size
-        Size of the part of the effect that the rival cannot reproduce, in units of the noise.
+        Norm of the part of the effect that the rival cannot reproduce, in units of the noise.
     least
         Required difference of the gains.
     """
@@ -133,7 +136,17 @@ def distinction_probability(size: float, least: float) -> float:
 def detection_probability(
     price: float | Array, parameters: int, non_centrality: float | Array
 ) -> Array:
-    """Probability that a noncentral chi-square variable exceeds each of the given thresholds."""
+    """Probability that a noncentral chi-square variable exceeds a threshold.
+
+    Parameters
+    ----------
+    price
+        Threshold for the gain in twice the log likelihood.
+    parameters
+        Degrees of freedom.
+    non_centrality
+        Non-centrality; an array is evaluated element by element.
+    """
     return np.asarray(1.0 - special.chndtr(price, parameters, non_centrality), dtype=np.float64)
 
 
@@ -165,6 +178,7 @@ def distinction_factor(
     """
 
     def surplus(times: float) -> float:
+        """Excess of the joint probability at `times` the strength over the required one."""
         # The rivals that are hard to distinguish have a common unexplained part: only the least
         # distinguishable one is used.
         distinguished = min(

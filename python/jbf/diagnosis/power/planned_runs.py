@@ -1,4 +1,4 @@
-"""Power of planned runs before they are recorded."""
+"""Detection limits of effects in planned runs, before they are recorded."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from jbf.threads import one_blas_thread
 
 @dataclass(frozen=True, repr=False)
 class PlannedPower(Result):
-    """Power of planned runs.
+    """Detection limits of effects in planned runs.
 
     Attributes
     ----------
@@ -35,13 +35,13 @@ class PlannedPower(Result):
     noise_rms
         Standard deviation of the given noise on the friction, N.
     power
-        Strength from which each other effect is detectable.
+        Detection limits of each effect that is not in the model.
     not_tried
         Effects that are compatible with the law but not testable in such runs, with the reason.
     runs
         Names of the runs.
     level
-        Threshold for the gain of an effect.
+        Acceptance threshold for the gain of an effect.
 
     Examples
     --------
@@ -78,7 +78,7 @@ class PlannedPower(Result):
 
 
 def as_recorded(model: Model, runs: Sequence[Run], noise_rms: float, policy: Policy) -> Candidates:
-    """Candidates for runs simulated by a model with white noise of RMS `noise_rms`, N."""
+    """Prepare runs simulated by a model, with white noise of RMS `noise_rms` (N), for tests."""
     random = np.random.default_rng(0)
     recorded = [
         replace(run, friction=friction + noise_rms * random.standard_normal(len(run)))
@@ -91,7 +91,7 @@ def as_recorded(model: Model, runs: Sequence[Run], noise_rms: float, policy: Pol
 
 
 def _as_read(motion: EstimatedMotion) -> EstimatedMotion:
-    """Treat a planned motion like a recorded one.
+    """Treat the planned motion as if it were recorded, with unknown signs next to reversals.
 
     The sign of the motion is unknown at samples next to a reversal. With an exactly known sign,
     these samples would show an arbitrarily small backlash or delay.
@@ -107,7 +107,7 @@ def _as_read(motion: EstimatedMotion) -> EstimatedMotion:
 def planned_power(
     model: Model, runs: Iterable[Run], *, noise_rms: float, policy: Policy = DEFAULT
 ) -> PlannedPower:
-    """Compute the strength from which each effect is detectable in planned runs.
+    """Compute the detection limit of each effect in planned runs.
 
     The simulated record is the model's friction under the runs' motion, with white noise.
 
@@ -125,7 +125,7 @@ def planned_power(
     Returns
     -------
     PlannedPower
-        Detection limit of each effect.
+        Detection limits of each effect that is not in the model.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Change of the friction of the present runs by an effect of given strength.
+"""Change of the predicted friction by an effect, as a function of the effect's strength.
 
 The unexplained part of a change is the part that the parameters of the model without the effect
 cannot reproduce, in units of the noise.
@@ -24,7 +24,7 @@ Array = npt.NDArray[np.float64]
 Names = tuple[str, ...]
 
 DRAWS = 12
-"""Number of white-noise draws for the discount factor of a gain in a given direction.
+"""Number of white-noise draws from which the discount factors of a gain are computed.
 
 It enters no verdict.
 """
@@ -32,7 +32,7 @@ It enters no verdict.
 
 @dataclass(frozen=True)
 class Strength:
-    """A model with one additional effect as a function of its strength; 1 at the usual strength.
+    """A model with one additional effect, parametrised by the strength; 1 is the typical strength.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Strength:
     problem
         The model with the effect.
     usual
-        Parameter values at the usual strength.
+        Parameter values at the typical strength of the catalogue.
     which, page
         Index and description of the parameter that represents the strength.
     sizes
@@ -56,7 +56,7 @@ class Strength:
     sizes: tuple[int, ...]
 
     def values(self, times: float) -> Array:
-        """Parameter values at `times` the usual strength, clipped to their bounds."""
+        """Parameter values at `times` the typical strength, clipped to their bounds."""
         values, pages = self.usual.copy(), list(self.problem.parameters.values())
         for i in self.sizes:
             null, page = pages[i].null, pages[i]
@@ -68,7 +68,7 @@ class Strength:
 
 
 class PresentRuns:
-    """Present runs and their model, to which effects of given strength are added.
+    """Recorded runs and their fitted model, to which effects of given strength are added.
 
     The methods return the changes of the friction by an effect, and the parts of these changes that
     the model cannot reproduce.
@@ -97,23 +97,26 @@ class PresentRuns:
         self._last: dict[str, tuple[float, list[Array], list[Array] | None]] = {}
 
     def change(self, model: Strength, times: float) -> list[Array]:
-        """Change by an effect, N, one array per run; zero at samples without weight."""
+        """Change of the friction by an effect, N, one array per run; zero at excluded samples."""
         return self._at(model, times)[0]
 
     def shares(self, model: Strength, times: float) -> list[Array] | None:
         """Sample weights with an effect relative to those without it, 0 to 1, one array per run.
 
-        None if the effect does not change the weights. Effects that move jumps change them.
+        None if the effect does not change the weights. Effects that shift friction jumps change
+        them.
         """
         return self._at(model, times)[1]
 
     def _at(self, model: Strength, times: float) -> tuple[list[Array], list[Array] | None]:
+        """Cached result of `_changed`."""
         last = self._last.get(model.name)
         if last is None or last[0] != times:
             last = self._last[model.name] = (times, *self._changed(model, times))
         return last[1:]
 
     def _changed(self, model: Strength, times: float) -> tuple[list[Array], list[Array] | None]:
+        """Change of the friction by an effect at a strength, and the relative sample weights."""
         problem = model.problem.thinned
         values = model.values(times)
         gaps = [a - b for a, b in zip(problem.predict(values), self.now, strict=True)]
@@ -127,7 +130,7 @@ class PresentRuns:
         return [gap * share for gap, share in zip(gaps, shares, strict=True)], shares
 
     def unexplained(self, changes: Sequence[Array]) -> Array:
-        """The part of friction changes that the model cannot reproduce, in units of the noise.
+        """Part of friction changes that the model cannot reproduce, in units of the noise.
 
         Parameters
         ----------
@@ -169,10 +172,11 @@ class PresentRuns:
         return float(np.clip(remaining / max(gain, 1e-300), 0.02, 1.0))
 
     def discounts(self, change: Array) -> tuple[float, ...]:
-        """Discount factors of a gain along `change`, one per white-noise draw.
+        """Factors by which an estimated long-run variance reduces a gain, one per white-noise draw.
 
-        The factors vary between draws because the long-run variance is an estimate. Its lower limit
-        is the variance of white noise.
+        The gain is that of a change of the friction along `change`. The factors vary between draws
+        because the long-run variance is an estimate. Its lower limit is the variance of white
+        noise.
         """
         counts = [int(np.count_nonzero(w > 0.0)) for w in self.samples.weight]
         ends = np.cumsum(counts)[:-1]
@@ -186,7 +190,7 @@ class PresentRuns:
 
 
 def at_usual_strength(candidates: Candidates, present: Names, name: str) -> tuple[Problem, Array]:
-    """Return a model with one additional effect, and its values at the usual strength."""
+    """Return the model with one additional effect, and its parameters at the typical strength."""
     candidates.converge(present)
     base = candidates.fitted(present).named_values()
     problem = candidates.fitted((*present, name)).problem
@@ -194,7 +198,7 @@ def at_usual_strength(candidates: Candidates, present: Names, name: str) -> tupl
 
 
 def strength_of(candidates: Candidates, present: Names, name: str) -> Strength | None:
-    """Return the model as a function of an effect's strength; None for an effect without a null."""
+    """Return the model parametrised by an effect's strength; None for an effect without a null."""
     problem, usual = at_usual_strength(candidates, present, name)
     pages = list(problem.parameters.values())
     sizes = tuple(

@@ -34,7 +34,10 @@ Array = npt.NDArray[np.float64]
 def find_residual_structure(
     problem: Problem, solution: Solution, policy: Policy = DEFAULT
 ) -> tuple[Remainder, ...]:
-    """Find the structure in the residuals of a solution, largest share first."""
+    """Test the residual of a solution for all kinds of structure, and return those found.
+
+    The largest share of the mean square is first.
+    """
     prepared, samples = problem.campaign.prepared, solution.samples
     innovations = samples.innovations(solution.residuals, solution.noise)
     residuals = samples.without_deviations(solution.residuals, solution.noise)
@@ -65,7 +68,7 @@ def find_patterns(
 ) -> list[Failure]:
     """Find axes along which the means of the innovations differ significantly and relevantly.
 
-    The means of the residuals along these axes are reported.
+    Each pattern that is returned contains the means of the residuals (N) along its axis.
     """
     e = solution.samples.flat(innovations)
     size = float(np.sqrt(float(e @ e) / max(len(e), 1)))

@@ -1,4 +1,4 @@
-"""Tests for structure at isolated instants: bursts of large innovations of one sign.
+"""Test for structure at isolated instants: bursts of large innovations of one sign.
 
 Single large innovations are heavy-tailed noise or recording glitches and are independent of their
 neighbours. A burst of friction lasts for several samples: the neighbours of its largest innovation
@@ -41,7 +41,7 @@ def find_bursts(
     residuals: Sequence[Array],
     policy: Policy,
 ) -> list[Remainder]:
-    """Find isolated bursts in the innovations.
+    """Test for isolated bursts of friction, from large innovations of one sign.
 
     The size of a burst is reported from the residuals (record minus prediction). Without bursts the
     list is empty.
@@ -80,7 +80,7 @@ def find_bursts(
 def _lasting_chance(
     innovations: Sequence[Array], samples: Samples, sigma: float, policy: Policy
 ) -> float:
-    """P-value of the sign agreement of large innovations with their neighbours."""
+    """p-value of the agreement in sign of large innovations with their neighbours."""
     product, square, clip = 0.0, 0.0, policy.bursts.clip_sigma
     clipped = np.clip(samples.flat(innovations) / sigma, -clip, clip)
     usual = float(np.mean(clipped**2))

@@ -37,9 +37,9 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 OIL = {"U_tr_m_s", "gamma"}
-"""Parameters that both depend on the oil temperature: a run that differs in one differs in both."""
+"""Parameters that both vary with the oil temperature: if one differs, both are excluded."""
 MOST_REPORTED = float(np.log(20.0))
-"""Largest change of a logarithm that is reported as a number.
+"""Largest change of a parameter's logarithm that is reported as a number.
 
 One Gauss-Newton step is not accurate beyond it. It concerns the text only.
 """
@@ -49,7 +49,7 @@ NAMED = 3
 
 @dataclass(frozen=True)
 class Disagreement:
-    """Disagreement of the runs on the parameters.
+    """Test statistic for parameters that differ between runs.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ def disagreement(
     effect: str | None = None,
     policy: Policy = DEFAULT,
 ) -> Disagreement:
-    """Compute the gain of run-specific parameters over the common ones of a solution.
+    """Compute the likelihood gain of run-specific parameters over common parameters.
 
     Parameters
     ----------
@@ -129,24 +129,27 @@ def disagreement(
 
 
 def _of(problem: Problem, effects: Collection[str]) -> Mask:
-    """True at search variables of these effects."""
+    """Mask of the search variables that belong to these effects."""
     return np.array([problem.names[i].split(".")[0] in effects for i in problem.open], dtype=bool)
 
 
 def _of_many_peaks(problem: Problem) -> Mask:
-    """True at search variables of effects whose likelihood has many peaks."""
+    """Mask of the search variables of effects whose likelihood has many local maxima."""
     return _of(problem, {name for name in problem.effects if find_effect(name).peaks})
 
 
 def _directions(j: Array, least: float) -> Array:
-    """Orthonormal basis of the changes of the record by the parameters."""
+    """Orthonormal basis of the column space of a Jacobian, without weak directions.
+
+    Directions are weak if their singular value is at most `least` times the largest one.
+    """
     directions, size, _ = np.linalg.svd(j, full_matrices=False)
     effective: Array = directions[:, size > least * max(float(size.max(initial=0.0)), 1e-300)]
     return effective
 
 
 def _set_aside(r: Array, j: Array, aside: Mask, least: float) -> tuple[Array, Array]:
-    """Project the derivatives of the parameters in `aside` out of residuals and other derivatives.
+    """Project the columns in `aside` out of residuals `r` and the other columns of a Jacobian `j`.
 
     The errors of the motion may lead to a different maximum of the likelihood in each run if an
     effect has many maxima.
@@ -159,7 +162,7 @@ def _set_aside(r: Array, j: Array, aside: Mask, least: float) -> tuple[Array, Ar
 
 
 def find_disagreement(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
-    """Report a significant disagreement of the runs on the parameters."""
+    """Test whether parameters differ between runs; empty if they do not differ significantly."""
     test = disagreement(problem, solution, policy=policy)
     if not test.beyond_chance(policy):
         return []
@@ -204,7 +207,7 @@ def run_specific_step(problem: Problem, solution: Solution, run: str) -> str:
 
 
 def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> list[Remainder]:
-    """Report a friction level that differs significantly between strokes."""
+    """Test whether the friction level differs between strokes; empty if it does not."""
     friction = problem.predict(solution.values)
     counted = solution.samples.counted
     residuals = solution.samples.without_deviations(solution.residuals, solution.noise)
@@ -242,7 +245,7 @@ def find_stroke_levels(problem: Problem, solution: Solution, policy: Policy) -> 
 def _halves(
     stroke: Strokes, friction: Array, residual: Array, counted: Mask, least: int
 ) -> Iterator[list[list[float]]]:
-    """Sums for the two halves of each stroke.
+    """Sums of squares and products for the two halves of each stroke.
 
     Strokes with fewer than `least` samples per half are skipped. Each half has the sum of squares
     of the friction, N^2, and the sum of its products with the residual.

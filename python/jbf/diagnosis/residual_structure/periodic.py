@@ -39,17 +39,18 @@ PADDING = 4
 
 
 def _sum_of_squares(residuals: Sequence[Array], samples: Samples) -> float:
-    """Sum of squares of the counted residuals; positive."""
+    """Sum of squares of the residuals at included samples; replaced by a small value if zero."""
     squares = (np.sum(r[c] ** 2) for r, c in zip(residuals, samples.counted, strict=True))
     return max(sum(map(float, squares)), 1e-300)
 
 
 def _cosine_and_sine(phase: Array) -> Array:
+    """Cosine and sine of a phase as two columns, shape (n, 2)."""
     return np.stack([np.cos(phase), np.sin(phase)], axis=1)
 
 
 def _fitted_wave(waves: Array, residual: Array) -> tuple[float, float]:
-    """Amplitude and sum of squares of the best-fitting combination of a cosine and a sine."""
+    """Amplitude and explained sum of squares of a cosine and a sine fitted to residuals."""
     coefficients, *_ = np.linalg.lstsq(waves, residual, rcond=None)
     return float(np.hypot(*coefficients)), float(np.sum((waves @ coefficients) ** 2))
 
@@ -64,7 +65,7 @@ def find_tones(
     residuals: Sequence[Array],
     policy: Policy,
 ) -> list[Remainder]:
-    """Find spectral lines in the innovations, with their amplitude in the residuals."""
+    """Test for spectral lines in the innovations; their amplitudes are those in the residuals."""
     lines: list[tuple[float, float, str]] = []
     power = 0.0
     for p, counted, e, r in zip(prepared, samples.counted, innovations, residuals, strict=True):
@@ -91,7 +92,7 @@ def find_tones(
 
 
 def _describe_tones(lines: list[tuple[float, float, str]], runs: int, unit: str) -> str:
-    """Describe a tone that all runs have, or the tone of each run."""
+    """Describe the tone that all runs have in common, or otherwise the tone of each run."""
     middle = float(np.median([x[0] for x in lines]))
     same = [x for x in lines if abs(x[0] - middle) < 0.02 * middle + 0.02]
     scope = "in all runs" if len(lines) == runs else "in " + ", ".join(x[2] for x in lines)
@@ -128,10 +129,10 @@ def find_ripples(
     residuals: Sequence[Array],
     policy: Policy,
 ) -> list[Remainder]:
-    """Find the clearest ripple over the travel whose phase differs between runs.
+    """Test for a ripple over the travel whose phase differs between runs.
 
     Two forms are tested: a force, and a force in the direction of motion. Spectra of the runs are
-    summed independently of the phases. The list has at most one element.
+    summed independently of the phases. The list contains the clearest ripple, or nothing.
     """
     prepared = campaign.prepared
     if campaign.rig.bearing is not None or len(prepared) < policy.ripples.min_runs:
@@ -164,7 +165,7 @@ def _is_a_tone(
     share: float,
     policy: Policy,
 ) -> bool:
-    """Whether one frequency explains about as much as one pitch, as for constant speed."""
+    """Whether one frequency explains a ripple almost as well as one pitch, as at constant speed."""
     times = [p.run.time_s - p.run.time_s[0] for p in campaign.prepared]
     period = _significant_pitch(times, innovations, samples, policy)
     least = policy.ripples.max_tone_share * share
@@ -174,7 +175,7 @@ def _is_a_tone(
 def _significant_pitch(
     travels: Sequence[Array], innovations: Sequence[Array], samples: Samples, policy: Policy
 ) -> float | None:
-    """Return the pitch, m, of a significant line in the summed periodograms, otherwise None."""
+    """Pitch of a significant line in the summed periodograms over travel, m, or None."""
     ripples, spans = policy.ripples, np.array([float(np.ptp(w)) for w in travels])
     longest = float(np.max(spans))
     steps = np.concatenate([np.abs(np.diff(w)) for w in travels])
@@ -215,7 +216,7 @@ def _in_weaker_runs(
     pitch: float,
     ripples: Ripples,
 ) -> bool:
-    """Whether the weaker two thirds of the runs also show the ripple significantly."""
+    """Whether the runs with the weakest ripple also show it significantly."""
     lines = []
     for travel, e, counted in zip(travels, innovations, samples.counted, strict=True):
         level = float(np.sum(e[counted] ** 2))
@@ -249,6 +250,7 @@ def _ripple_size(
 
 
 def _describe_ripple(campaign: Campaign, pitch: float, amplitude: float, along: bool) -> str:
+    """Describe a ripple; `along` is a force in the direction of motion."""
     rig, quantities = campaign.rig, campaign.rig.quantities
     if quantities.motion == "rotary":
         often = f"{2.0 * np.pi / pitch:.4g} per revolution"
@@ -268,7 +270,7 @@ def _describe_ripple(campaign: Campaign, pitch: float, amplitude: float, along: 
 def find_replicates(
     prepared: Sequence[Prepared], solution: Solution, policy: Policy
 ) -> list[Remainder]:
-    """Find the part of the residual that repeats with the motion, over all periodic runs."""
+    """Test for a part of the residual that repeats with a periodic motion, over all such runs."""
     product, spread, square, names = 0.0, 0.0, 0.0, []
     settings = solution.samples.settings
     least = policy.replicates.min_share

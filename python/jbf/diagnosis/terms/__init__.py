@@ -54,7 +54,15 @@ if no effect is accepted.
 
 @dataclass(frozen=True)
 class TermUpdate:
-    """A campaign with changed terms, and the effects that remain in the model."""
+    """A campaign with changed terms, and the effects that remain in the model.
+
+    Attributes
+    ----------
+    campaign
+        The campaign with a term added, or with a random effect removed.
+    effects
+        Effects that are still needed.
+    """
 
     campaign: Campaign
     effects: Names
@@ -63,9 +71,9 @@ class TermUpdate:
 def best_term_update(
     candidates: Candidates, present: Names, min_evidence: float | None = None
 ) -> TermUpdate | None:
-    """Return the campaign with the term of the largest evidence, or with one random effect fewer.
+    """Add the term of the observation model with the largest evidence, or remove a random effect.
 
-    A random effect is removed if it is no longer significant. None if no term changes.
+    A random effect is removed if it is no longer significant. Returns None if no term changes.
 
     Parameters
     ----------
@@ -94,6 +102,7 @@ def best_term_update(
 
 
 def _model(candidates: Candidates, effects: Names, present: Names) -> Model:
+    """Input of the term estimators: the fit of `effects`, compared with that of `present`."""
     return Model(
         candidates.fitted(effects).problem,
         candidates.converge(effects),

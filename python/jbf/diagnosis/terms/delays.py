@@ -38,7 +38,7 @@ LATE, DRIFT = "late_channel", "drifting_clock"
 def delays(model: Model) -> Proposal | None:
     """Propose delays by run or a clock drift, whichever has the larger evidence.
 
-    None if neither is significant.
+    Returns None if neither is significant.
     """
     campaign = model.campaign
     if not campaign.force_has_clock or campaign.samples.motion is not None:
@@ -65,21 +65,21 @@ def delays(model: Model) -> Proposal | None:
 
 
 def known_delays(campaign: Campaign) -> dict[str, float]:
-    """Delays of the runs that have already been corrected, s."""
+    """Force delays that are already corrected in a campaign, s, by run."""
     return {f.run: f.size for f in campaign.more_findings if f.kind == LATE}
 
 
 def explained_by_delays(effects: Sequence[str]) -> tuple[str, ...]:
-    """Effects that delays by run may explain.
+    """Effects of a model that run-specific time delays may explain instead.
 
-    These are effects of the instrument, and effects that move the instants of jumps.
+    These are effects of the instrument, and effects that shift friction jumps.
     """
     pages = {name: find_effect(name) for name in effects}
     return tuple(n for n, e in pages.items() if e.stage == "instrument" or e.moves_jumps)
 
 
 def _estimates(model: Model) -> list[Shifted]:
-    """Estimate the shifts of the runs by several methods.
+    """Estimate the time shifts of the force of each run by several methods.
 
     The shifts are estimated jointly with the model, as the drift of one clock, and as the delays
     with the smallest sums of squares.
@@ -101,7 +101,7 @@ def _estimates(model: Model) -> list[Shifted]:
 
 
 def _significant(shifted: Shifted, policy: Policy) -> bool:
-    """Whether a drift, or the differences between the delays of runs, are significant.
+    """Whether a clock drift, or the differences between the delays of the runs, are significant.
 
     A delay that is equal in all runs is part of the effect `time_delay`, unless it is negative.
     """
@@ -127,7 +127,7 @@ def _significant(shifted: Shifted, policy: Policy) -> bool:
 
 
 def _gain(shifted: Shifted, other: Solution, share: float) -> float:
-    """Gain of shifted runs over another model in twice the log marginal likelihood.
+    """Gain of a model of time-shifted runs over another, in twice the log marginal likelihood.
 
     Delays that differ between runs are a random effect, whose number of parameters is included in
     the determinant of its covariance.
@@ -161,6 +161,7 @@ def _volume(shifted: Shifted) -> float:
 
 
 def _findings(before_s: dict[str, float], shifted: Shifted) -> list[Finding]:
+    """Findings on the delays that changed, compared with the delays known before."""
     late_s = [
         late + before_s.get(p.run.name, 0.0)
         for p, late in zip(shifted.campaign.prepared, shifted.late_s.tolist(), strict=True)
@@ -172,6 +173,7 @@ def _findings(before_s: dict[str, float], shifted: Shifted) -> list[Finding]:
 
 
 def _finding(run: str, late_s: float, drift: float) -> Finding:
+    """Finding on the delay (s) and the relative clock drift of one run."""
     if drift == 0.0:
         way = "late" if late_s > 0.0 else "early"
         words = f"the force is {1e3 * abs(late_s):.2g} ms {way} relative to the motion"

@@ -1,4 +1,4 @@
-"""Errors of the estimated motion in the likelihood of a drive."""
+"""Term of the observation model: errors of the estimated motion of a drive."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Array = npt.NDArray[np.float64]
 
 
 def errors_of_motion(model: Model) -> Proposal | None:
-    """Propose motion errors re-estimated (noise, scale, smoothness) with the present effects.
+    """Propose motion errors (noise, scale, smoothness) re-estimated with the present effects.
 
     They may have been negligible next to the error of a model with fewer effects. The gain is
     relative to the likelihood with the present motion errors. None if they are negligible, or if
@@ -60,7 +60,7 @@ def _none(solution: Solution) -> ErrorsInMotion:
 def _common_weights(
     before: tuple[Campaign, Solution], after: tuple[Campaign, Solution]
 ) -> tuple[list[Array], list[Array]]:
-    """Weights of the first solution, zero at samples that the second one does not use.
+    """Weights of two fits, each set to zero at samples that the other fit does not use.
 
     They are returned for the samples of either: a delay of the force removes samples from the start
     or the end of a run.

@@ -1,6 +1,7 @@
 """Residual-error model: heteroscedastic noise by force or by run, and heavy tails.
 
-The weights of the samples are between 0 and 1, relative to the smallest noise level.
+The weights of the samples that this module returns are between 0 and 1, relative to the smallest
+noise level.
 """
 
 from __future__ import annotations
@@ -38,12 +39,12 @@ It is a starting value only.
 
 
 def variance_by_force(model: Model) -> Proposal | None:
-    """Propose a variance that increases with the square of the force."""
+    """Propose a noise variance that increases with the square of the force."""
     return _weighted(model, "noise_with_force", force_weights, 1)
 
 
 def variance_by_run(model: Model) -> Proposal | None:
-    """Propose a variance that differs between runs."""
+    """Propose a noise variance that differs between runs."""
     runs = len(model.campaign.prepared)
     return _weighted(model, "noise_by_run", run_weights, max(runs - 1, 1))
 
@@ -84,7 +85,7 @@ def _weighted(
 def heavy_tails(model: Model) -> Proposal | None:
     """Propose Huber weights if Student's t distribution is more likely than the normal one.
 
-    None if the heavy tails are due to the quantisation steps of a converter.
+    Returns None if the heavy tails are due to the quantisation steps of a converter.
     """
     problem, solution, campaign, policy = (
         model.problem,
@@ -112,9 +113,9 @@ def heavy_tails(model: Model) -> Proposal | None:
 def force_weights(
     problem: Problem, solution: Solution, policy: Policy
 ) -> tuple[Weights, Finding] | None:
-    """Weights from a linear fit of the variance to the square of the force.
+    """Sample weights from a linear fit of the noise variance to the square of the force.
 
-    None if the variance does not depend on the force.
+    Returns None if the variance does not depend on the force.
     """
     samples = solution.samples
     # Use the white part only: the lack of fit of a model is autocorrelated.
@@ -151,7 +152,7 @@ def force_weights(
 def run_weights(
     problem: Problem, solution: Solution, policy: Policy
 ) -> tuple[Weights, Finding] | None:
-    """Weights by run; None if the noise does not differ between runs.
+    """Sample weights by run, from its noise level; None if the noise does not differ between runs.
 
     Both the white part and the innovations must differ, since a filtered channel has no white
     noise, and the innovations of a wrong model are larger than the noise.
@@ -181,10 +182,10 @@ def run_weights(
 
 
 def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding, float] | None:
-    """Weights against heavy tails, and the gain of Student's t distribution.
+    """Huber weights against heavy tails, a finding, and the gain of Student's t distribution.
 
-    The gain is relative to the normal distribution, in twice the log likelihood. None if the tails
-    are not heavy.
+    The gain is relative to the normal distribution, in twice the log likelihood. Returns None if
+    the tails are not heavy.
     """
     samples = solution.samples
     e = samples.innovations(solution.residuals, solution.noise)
@@ -206,12 +207,13 @@ def robust_weights(solution: Solution, policy: Policy) -> tuple[Weights, Finding
 
 
 def _student_gain(innovations: Array, sigma: float) -> float:
-    """Gain of Student's t distribution over the normal one in twice the log likelihood.
+    """Log-likelihood gain (doubled) of Student's t over the normal distribution of innovations.
 
     Both have their maximum-likelihood parameters (Lange, Little & Taylor 1989).
     """
 
     def minus_twice(x: Array) -> float:
+        """Minus twice the log likelihood of Student's t distribution with log parameters `x`."""
         freedom, scale = np.exp(x)
         constant = special.betaln(0.5, 0.5 * freedom) + 0.5 * np.log(freedom) + x[1]
         tails = np.log1p((innovations / scale) ** 2 / freedom)
@@ -224,7 +226,7 @@ def _student_gain(innovations: Array, sigma: float) -> float:
 
 
 def _white_parts(solution: Solution) -> list[Array]:
-    """White part of each residual from third differences, scaled by the known noise levels."""
+    """White part of each residual, from third differences, relative to the noise level."""
     levels = solution.samples.level or [np.ones(len(r)) for r in solution.residuals]
     white_parts = []
     for residual, level in zip(solution.residuals, levels, strict=True):
@@ -234,7 +236,7 @@ def _white_parts(solution: Solution) -> list[Array]:
 
 
 def _uneven(sizes: Array, counts: npt.NDArray[np.int_], policy: Policy) -> bool:
-    """Whether standard deviations differ significantly and by a relevant ratio."""
+    """Whether noise standard deviations `sizes` differ significantly and by a relevant ratio."""
     if float(sizes.min()) <= 0.0 or sizes.max() <= policy.noise.min_ratio * sizes.min():
         return False
     error = ERROR / np.sqrt(counts)

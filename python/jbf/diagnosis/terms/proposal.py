@@ -59,10 +59,10 @@ class Model:
     problem, solution
         Fit of the model.
     reference_problem, reference
-        Fit with which the term is compared: this one, or that of a model with additional effects
-        that the term would replace.
+        Fit with which the term is compared: the fit of the model, or of a model with additional
+        effects that the term would replace.
     policy
-        Numbers of the decision.
+        Thresholds of the decision.
     price_of_effect
         Threshold for the gain of an effect with one parameter.
     """
@@ -84,20 +84,20 @@ class Term(Protocol):
     """Estimator of one kind of term for a given model."""
 
     def __call__(self, model: Model) -> Proposal | None:
-        """Estimate the term; None if it is not identifiable or not significant."""
+        """Estimate the term for a fitted model; None if not identifiable or not significant."""
 
 
 def price_of_term(policy: Policy, parameters: int = 1) -> float:
-    """Critical value of the likelihood-ratio test for a term.
+    """Gain that a term with this number of parameters must exceed (likelihood-ratio test).
 
-    It is the upper chi-square quantile at the false-term probability, with a Bonferroni correction
-    for the kinds of terms.
+    The threshold is the upper chi-square quantile at the false-term probability, with a Bonferroni
+    correction for the kinds of terms.
     """
     return float(special.chdtri(parameters, policy.terms.chance / policy.terms.kinds))
 
 
 def independent_fraction(after: Solution, before: Solution) -> float:
-    """Ratio of the effective number of samples in the gain of a term to the number of samples.
+    """Effective number of samples in the gain of a term, divided by the number of samples.
 
     It is computed as for an effect (`share_of_gain`).
     """
@@ -111,14 +111,14 @@ def independent_fraction(after: Solution, before: Solution) -> float:
 
 
 def is_accepted(proposal: Proposal | None, model: Model, min_evidence: float = 0.0) -> bool:
-    """Whether a term exceeds the minimum evidence and does not increase the held-out error."""
+    """Whether a proposed term has sufficient evidence and does not increase the held-out error."""
     if proposal is None or proposal.evidence <= max(min_evidence, 0.0):
         return False
     return not predicts_worse(proposal, model)
 
 
 def predicts_worse(proposal: Proposal, model: Model) -> bool:
-    """Whether a term increases the held-out error significantly.
+    """Whether a proposed term increases the held-out error significantly.
 
     The mean log ratio over the runs must exceed the limit of the policy by more than its standard
     error. All runs have equal weight, so that with between-run variance the largest deviation does
@@ -138,6 +138,6 @@ def predicts_worse(proposal: Proposal, model: Model) -> bool:
 
 
 def refitted(problem: Problem, near: Solution, samples: Samples) -> Solution:
-    """Refit by a few steps with other sample weights or correlations, and re-estimate the noise."""
+    """Refit a model by a few steps with other sample weights or correlations, and its noise."""
     values = search(problem, samples, near.values, near.noise, EVALUATIONS).values
     return problem.solution(values, samples, noise_at(problem, samples, values))

@@ -30,9 +30,10 @@ MOST_ITERATIONS = 8
 
 
 def quantiser(model: Model) -> Proposal | None:
-    """Propose readings without quantisation bias.
+    """Propose a correction of the force for the quantisation bias of its converter.
 
-    None if the quantisation is fine, or if the bias changes by less than the limit of the policy.
+    Returns None if the quantisation is fine, or if the bias changes by less than the limit of the
+    policy.
     """
     solution = model.solution
     corrected = without_bias(model.problem, solution, model.policy)
@@ -70,7 +71,7 @@ def without_bias(
 
 
 def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign | None:
-    """Return the campaign corrected once for the quantisation bias; None if the change is small.
+    """Correct the force once for the quantisation bias; None if the correction changes little.
 
     The noise before the converter is estimated by least squares.
     """
@@ -85,6 +86,7 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
     deviation = flat([r - f for r, f in zip(raw, expected, strict=True)])
 
     def bias(noise: float) -> list[Array]:
+        """Quantisation bias of each sample for noise of this standard deviation, N, by run."""
         return [
             quantisation_bias(step, noise * step, f - zero_offset(step, r))
             if step
@@ -95,6 +97,7 @@ def _corrected(problem: Problem, solution: Solution, policy: Policy) -> Campaign
         ]
 
     def square(noise: float) -> float:
+        """Sum of squares of the residual after the correction for given noise."""
         e = deviation - flat(bias(noise))
         return float(e @ e)
 

@@ -32,7 +32,7 @@ Array = npt.NDArray[np.float64]
 def random_effect(model: Model) -> Proposal | None:
     """Propose the most significant random effect that is not yet in the model.
 
-    None if none is significant, or if the likelihood includes motion errors.
+    Returns None if none is significant, or if the likelihood includes motion errors.
     """
     problem, solution, campaign = model.problem, model.solution, model.campaign
     if campaign.samples.motion is not None:
@@ -50,9 +50,9 @@ def random_effect(model: Model) -> Proposal | None:
 
 
 def without_random_effect(model: Model) -> Campaign | None:
-    """Return the campaign without the random effect of the smallest gain.
+    """Return the campaign without the random effect whose gain is smallest and not positive.
 
-    None if every random effect increases the marginal likelihood.
+    Returns None if every random effect increases the marginal likelihood.
     """
     problem, solution, campaign = model.problem, model.solution, model.campaign
     between = campaign.samples.between
@@ -71,13 +71,14 @@ def without_random_effect(model: Model) -> Campaign | None:
 
 
 def _gain(richer: Solution, simpler: Solution) -> float:
-    """Gain of random effects in twice the log marginal likelihood."""
+    """Gain of the random effects in a model, in twice the log marginal likelihood."""
     volume = _log_determinant(richer) - _log_determinant(simpler)
     gain = simpler.samples.cost(simpler.residuals, simpler.noise) - richer.cost
     return independent_fraction(richer, simpler) * gain - volume
 
 
 def _log_determinant(solution: Solution) -> float:
+    """Log-determinant of the random effects' contribution to the covariance of a solution."""
     samples = solution.samples
     if samples.between is None:
         return 0.0
@@ -87,9 +88,9 @@ def _log_determinant(solution: Solution) -> float:
 def _most_significant(
     problem: Problem, solution: Solution, samples: Samples, chance: float
 ) -> tuple[RandomEffects, Finding] | None:
-    """Return the present random effects with the most significant additional one.
+    """Present random effects plus the most significant additional one, with its finding, or None.
 
-    One is added at a time, since random effects resemble each other.
+    One random effect is added at a time, since random effects resemble each other.
     """
     if len(samples.runs) < samples.settings.variance.min_runs:
         return None
@@ -121,7 +122,7 @@ def _most_significant(
 
 
 def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[Array]]]:
-    """Name, unit and derivative of the force for each random effect, one array (n,) per run."""
+    """Name, unit and derivative of the force of each possible random effect, one array per run."""
     quantities = problem.campaign.rig.quantities
     columns = [("zero", quantities.force, [np.ones(len(r)) for r in solution.residuals])]
     times = [p.run.time_s for p in problem.campaign.prepared]
@@ -136,7 +137,7 @@ def _columns(problem: Problem, solution: Solution) -> list[tuple[str, str, list[
 
 
 def _within_runs(samples: Samples, solution: Solution, column: list[Array]) -> Array:
-    """Innovations of all runs minus the estimated deviation of each run, N."""
+    """Innovations of all runs without the estimated deviation of each run, N."""
     innovations = []
     columns = [c[:, None] for c in column]
     for i in range(len(samples.runs)):
@@ -149,7 +150,7 @@ def _within_runs(samples: Samples, solution: Solution, column: list[Array]) -> A
 def _spread(
     samples: Samples, solution: Solution, column: list[Array], sigma: float
 ) -> tuple[float, float, float] | None:
-    """Estimate the between-run standard deviation (`spread_between`).
+    """Estimate the between-run standard deviation of one random effect (`spread_between`).
 
     Returns
     -------
@@ -180,11 +181,11 @@ WHAT = {
     "U_tr_m_s": "transition speed differs",
     "gamma": "viscous friction differs",
 }
-"""First words of the finding on each random effect."""
+"""First words of the finding on each random effect, by the name of the random effect."""
 
 
 def _words(name: str, sd: float, unit: str) -> tuple[str, str]:
-    """Kind and text of the finding."""
+    """Kind and text of the finding on a random effect with a given standard deviation."""
     what = WHAT[name]
     if name == "zero":
         return "level_by_run", f"{what} between runs by {sd:.2g} {unit} (1 s.d.)"

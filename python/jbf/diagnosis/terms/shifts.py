@@ -40,7 +40,7 @@ It is a numerical tolerance.
 
 @dataclass(frozen=True, eq=False)
 class Shifted:
-    """Runs with shifted forces, and the model fitted to them.
+    """Runs with forces shifted in time, and the model fitted to them.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Shifted:
 
 
 def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
-    """Whether delays and drift are within the possible range of the clocks of a logger.
+    """Whether estimated delays and a clock drift are physically plausible for a data logger.
 
     Larger estimates are artefacts of noise, if the force hardly depends on the motion, or of the
     lack of fit of a wrong model.
@@ -77,7 +77,7 @@ def possible_clocks(problem: Problem, late_s: Array, drift: float) -> bool:
 
 
 def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
-    """Return the campaign with the force of each run shifted to earlier times."""
+    """Shift the force of each run to earlier times, by its delay and the clock drift."""
     prepared = problem.campaign.prepared
     return _settled(
         problem, [p.shifted(late, drift) for p, late in zip(prepared, late_s.tolist(), strict=True)]
@@ -85,6 +85,7 @@ def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
 
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
+    """Campaign of prepared runs with the settings of a problem's campaign."""
     old = problem.campaign
     shifted = replace(
         old,
@@ -96,7 +97,7 @@ def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
 
 
 def without_delay(effects: Names) -> Names:
-    """Return the effects other than the delay."""
+    """Effects of a model without `time_delay`."""
     return tuple(name for name in effects if name != DELAY)
 
 
@@ -194,7 +195,7 @@ def fit_clock_drift(first: Problem, start: Shifted) -> Shifted:
 
 
 def with_mean_delay(shifted: Shifted) -> Shifted:
-    """Shift all runs by the mean of their delays."""
+    """Replace the delays of the runs by their mean, and refit the model."""
     problem, solution = shifted.problem, shifted.solution
     mean_s = run_delay_step(problem, solution).mean_s(shifted.late_s)
     change_s = mean_s - shifted.late_s
@@ -212,9 +213,9 @@ def _coloured(shifted: Shifted) -> Shifted:
 
 
 def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -> Shifted | None:
-    """Shift the runs repeatedly to the delays with the smallest sums of squares (`scan_delays`).
+    """Shift each run repeatedly to the delay with the smallest sum of squares (`scan_delays`).
 
-    None if no delay is corrected.
+    Returns None if no delay is corrected.
     """
     campaign = problem.campaign
     old, first = campaign, problem
@@ -240,7 +241,7 @@ def fit_delays_by_search(problem: Problem, solution: Solution, policy: Policy) -
 
 
 def fit_common_delay(problem: Problem, shifted: Shifted) -> Shifted:
-    """Estimate the additional delay common to all runs.
+    """Estimate the delay common to all runs that remains after run-specific shifts.
 
     A law with memory can compensate for a common delay. The differences between the delays of the
     runs are therefore well determined, but not their mean. The mean is fitted jointly with the law

@@ -44,7 +44,7 @@ from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
 LEAST_REPEATS = 19
-"""Minimum number of repeats: with fewer, the central 68 % does not give a width.
+"""Minimum number of repeats: fewer do not determine the width of the central 68 %.
 
 It only limits the input.
 """
@@ -57,14 +57,14 @@ It only limits the input.
 
 @dataclass(frozen=True, repr=False)
 class Bootstrap(Result):
-    """Estimates of repeated fits to simulated records.
+    """Bootstrap standard errors, and the estimates from fits to simulated records.
 
     Attributes
     ----------
     fit
         The fit with new standard errors. Each is half the width of the central 68 % of the
-        estimates, and at least the standard error of the fit itself. A parameter is held if its
-        error exceeds the limit of `determined`.
+        estimates, and at least the standard error of the fit itself. A parameter is held fixed if
+        its error is too large for an estimate (`reason_not_identifiable`).
     values
         Parameter name to its estimates, shape (repeats,).
 
@@ -210,7 +210,7 @@ def bootstrap(
 
 
 def innovation_sizes(fitted: Fit, campaign: Campaign) -> list[float]:
-    """Standard deviation of the innovations of each run, N.
+    """Standard deviation of the innovations (whitened residuals) of each run of a fit, N.
 
     The standard deviation over all runs is used for a run with fewer than 100 samples.
     """
@@ -258,10 +258,10 @@ def simulated_readings(prepared: Prepared, friction: Array, random: np.random.Ge
 def _simulated_path(
     recorded: Array, true: Array, moving: npt.NDArray[np.bool_], random: np.random.Generator
 ) -> Array:
-    """Simulate a new reading of a path.
+    """Simulate a new reading of a recorded position or angle, with errors like the recorded ones.
 
-    For an encoder, its lines are shifted by a random phase. For a scale without lines, the sign of
-    the recorded errors is random.
+    For an encoder, the true path is quantised with its lines shifted by a random phase. For a
+    position without quantisation, the sign of the recorded errors is random.
     """
     step = encoder_step(recorded[moving])
     if step > 0.0:
@@ -273,7 +273,7 @@ def _simulated_path(
 
 
 def with_error(value: ParameterValue, estimates: Array, page: Parameter) -> ParameterValue:
-    """Return the parameter value with the standard error given by the scatter of its estimates."""
+    """Return a parameter value with the standard error of its bootstrap estimates."""
     if value.stderr is None:
         return value
     deviations = estimates - value.value
@@ -291,7 +291,7 @@ def with_error(value: ParameterValue, estimates: Array, page: Parameter) -> Para
 def simulated_runs(
     model: Model, runs: Sequence[Run], hidden: Sequence[str], draw: int
 ) -> list[Run]:
-    """Simulate recordings of the runs with a model, or with some of its effects only.
+    """Simulate new recordings of runs with a fitted model, or with some of its effects only.
 
     Parameters
     ----------
@@ -318,7 +318,7 @@ def simulated_runs(
 def _sign_randomised(
     solution: Solution, campaign: Campaign, random: np.random.Generator
 ) -> list[Array]:
-    """Noise of the runs, N, one array per run: innovations with random signs by block."""
+    """Simulated noise, N, one array per run: innovations with random signs by block."""
     plain = replace(
         solution.samples, weight=tuple(c.astype(float) for c in solution.samples.counted)
     )

@@ -14,7 +14,7 @@ from jbf.records.arguments import by_name, described
 from jbf.records.toml_file import number
 
 AT_BOUND = 1e-6
-"""Tolerance within which a value counts as at its bound.
+"""Relative tolerance within which a value counts as at its bound.
 
 It is a fraction of the logarithmic distance between the bounds, or of the value or its error. It is
 a numerical tolerance.
@@ -26,7 +26,7 @@ Bounds = dict[str, tuple[float, float]]
 def checked_bounds(
     bounds: Mapping[str, tuple[float, float]] | None, pages: Mapping[str, Parameter]
 ) -> Bounds:
-    """Resolve parameter names, and limit each interval to the bounds of the catalogue.
+    """Resolve the parameter names of user-given bounds, and limit them to the catalogue's bounds.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def checked_bounds(
 
 
 def bounded_page(page: Parameter, low: float, high: float) -> Parameter:
-    """Return a parameter with the given bounds and its starting values clipped to them.
+    """Return a catalogue entry with the given bounds and its starting values clipped to them.
 
     A null outside the bounds no longer applies. An angle is not wrapped, because wrapping could
     leave the bounds.
@@ -69,7 +69,7 @@ def bounded_page(page: Parameter, low: float, high: float) -> Parameter:
 
 
 def bounded_pages(pages: Mapping[str, Parameter], bounds: Bounds) -> dict[str, Parameter]:
-    """Return the parameters by name, with the bounds imposed by the user."""
+    """Return catalogue entries by parameter name, with the bounds imposed by the user."""
     return {
         name: bounded_page(page, *bounds[name]) if name in bounds else page
         for name, page in pages.items()
@@ -77,7 +77,7 @@ def bounded_pages(pages: Mapping[str, Parameter], bounds: Bounds) -> dict[str, P
 
 
 def bound_note(page: Parameter, value: float, error: float) -> str | None:
-    """Return a note if a value is at one of the parameter's bounds, otherwise None."""
+    """Return the note of a result for a parameter value at one of its bounds, otherwise None."""
     for side, bound, wish in (("lower", page.lower, "less"), ("upper", page.upper, "more")):
         if at_bound(page, value, bound, error):
             return f"at its {side} bound {bound:g}: the best fit requires {wish}"

@@ -45,14 +45,14 @@ SMOOTHS_FORCE = frozenset((
 ))  # fmt: skip
 """Effects that filter a force or a motion.
 
-They are not tried where errors of the acceleration are a large part of the residual, because they
-would smooth these errors.
+These effects are not tried where errors of the acceleration are a large part of the residual,
+because they would smooth these errors.
 """
 NEEDS_RECORDED_FORCE = SMOOTHS_FORCE | {"inertia", "sensor_nonlinearity", "sensor_drift"}
 """Effects that are not tried without a recorded force.
 
-Backlash and compliance act between the driven part and the sensor. In a coast-down they would
-explain how its acceleration was smoothed.
+Backlash and compliance act between the driven part and the sensor. In a coast-down these two
+effects would describe the smoothing of its acceleration.
 """
 NEEDS_TIME = frozenset((
     "inertia", "sensor_hysteresis", "sensor_lag", "time_delay", "sensor_drift", "backlash",
@@ -66,7 +66,7 @@ NOISE_SPAN = 3.29
 It follows from the estimator.
 """
 HUM = 0.02
-"""Fraction of the top speed below which a speed is not used for a scale.
+"""Fraction of the top speed below which a sample is not used for a scale of the motion.
 
 It only starts a search.
 """
@@ -78,13 +78,17 @@ class Campaign:
 
     Attributes
     ----------
+    rig
+        The rig.
     prepared
         The prepared runs.
     samples
-        The samples at which the runs determine the sign of the friction.
+        The included samples, at which the runs determine the sign of the friction.
     most_noise_n
         Upper limit of the noise on the friction, N, from parts of the records that repeat; None if
         no part repeats.
+    more_findings
+        Findings from fitted models, in addition to those of the runs.
     work
         Remaining budget for fits, shared by all campaigns derived from this one.
     """
@@ -134,28 +138,28 @@ class Campaign:
 
     @property
     def settings(self) -> Settings:
-        """Settings of the estimation."""
+        """Settings of the estimation, those of the samples."""
         return self.samples.settings
 
     @property
     def named(self) -> str:
-        """Name of the campaign in messages: the file of its first run."""
+        """Name of the campaign in error messages: the file of its first run."""
         first = self.prepared[0].run
         return str(first.path or first.name)
 
     @property
     def motions(self) -> list[Driven]:
-        """Motions of the runs as objects of the compiled core."""
+        """Motions of the runs as inputs of the compiled core."""
         return [p.core for p in self.prepared]
 
     @property
     def has_angle(self) -> bool:
-        """Whether every run has the angle of the shaft."""
+        """Whether every run contains the shaft angle."""
         return all(has_angle(self.rig, p.run) for p in self.prepared)
 
     @property
     def steady(self) -> bool:
-        """Whether a run holds steady states instead of a time series."""
+        """Whether the runs contain steady states instead of time series."""
         return any(p.run.steady for p in self.prepared)
 
     @cached_property
@@ -170,7 +174,7 @@ class Campaign:
 
     @property
     def force_has_clock(self) -> bool:
-        """Whether the force was recorded over time; false for steady states and decelerations."""
+        """Whether the force is a time series of readings, not of steady states or decelerations."""
         return not self.steady and coasting(self.rig) is None
 
     @property
@@ -181,7 +185,7 @@ class Campaign:
 
     @property
     def motion_uncertain(self) -> bool:
-        """Whether the errors of the motion are a large part of the variance."""
+        """Whether errors of the motion are a large part of the variance of the residuals."""
         return self.motion_share > self.settings.conditions.max_motion_share
 
     @property
@@ -260,7 +264,7 @@ class Campaign:
 
     @property
     def step_n(self) -> float:
-        """Largest quantisation step that is comparable with the noise, N, or zero."""
+        """Largest quantisation step of the force comparable with its noise, N; zero if none."""
         return max((f.size for f in self.findings if f.kind == "steps"), default=0.0)
 
     def steps_rms(self, residual_rms: float) -> float:
@@ -287,16 +291,16 @@ class Campaign:
 
     @property
     def moving(self) -> list[tuple[Prepared, Mask]]:
-        """The runs, each with the mask of the samples that count and are in motion."""
+        """The runs, each with the mask of the included samples in motion."""
         pairs = zip(self.prepared, self.samples.counted, strict=True)
         return [(p, _moving(p, counted)) for p, counted in pairs]
 
     def without(self, masks: Sequence[Mask]) -> Campaign:
-        """Return the campaign without the samples of the given masks, one mask per run."""
+        """Return the campaign without the samples that are True in the masks, one mask per run."""
         return replace(self, samples=self.samples.within([~m for m in masks]))
 
     def only(self, selection: Sequence[int]) -> Campaign:
-        """Return the campaign of a selection of runs, with the same instruments and noise."""
+        """Return the campaign restricted to the runs with these indices."""
         return replace(
             self,
             prepared=tuple(self.prepared[i] for i in selection),
@@ -314,7 +318,7 @@ def _span(load: Array) -> float:
 def _each(
     rig: Rig, runs: Mapping[int, Run], settings: MotionSettings
 ) -> tuple[dict[int, Prepared], list[Finding]]:
-    """Prepare all runs; return those with motion, and a finding for each of the others.
+    """Prepare all runs; return those with motion by index, and a finding for each of the others.
 
     Runs are prepared again if the other runs provide the sampling rate of the force, or further
     starting values for the errors of the motion readings.
@@ -353,7 +357,7 @@ def _without_motion(run: Run, error: NoMotion) -> Finding:
 
 
 def _moving(p: Prepared, counted: Mask) -> Mask:
-    """Mask of samples in motion, without speeds near zero that may be noise."""
+    """Mask of the included samples in motion, without speeds near zero that may be noise."""
     speed = np.abs(p.motion.velocity)
     top = float(np.quantile(speed, 0.99)) or float(np.max(speed))
     return np.asarray(counted & (speed > HUM * top))

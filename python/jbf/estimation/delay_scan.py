@@ -36,23 +36,26 @@ from jbf.models.delayed_reading import TAU, DelayedChain
 
 Array = npt.NDArray[np.float64]
 LEAST_STEPS = 0.05
-"""Smallest delay, in sampling intervals, that moves a jump from one sample to another.
+"""Smallest resolvable delay, in sampling intervals: a jump then occurs at another sample.
 
 It enters no verdict.
 """
 REACH = 5.0
-"""Range of the scan to either side, in standard errors of the search. It bounds a search only."""
+"""Half-width of the delay scan, in standard errors of the search. It bounds a search only."""
 LEAST_REACH_STEPS = 0.2
-"""Minimum range of the scan to either side, in sampling intervals. It bounds a search only."""
+"""Minimum half-width of the delay scan, in sampling intervals. It bounds a search only."""
 COARSE, FINE = 31, 17
 """Number of delays in the first scan, and in a second one around the most likely delay.
 
 It is a numerical resolution.
 """
 CLIPPED = 5.0
-"""Limit of the contribution of a residual, in standard deviations. It enters no verdict."""
+"""Limit of the contribution of a residual to the cost, in standard deviations.
+
+It enters no verdict.
+"""
 BLURRED = 3.5
-"""Distance from a jump within which its side is uncertain, in standard errors of its time.
+"""Distance from a jump, in standard errors of its time, within which its side is uncertain.
 
 It enters no verdict.
 """
@@ -60,14 +63,14 @@ It enters no verdict.
 
 @dataclass(frozen=True)
 class Delays:
-    """Time delays of the force.
+    """Estimated time delays of the force in a set of runs.
 
     Attributes
     ----------
     delays_s
         Delay in the middle of each run, s.
     drift
-        Increase of the delay per second.
+        Increase of the delay per second (relative clock drift).
     spread_s
         Standard deviation of the delay between runs, s; zero if the runs do not differ.
     """
@@ -79,24 +82,25 @@ class Delays:
 
 @dataclass(frozen=True)
 class _Estimate:
-    """An estimate and its variance; without an estimate the variance is infinite."""
+    """Estimated value with its variance; without an estimate the variance is infinite."""
 
     value: float = 0.0
     variance: float = np.inf
 
 
 def scan_delays(problem: Problem, solution: Solution, look: int, chance: float) -> Delays | None:
-    """Estimate how the delays of the runs differ; None if they do not differ significantly.
+    """Estimate the differences between the delays of the runs; None if they are not significant.
 
     All samples are used, including those next to reversals. They resolve a delay of less than one
     sampling interval only if the friction is smooth in time. A delay common to all runs may be that
-    of the instrument, which is an effect. A force that precedes the motion in all runs is a
-    recording artefact.
+    of the instrument, which is the effect `time_delay`. A force that precedes the motion in all
+    runs is a recording artefact.
 
     Parameters
     ----------
     look
-        0 for the first scan; 1 if the runs were shifted before.
+        Index of the search range in `DelaySettings.search_ranges_s`: 0 for the first scan, 1 if the
+        runs were shifted before.
     chance
         Significance level for differences between runs and for a common drift.
     """
@@ -130,7 +134,7 @@ def scan_delays(problem: Problem, solution: Solution, look: int, chance: float) 
 
 
 def _scans(problem: Problem, solution: Solution, grid: Array) -> Iterator[tuple[Array, Array]]:
-    """Yield the squared residuals of each run by delay, (len(grid), n), and the sample times.
+    """Yield for each run its squared residuals by delay, shape (len(grid), n), and its times, s.
 
     The residuals are not whitened: a noise model that describes the error of a delayed force as
     coloured noise would shift this error as well. Runs are processed one at a time to limit the
@@ -183,9 +187,10 @@ def _without_delay(
 
 
 def _grid_estimate(grid: Array, costs: Array, count: int, settings: DelaySettings) -> _Estimate:
-    """Mean and variance of the delay under the normalised likelihood on the grid.
+    """Mean and variance of a delay under its normalised likelihood on the grid.
 
-    They replace the maximum and the curvature, since the sum of squares is discontinuous at jumps.
+    Mean and variance replace the maximum and the curvature, since the sum of squares is
+    discontinuous at jumps.
     """
     k = int(np.argmin(costs))
     if count < settings.min_part_samples or not 0 < k < len(grid) - 1:
@@ -219,13 +224,13 @@ def _drift(grid: Array, squares: Array, time: Array, settings: DelaySettings) ->
 
 
 def _finite(estimates: list[_Estimate]) -> tuple[Array, Array]:
-    """Estimates with a finite variance, and their precisions (inverse variances)."""
+    """Values of the estimates with a finite variance, and their precisions (inverse variances)."""
     finite = [e for e in estimates if np.isfinite(e.variance)]
     return np.array([e.value for e in finite]), 1.0 / np.array([e.variance for e in finite])
 
 
 def _spread(delays: list[_Estimate], min_runs: int) -> tuple[float, float] | None:
-    """Standard deviation between runs, and its p-value; None if it is not estimated or zero."""
+    """Between-run standard deviation of the delays, and its p-value; None if not estimated."""
     values, precisions = _finite(delays)
     if len(values) < min_runs:
         return None
@@ -234,7 +239,7 @@ def _spread(delays: list[_Estimate], min_runs: int) -> tuple[float, float] | Non
 
 
 def _common(estimates: list[_Estimate]) -> tuple[float, float] | None:
-    """Weighted mean over the runs, and its p-value."""
+    """Weighted mean of the estimates over the runs and its p-value; None without estimates."""
     d, w = _finite(estimates)
     if not len(d):
         return None
@@ -266,7 +271,10 @@ class ExactDelay:
 def exact_delay(
     problem: Problem, solution: Solution, errors: StandardErrors, values: Array
 ) -> ExactDelay | None:
-    """Estimate the delay by the likelihood of all samples; None if the model has no free delay."""
+    """Estimate the delay parameter of a model by the likelihood of all samples, jumps included.
+
+    Returns None if the model has no free delay parameter.
+    """
     if TAU not in problem.names or problem.names.index(TAU) not in problem.open:
         return None
     index = problem.names.index(TAU)
@@ -302,10 +310,16 @@ class _Scan:
 
     Attributes
     ----------
+    problem, chain
+        The model, and its chain evaluated one delay before each sample.
     friction
         Record without the random effects of its run, N, one array per run.
+    values
+        Parameter values at the solution.
     direction
         Derivative of the search variables with respect to the delay, 1/s.
+    noise_rms
+        Standard deviation of the noise, N.
     share
         Number of independent samples per sample.
     """
@@ -322,6 +336,7 @@ class _Scan:
     def of(
         cls, problem: Problem, solution: Solution, errors: StandardErrors, values: Array, k: int
     ) -> _Scan:
+        """Prepare the scan of parameter `k`, the delay, at a solution."""
         rig, samples = problem.campaign.rig, solution.samples
         chain = DelayedChain(rig, problem.law, problem.clock, problem.effects, problem.names)
         with np.errstate(invalid="ignore", divide="ignore"):

@@ -52,7 +52,7 @@ It is a numerical tolerance.
 
 @dataclass(frozen=True, eq=False)
 class DelayStep:
-    """Correction of the time delays of the forces.
+    """Gauss-Newton correction of the time delays of the forces.
 
     Attributes
     ----------
@@ -70,18 +70,18 @@ class DelayStep:
 
     @property
     def square(self) -> float:
-        """Wald statistic of the step: its square in units of its covariance."""
+        """Wald statistic of the step: its square relative to its covariance."""
         delays = self.delays_s[self.identifiable]
         return float(delays @ np.linalg.lstsq(self.covariance_s2, delays, rcond=RANK)[0])
 
     @property
     def p_value(self) -> float:
-        """P-value of the step under the null hypothesis that no run has an additional delay."""
+        """p-value of the step under the null hypothesis that no run has an additional delay."""
         count = int(np.sum(self.identifiable))
         return float(special.chdtrc(count, self.square)) if count else 1.0
 
     def differences_p_value(self, applied_s: Array) -> float:
-        """P-value of the differences between the total delays of the runs.
+        """p-value of the differences between the total delays of the runs.
 
         Parameters
         ----------
@@ -106,7 +106,7 @@ class DelayStep:
 
 @dataclass(frozen=True)
 class DriftStep:
-    """Correction of the drift of the force clock.
+    """Gauss-Newton correction of the drift of the force clock.
 
     Attributes
     ----------
@@ -121,7 +121,7 @@ class DriftStep:
 
     @property
     def square(self) -> float:
-        """Wald statistic of the drift: its square in units of its variance."""
+        """Wald statistic of the drift: its square relative to its variance."""
         return self.drift**2 / self.variance
 
 
@@ -157,7 +157,7 @@ def common_delay_step(problem: Problem, solution: Solution) -> tuple[float, floa
 
 
 def drift_step(problem: Problem, solution: Solution, with_delay: bool = False) -> DriftStep:
-    """Gauss-Newton step in the drift of a clock started with each run, and all parameters.
+    """Gauss-Newton step in the drift of a clock that starts with each run, and all parameters.
 
     Parameters
     ----------
@@ -174,13 +174,13 @@ def drift_step(problem: Problem, solution: Solution, with_delay: bool = False) -
 
 
 def fine_force(problem: Problem, values: Array, p: Prepared) -> tuple[Array, Array]:
-    """Times with intervals of at most `FINE_S`, s, and the force of a model at them, N."""
+    """Times of a run at most `FINE_S` apart, s, and the predicted force at these times, N."""
     instants = fine_instants(p)
     return instants, problem.chain.predict(values, [fine_motion(p)])[0]
 
 
 def fine_instants(p: Prepared) -> Array:
-    """Times that divide the sampling intervals of a run into at most `FINE_S`, s."""
+    """Times, s, that divide the sampling intervals of a run into intervals of at most `FINE_S`."""
     count = max(int(np.ceil(p.step_s / FINE_S)), 1)
     samples = np.arange(len(p.run), dtype=np.float64)
     place = np.linspace(0.0, len(p.run) - 1.0, count * (len(p.run) - 1) + 1)
@@ -195,7 +195,7 @@ def fine_motion(p: Prepared) -> Driven:
 
 
 def delay_slope(problem: Problem, values: Array, prepared: Prepared) -> Array:
-    """Derivative of the prediction of a run with respect to a delay of the force, shape (n,)."""
+    """Derivative of the prediction with respect to a delay of the force, N/s, shape (n,)."""
     instants, force = fine_force(problem, values, prepared)
     return np.asarray(-np.interp(prepared.run.time_s, instants, np.gradient(force, instants)))
 
@@ -203,7 +203,7 @@ def delay_slope(problem: Problem, values: Array, prepared: Prepared) -> Array:
 def _step(
     problem: Problem, solution: Solution, columns: Sequence[int], clocks: Clocks
 ) -> tuple[Array, Array]:
-    """Joint step in the delays of a clock model and the parameters, and covariance of the delays.
+    """Gauss-Newton step in the delays of a clock model and the parameters, with its covariance.
 
     `columns` selects the parameters among the free ones.
     """
@@ -238,10 +238,10 @@ def _step(
 def _rows(
     problem: Problem, solution: Solution, columns: Sequence[int], clocks: Clocks
 ) -> Iterator[tuple[Array, Array, int]]:
-    """Yield innovations and derivatives of each run in triangular form, and the sample count.
+    """Yield innovations and their Jacobian of each run in triangular form, and the sample count.
 
-    The derivatives are with respect to the selected parameters and, last, the delays of the clock
-    model.
+    The columns of the Jacobian are derivatives with respect to the selected parameters and, last,
+    the delays of the clock model.
     """
     for i, p in enumerate(problem.campaign.prepared):
         slope = delay_slope(problem, solution.values, p)

@@ -28,19 +28,19 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ErrorsInMotion:
-    """Errors of the motion in the residuals of a set of runs.
+    """Covariance of the residuals due to errors of the estimated motion, for a set of runs.
 
     Attributes
     ----------
     errors
-        Errors of the motion of each run; None where they are not known.
+        Posterior of the motion errors of each run; None where it is not known.
     sensitivity
         Derivatives of the prediction with respect to position, velocity and acceleration, one
         (n, 3) array a run.
     noise
         Standard deviation of the noise of the force, in the unit of the residuals.
     scale
-        Standard errors of the motion, relative to those in `errors`.
+        Factor on the standard errors of the motion in `errors`.
     by_delay
         Derivative of the prediction with respect to a common time delay of the forces, one (n,)
         array a run; None without a delay. The part of the residuals that a delay explains is
@@ -54,7 +54,7 @@ class ErrorsInMotion:
     by_delay: tuple[Array, ...] | None = None
 
     def only(self, selection: Sequence[int]) -> ErrorsInMotion:
-        """Return the errors of a selection of runs."""
+        """Return the errors of the runs with these indices."""
         return replace(
             self,
             errors=tuple(self.errors[i] for i in selection),
@@ -69,7 +69,7 @@ class ErrorsInMotion:
         weights: Sequence[Array],
         selection: Sequence[int] | None = None,
     ) -> tuple[Array, Array]:
-        """Independent residuals of standard deviation `noise` and their derivatives.
+        """Whitened residuals of standard deviation `noise` and their Jacobian, of all runs.
 
         Parameters
         ----------
@@ -93,7 +93,7 @@ class ErrorsInMotion:
         return stacked[:, 0], stacked[:, 1:]
 
     def innovations(self, residuals: Sequence[Array], weights: Sequence[Array]) -> list[Array]:
-        """Independent residuals of standard deviation `noise`, one array per run.
+        """Whitened residuals of standard deviation `noise`, one array per run.
 
         Values at samples without weight are zero.
         """
@@ -121,7 +121,7 @@ class ErrorsInMotion:
         return np.asarray(variance * (self.scale / self.noise) ** 2)
 
     def mean_share(self, weights: Sequence[Array]) -> float:
-        """Mean share of the motion's errors in the variance, at the samples with weight."""
+        """Mean share of the motion's errors in the variance, over samples with nonzero weight."""
         ratios = [self.variance_ratio(i)[w > 0.0] for i, w in enumerate(weights)]
         ratio = np.concatenate(ratios)
         return float(np.mean(ratio / (1.0 + ratio))) if len(ratio) else 0.0

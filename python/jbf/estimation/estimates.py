@@ -1,4 +1,4 @@
-"""Access to fitted parameters by name, common to all results of a fit."""
+"""Base class of results with fitted parameters, which are accessible by name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Estimates(Result):
     """A result that holds parameters with standard errors.
 
     ``fit["presliding.sigma"]`` returns a parameter by its full or its short name. The error for an
-    unknown name lists the nearest names.
+    unknown name lists the most similar names.
     """
 
     parameters: dict[str, ParameterValue]
@@ -26,18 +26,18 @@ class Estimates(Result):
 
     @property
     def params(self) -> dict[str, float]:
-        """Values by parameter name, those of held parameters included."""
+        """Parameter values by name, including parameters held fixed."""
         return {name: p.value for name, p in self.parameters.items()}
 
     @property
     def stderr(self) -> dict[str, float]:
-        """Standard errors by parameter name; nan where the parameter is held."""
+        """Standard errors by parameter name; nan for a parameter held fixed."""
         errors = {name: p.stderr for name, p in self.parameters.items()}
         return {name: math.nan if error is None else error for name, error in errors.items()}
 
     @property
     def var_names(self) -> tuple[str, ...]:
-        """Names of the estimated parameters, without held parameters."""
+        """Names of the estimated parameters, without parameters held fixed."""
         return tuple(name for name, p in self.parameters.items() if not p.held)
 
     def conf_int(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
@@ -88,7 +88,7 @@ class Estimates(Result):
             return False
 
     def _facts(self) -> Mapping[str, Any]:
-        """Entries of `to_dict` in addition to the parameters."""
+        """Entries that a result adds to `to_dict`, in addition to its parameters."""
         return {}
 
     def to_dict(self) -> dict[str, Any]:

@@ -41,7 +41,7 @@ from jbf.threads import one_blas_thread
 
 Array = npt.NDArray[np.float64]
 CovType = Literal["model", "bootstrap"]
-"""Method of the standard errors."""
+"""Method for the standard errors."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -53,16 +53,17 @@ class Fit(Estimates):
     model
         The fitted model.
     parameters
-        Dotted name to value with standard error. A parameter that is not identifiable is held, and
-        its note states the reason. `params` and `stderr` are its values and errors by name.
+        Dotted name to value with standard error. A parameter that is not identifiable is held
+        fixed, and its note states the reason. `params` and `stderr` are its values and errors by
+        name.
     correlations
         Correlations of the estimates, shape (k, k), in the order of `var_names`.
     rms
-        Root mean square of the residual over the samples that count, N.
+        Root mean square of the residual over the included samples, N.
     noise
         The estimated noise model: white noise with a first-order coloured part.
     nobs
-        Number of samples n that count: those in motion with a known sign.
+        Number n of included samples: those in motion with a known sign.
     residuals
         Record minus prediction, N, one array per run.
     loglik
@@ -87,12 +88,11 @@ class Fit(Estimates):
     Notes
     -----
     `loglik` is the Gaussian log-likelihood of the residuals whitened by the estimated noise model,
-    with their variance at its maximum-likelihood value s^2:
-    ``-2 loglik = n (log(2 pi s^2) + 1) + log det C``, where s^2 C is the covariance of the noise.
-    The number of parameters k is that of the estimated ones (`var_names`), without held parameters
-    and those of the noise. ``aic = 2 k - 2 loglik`` (Akaike 1974) and
-    ``bic = k log(n) - 2 loglik`` (Schwarz 1978) compare fits to the same samples. Robust weights
-    are treated as known.
+    with their variance at its maximum-likelihood value s^2: ``-2 loglik = n (log(2 pi s^2) + 1) +
+    log det C``, where s^2 C is the covariance of the noise. The number of parameters k is that of
+    the estimated ones (`var_names`), without parameters held fixed and those of the noise. ``aic =
+    2 k - 2 loglik`` (Akaike 1974) and ``bic = k log(n) - 2 loglik`` (Schwarz 1978) compare fits to
+    the same samples. Robust weights are treated as known.
 
     Examples
     --------
@@ -194,7 +194,7 @@ def check_effects(campaign: Campaign, effects: Iterable[str]) -> None:
 
 
 def finish(problem: Problem, solution: Solution, start: Mapping[str, float] | None = None) -> Fit:
-    """Return a solution with standard errors as a fit; `start` holds the user's starting values."""
+    """Create the fit with standard errors from a solution; `start` has the user's values."""
     errors = standard_errors(problem, solution)
     reset = reset_unidentified(problem, solution, errors, start or {})
     delay = exact_delay(problem, solution, errors, reset.values)
@@ -251,9 +251,10 @@ def fit(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     cov_type: CovType = "model",
 ) -> Fit:
-    """Fit the base law, with named effects, to runs.
+    """Fit a base law, with named effects, to recorded runs by least squares.
 
-    Least squares over all samples at which the sign of the motion is known, with exact derivatives.
+    The squares are summed over all samples at which the sign of the motion is known. The
+    derivatives are exact.
 
     Parameters
     ----------
@@ -264,10 +265,10 @@ def fit(
     effects
         Names of effects to fit in addition to the law.
     law, clock
-        Base law and its clock.
+        Base law, and the definition of the time constant of its film (`journal` or `thesis`).
     start, fixed
-        Starting values, and values of held parameters, by parameter name. Other starting values are
-        those of the catalogue or, for a law in newtons, estimates from the data.
+        Starting values, and values of parameters held fixed, by parameter name. Other starting
+        values are those of the catalogue or, for a law in newtons, estimates from the data.
     bounds
         Pairs (low, high) by parameter name, within the bounds of the catalogue. A parameter that
         ends at a bound has no standard error.

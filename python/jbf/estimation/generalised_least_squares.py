@@ -1,4 +1,4 @@
-"""Generalised least squares for the errors of the estimated motion.
+"""Generalised least squares that accounts for errors of the estimated motion.
 
 The covariance of the residuals follows from the errors of the motion (`errors_in_motion`). The
 noise, the scale of these errors and a common delay of the force are estimated with the model.
@@ -42,7 +42,7 @@ It is a numerical tolerance.
 EVALUATIONS = 20
 """Evaluations of each fit. It limits the effort only."""
 SIMPLEX = 0.3
-"""Size of the first simplex in the logarithms of noise and scale. It only starts a search."""
+"""Size of the first simplex in the logarithms of noise and error scale. It only starts a search."""
 EXACT_RECORD = 1e-12
 """Smallest residual relative to the largest force. It is a numerical tolerance."""
 LEAST_NOISE = -7.0
@@ -57,11 +57,11 @@ LEAST_INTENSITY = 1e-4
 
 
 def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Return the generalised least-squares solution, and the problem with the delay corrected.
+    """Fit by generalised least squares, with the covariance of the motion's errors and a delay.
 
-    Both are unchanged if the errors of the motion are negligible and the force has no delay. If
-    position and velocity have different clocks, the force may have either clock, and both are
-    tried.
+    Returns the problem, corrected for the delay, and its solution. Both are unchanged if the errors
+    of the motion are negligible and the force has no delay. If position and velocity have different
+    clocks, the force may have either clock, and both are tried.
     """
     motions = [p.motion.errors for p in problem.campaign.prepared]
     if any(e is None for e in motions):
@@ -99,7 +99,7 @@ def with_motion_errors(problem: Problem, solution: Solution) -> tuple[Problem, S
 
 
 def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Estimate the errors of the motion for a model with more effects, and refit.
+    """Re-estimate the errors of the motion for a model with more effects, and refit the model.
 
     The noise of the force, and scale and smoothness of the motion's errors, are estimated. A
     corrected delay is projected out of the residuals as before; otherwise a delay is estimated.
@@ -121,7 +121,7 @@ def with_motion_errors_again(problem: Problem, solution: Solution) -> tuple[Prob
 
 
 def _with_corners_of_forces(first: Problem, end: _End) -> _End:
-    """Locate the corners of the motion by the forces, and continue the iteration.
+    """Locate corners (abrupt changes of speed) of the motion by the forces, and refit.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def _with_corners_of_forces(first: Problem, end: _End) -> _End:
 
 
 def _near(problem: Problem, solution: Solution) -> Solution:
-    """Residuals and derivatives of a problem with the parameters of another solution."""
+    """Residuals and Jacobian of a problem at the parameter values of another solution."""
     return problem.solution(solution.values, problem.samples_at(solution.values), WHITE)
 
 
@@ -151,6 +151,8 @@ class _End:
     ----------
     first, problem
         The original problem, and the one with the force's delay corrected.
+    solution
+        The fit.
     delayed
         Whether a delay of the force was estimated.
     clock_s, late_s
@@ -230,7 +232,7 @@ def _with_smoothing(end: _End) -> Array:
 
 
 def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem, Solution]:
-    """Return the problem with the noise intensity of the motion that maximises the likelihood.
+    """Choose the noise intensity of the motion's process that maximises the likelihood, and refit.
 
     The force contains more information on the acceleration than the positions do.
     """
@@ -243,6 +245,7 @@ def _likeliest_smoothness(problem: Problem, solution: Solution) -> tuple[Problem
     samples = solution.samples
 
     def fitted_with(tried: Problem) -> tuple[float, Solution]:
+        """Deviance and solution of the fit to a problem."""
         near = tried.solution(solution.values, samples, WHITE)
         fitted = _fitted(tried, near, estimate_motion_errors(tried, near))
         errors = estimate_motion_errors(tried, fitted)
@@ -297,9 +300,11 @@ def estimate_motion_errors(problem: Problem, solution: Solution) -> ErrorsInMoti
     lowest = float(np.clip(np.log(max(smallest, 1e-150) / most), LEAST_NOISE, 0.0))
 
     def at(x: Array) -> ErrorsInMotion:
+        """Errors of the motion with the logarithms `x` of noise and scale."""
         return replace(motion, noise=most * float(np.exp(x[0])), scale=float(np.exp(x[1])))
 
     def deviance(x: Array) -> float:
+        """Penalised deviance at the logarithms `x` of noise and scale."""
         return _penalised(problem, at(x), solution.residuals, weights)
 
     from scipy.optimize import minimize  # import time of half a second
@@ -331,7 +336,7 @@ def _penalised(
     residuals: Sequence[Array],
     weights: Sequence[Array],
 ) -> float:
-    """Deviance including the prior of the scale."""
+    """Minus twice the log likelihood, plus the prior of the scale of the motion's errors."""
     prior = (float(np.log(motion.scale)) / problem.campaign.settings.motion.scale_prior) ** 2
     return motion.deviance(residuals, weights) + prior
 
@@ -339,7 +344,7 @@ def _penalised(
 def _fitted(
     problem: Problem, near: Solution, motion: ErrorsInMotion, *, delayed: bool = False
 ) -> Solution:
-    """Generalised least-squares fit near a solution, with Huber's weights."""
+    """Generalised least-squares fit near a solution, with Huber weights."""
     prepared, values = problem.campaign.prepared, near.values
     if delayed:
         slopes = tuple(delay_slope(problem, values, p) for p in prepared)
@@ -364,7 +369,7 @@ def _delay(
     late_s: float,
     clock_s: float,
 ) -> float:
-    """Additional delay of the forces, s; zero where it is not significant or too large."""
+    """Additional delay of the forces, s; zero if it is not significant or implausibly large."""
     if TAU in problem.names:
         return 0.0
     white = replace(solution, samples=replace(solution.samples, motion=motion), noise=WHITE)
@@ -379,7 +384,7 @@ def _delay(
 
 
 def _delayed(first: Problem, late_s: float) -> Problem:
-    """Return the problem with its forces compared with the motion at an earlier time."""
+    """Return the problem with the force of each run shifted to earlier times by `late_s`."""
     prepared = tuple(p.shifted(late_s, 0.0) for p in first.campaign.prepared)
     names = ", ".join(p.run.name for p in prepared)
     side = "late" if late_s > 0.0 else "early"

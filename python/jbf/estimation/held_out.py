@@ -29,18 +29,18 @@ EVALUATIONS = 12
 It limits the effort only.
 """
 SHORT = 3.0
-"""Length per parameter, in standard deviations, up to which a step is accepted without a search.
+"""Length of a step per parameter, in standard deviations, that is accepted without a search.
 
 Noise alone causes steps of this length in a fit to the remaining runs. A search continues from the
 end of a longer step. It is a numerical tolerance.
 """
 STRAIGHT = 0.05
-"""Permitted deviation of a predicted change from the linear one, as a fraction of the change.
+"""Deviation from linearity, as a fraction of a change, up to which a step is accepted.
 
 Within it a step is accepted without further iterations. It is a numerical tolerance.
 """
 NOTHING = 0.01
-"""Fraction of the residual below which the accuracy of a prediction does not matter.
+"""Fraction of the residual below which the error of a prediction is negligible.
 
 It is a numerical tolerance.
 """
@@ -48,7 +48,7 @@ It is a numerical tolerance.
 
 @dataclass(frozen=True)
 class HeldOutPart:
-    """Samples that a fit did not use, and the residuals of their runs.
+    """Samples that were held out of a fit, and the residuals of their runs for this fit.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class HeldOutPart:
     masks
         Mask of the held-out samples, one per run.
     identified
-        Which parameters the fitted samples identify, shape (k,); the others were held.
+        Which parameters the fitted samples identify, shape (k,); the others were held fixed.
     residuals
         Record minus prediction of all samples of each run, N.
     """
@@ -68,7 +68,7 @@ class HeldOutPart:
     residuals: tuple[Array, ...]
 
     def without(self, runs: Collection[int]) -> HeldOutPart:
-        """Return the held-out samples except those of the given runs."""
+        """Return the part without the given runs."""
         kept = [k for k, i in enumerate(self.runs) if i not in runs]
         return HeldOutPart(
             tuple(self.runs[k] for k in kept),
@@ -79,7 +79,7 @@ class HeldOutPart:
 
 
 def held_out_by_run(problem: Problem, solution: Solution) -> list[Array]:
-    """Held-out errors at the samples that count, N, one array per run (`held_out_parts`)."""
+    """Held-out errors at the included samples, N, one array per run (`held_out_parts`)."""
     return list(errors_by_run(solution, held_out_parts(problem, solution)).values())
 
 
@@ -90,15 +90,18 @@ def errors_by_run(
     deviations: bool = True,
     counted: Sequence[Mask] | None = None,
 ) -> dict[int, Array]:
-    """Held-out errors at the samples that count, N, by run.
+    """Held-out errors at the included samples, N, by run index.
 
     Parameters
     ----------
+    solution, parts
+        Fit to all runs, and its held-out parts.
     deviations
         Whether the errors contain the random effects of their run, which no model predicts. Models
         are compared without them.
     counted
-        Samples that count, for the comparison of models that exclude different samples.
+        Included samples, one mask per run; by default those of the solution. Models that exclude
+        different samples are compared on common ones.
     """
     samples = solution.samples
     errors: dict[int, Array] = {}
@@ -114,7 +117,7 @@ def errors_by_run(
 
 
 def held_out_parts(problem: Problem, solution: Solution) -> list[HeldOutPart]:
-    """Hold out each run in turn, or groups of runs if there are many (`max_folds`).
+    """Hold out each run in turn (with many runs, groups of runs), and predict it from the others.
 
     A parameter that the remaining runs do not identify is held at its null (or its starting value).
     Information that only the held-out run contains must not leak into its prediction. With
@@ -182,7 +185,7 @@ def held_out_halves(
 
 
 def _squares(solution: Solution) -> Array:
-    """Sums of squares of the derivatives at the samples that count, shape (runs, k)."""
+    """Sums of squares of the Jacobian's columns at the included samples, shape (runs, k)."""
     pairs = zip(solution.jacobian, solution.samples.counted, strict=True)
     return np.array([np.sum(jacobian[counted] ** 2, axis=0) for jacobian, counted in pairs])
 
@@ -203,7 +206,7 @@ def _identified(solution: Solution, squares: Array, rest: Array) -> Mask:
 
 @dataclass(frozen=True)
 class _RunInformation:
-    """Information of each run on the parameters, from the derivatives at a solution.
+    """Information of each run about the parameters, from the Jacobian at a solution.
 
     Attributes
     ----------
@@ -221,6 +224,7 @@ class _RunInformation:
 
     @classmethod
     def of(cls, problem: Problem, solution: Solution) -> _RunInformation:
+        """Compute the information of each run at a solution."""
         factors, innovations = [], []
         for i in range(len(problem.campaign.prepared)):
             jacobian, residual = solution.jacobian[i], solution.residuals[i]
@@ -231,7 +235,7 @@ class _RunInformation:
         return cls(_squares(solution), factors, innovations)
 
     def step(self, rest: list[int]) -> tuple[Array, float]:
-        """Gauss-Newton step to the remaining runs, and its square relative to their noise."""
+        """Gauss-Newton step to the fit of the runs `rest`, and its square relative to noise."""
         r = np.concatenate([self.factors[i][0] for i in rest])
         j = np.concatenate([self.factors[i][1] for i in rest])
         step, *_ = np.linalg.lstsq(j, r, rcond=1e-12)
@@ -249,7 +253,7 @@ def _predicted(
     rest: list[int],
     identified: Mask,
 ) -> list[Array]:
-    """Residuals, N, of a group of held-out runs after a fit to the rest."""
+    """Residuals, N, of a group of held-out runs after a fit to the runs `rest`."""
     held = _held(problem, ~identified)
     start = _at(problem, solution, held)
     step: Array | None = None
@@ -280,7 +284,7 @@ def _fitted(part: Problem, kept: Samples, start: Array, solution: Solution) -> A
 
 
 def _straight(solution: Solution, step_x: Array, group: list[int], residuals: list[Array]) -> bool:
-    """Whether the predictions of the runs are linear in the parameters along a step."""
+    """Whether the predictions of a group of runs are linear in the parameters along a step."""
     error, moved, size = 0.0, 0.0, 0.0
     for i, refitted in zip(group, residuals, strict=True):
         counted = solution.samples.counted[i]
@@ -311,13 +315,13 @@ def _groups(campaign: Campaign) -> list[list[int]]:
 
 
 def _with_held(problem: Problem, campaign: Campaign, held: dict[str, float]) -> Problem:
-    """Return the problem for other runs, with more parameters held."""
+    """Return the problem for another campaign with more parameters held fixed."""
     fixed = {**problem.fixed, **held}
     return Problem(campaign, problem.law, problem.clock, problem.effects, fixed, problem.bounds)
 
 
 def _held(problem: Problem, unidentified: Mask) -> dict[str, float]:
-    """Parameters that are not identifiable, with their null or starting value."""
+    """Parameters that are not identifiable, by name, with their null or starting value."""
     held = {}
     for i in np.asarray(problem.open)[unidentified]:
         page = problem.parameters[problem.names[i]]
@@ -327,7 +331,7 @@ def _held(problem: Problem, unidentified: Mask) -> dict[str, float]:
 
 
 def _at(problem: Problem, solution: Solution, held: dict[str, float]) -> Array:
-    """Parameter values of the solution, with those of held parameters replaced by `held`."""
+    """Parameter values of a solution, with the values in `held` replaced."""
     values = zip(problem.names, solution.values.tolist(), strict=True)
     return np.array([held.get(name, value) for name, value in values])
 
@@ -347,5 +351,5 @@ def _halves(problem: Problem, solution: Solution) -> list[HeldOutPart]:
 
 
 def alternate_parts(count: int, parts: int) -> Mask:
-    """Mask of the first, third, ... of a number of equal parts of a run, shape (count,)."""
+    """Mask, shape (count,), of the first, third, ... of `parts` equal parts of a run."""
     return np.asarray((np.arange(count) * parts // max(count, 1)) % 2 == 0)

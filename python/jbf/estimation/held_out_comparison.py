@@ -33,11 +33,11 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Strokes = npt.NDArray[np.intp]
 Units = list[tuple[int, Mask]]
-"""Index of a run, and a mask of those of its counting samples that belong to the unit."""
+"""Index of the run of each unit, and a mask of the run's included samples in the unit."""
 
 
 def mean_square(solution: Solution, samples: Samples, noise: Noise) -> tuple[float, int]:
-    """Mean square of the innovations of the fit, N^2, and their number."""
+    """Mean square of the innovations of a fit on the given samples, N^2, and their number."""
     empty = [np.zeros((len(r), 0)) for r in solution.residuals]
     r, _ = samples.stacked(solution.residuals, empty, noise)
     return float(r @ r) / max(len(r), 1), len(r)
@@ -62,6 +62,7 @@ class _Moments:
 
     @classmethod
     def of(cls, part: HeldOutPart, solution: Solution, samples: Samples, noise: Noise) -> _Moments:
+        """Compute the sums for one held-out part."""
         jacobian = [solution.jacobian[i] for i in part.runs]
         e, j = samples.only(part.runs).stacked(part.residuals, jacobian, noise)
         # Select after the whitening, because the first innovation of a held-out part depends on
@@ -79,7 +80,7 @@ def predictive_deviance(
     noise: Noise,
     variance: float,
 ) -> float:
-    """Minus twice the log predictive density of all parts, up to a constant common to all models.
+    """Minus twice the log predictive density of all held-out parts, up to a common constant.
 
     Parameters
     ----------
@@ -99,12 +100,16 @@ def predictive_deviance(
 
 
 def _part_deviance(part: _Moments, total: Array, variance: float, prior: float) -> float:
-    """Minus twice the log predictive density of one part.
+    """Minus twice the log predictive density of one held-out part.
 
     Parameters
     ----------
+    part
+        Sums over the held-out samples of the part.
     total
         Information of all parts on the parameters, shape (k, k).
+    variance
+        Variance of the innovations, N^2.
     prior
         Prior information on each parameter, relative to the total.
     """
@@ -123,7 +128,7 @@ def _part_deviance(part: _Moments, total: Array, variance: float, prior: float) 
 
 
 def stroke_of(p: Prepared) -> Strokes:
-    """Number of the stroke of each sample; -1 if the sample is not known to be in motion.
+    """Index of the stroke of each sample; -1 if the sample is not known to be in motion.
 
     A stroke ends where the motion reverses.
     """
@@ -141,12 +146,12 @@ def independent_units(
     prepared: Sequence[Prepared],
     settings: HeldOutSettings = DEFAULT.held_out,
 ) -> Units:
-    """Divide samples into units: runs, or strokes where there are fewer runs than `min_units`.
+    """Divide samples into independent units: runs, or strokes if there are few runs.
 
     Parameters
     ----------
     counted
-        Samples that count, by the index of the run.
+        Included samples by the index of the run.
     prepared
         All runs; without them, the runs are the units.
     """
@@ -196,7 +201,7 @@ def extrapolated_runs(campaign: Campaign) -> list[ExtrapolatedRun]:
 
 
 def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
-    """Speed and load at the samples that count, one array per run."""
+    """Speed and load at the included samples, by name, one array per run."""
     runs, counted = campaign.prepared, campaign.samples.counted
     speeds = [p.motion.velocity[c] for p, c in zip(runs, counted, strict=True)]
     loads = [recorded_load(p.rig, p.run) for p in runs]
@@ -207,7 +212,7 @@ def _quantities(campaign: Campaign) -> dict[str, list[Array]]:
 def _extrapolated(
     quantity: str, values: list[Array], settings: HeldOutSettings
 ) -> list[ExtrapolatedRun]:
-    """Runs with a share of samples beyond the range of a quantity in all other runs."""
+    """Runs with a sufficient share of samples beyond the range of a quantity in all other runs."""
     top = max((float(np.max(np.abs(v), initial=0.0)) for v in values), default=0.0)
     margin, extrapolated = settings.extrapolation_margin * top, []
     for run, run_values in enumerate(values):

@@ -1,8 +1,8 @@
-"""Parameters that are not identifiable: they are held, and a note states the reason.
+"""Detection of parameters that are not identifiable; they are held fixed, with a reason.
 
 The value of a held parameter is used for prediction only and is not an estimate. A search may end
 at an arbitrary value of such a parameter. The value is therefore reset to a neutral one, unless the
-reset changes the prediction at the samples that count.
+reset changes the prediction at the included samples.
 """
 
 from __future__ import annotations
@@ -26,26 +26,26 @@ Array = npt.NDArray[np.float64]
 HELD = "held at the given value"
 """Note of a parameter that was not fitted."""
 STATED = "not fitted: a given value, or a reference taken from the runs"
-"""Note of a number that is not a fitted parameter."""
+"""Note of a number that is given, or taken from the runs, and not fitted."""
 NEVER_MOVED = "not determined: these runs do not depend on it"
 NOT_SEPARATE = "not identifiable: another parameter has the same effect in these runs"
 NO_EFFECT = "at its null: no effect"
 ONE_SIDED = 2.0
 """Standard errors added to the value of a scale for its upper limit. It concerns the text only."""
 SAME_IN_NOISE = 1e-4
-"""Largest difference of equal predictions, as a fraction of the residual.
+"""Largest difference of predictions that are equivalent, as a fraction of the residual.
 
 It is a numerical tolerance.
 """
 SAME_IN_FRICTION = 1e-9
-"""Largest difference of equal predictions, as a fraction of the friction.
+"""Largest difference of predictions that are equivalent, as a fraction of the friction.
 
 It is a numerical tolerance.
 """
 SLIDING = {"F_s": "F_c"}
-"""Breakaway force of a law, and the sliding force that it equals without a peak."""
+"""Breakaway force of a law, and the sliding force to which it is equal without a Stribeck peak."""
 SHARES = (1.0, 0.5, 0.25, 0.125)
-"""Fractions of the distance to the start that are tried.
+"""Fractions of the distance to the neutral value by which a reset is tried.
 
 If the starting value itself changes the prediction, a partial reset may still give a less extreme
 value. It is a numerical resolution.
@@ -75,10 +75,10 @@ def reason_not_identifiable(
 
 
 def _exceeds_itself(page: Parameter, value: float, error: float) -> str | None:
-    """Return a note if the error of a scale exceeds its value, else None.
+    """Note if the standard error of a positive parameter exceeds its value, otherwise None.
 
-    A scale is positive, so its order of magnitude is undetermined if the error exceeds the value. A
-    signed parameter may be zero within its error.
+    The order of magnitude of a positive (scale) parameter is undetermined if the error exceeds the
+    value. A signed parameter may be zero within its error.
     """
     if not (page.log or page.lower == 0.0) or not error > abs(value):
         return None
@@ -97,7 +97,7 @@ def idle_effects(
     errors: Mapping[str, float] | None = None,
     fixed: Collection[str] = (),
 ) -> tuple[str, ...]:
-    """Effects whose fitted parameters are at their null, where the effect has no influence.
+    """Effects whose fitted parameters have their null values, so that they have no influence.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def idle_effects(
 
 
 def at_null(page: Parameter, value: float, error: float = math.nan, *, fixed: bool = False) -> bool:
-    """Whether a value is at its parameter's null.
+    """Whether a value is at its parameter's null, the value without influence.
 
     A fit stops at a null that is a bound, or at the bound next to an infinite null. A null between
     the bounds does not stop a fit: an estimate there is an ordinary estimate with an error.
@@ -133,7 +133,7 @@ def at_null(page: Parameter, value: float, error: float = math.nan, *, fixed: bo
 
 @dataclass(frozen=True, eq=False)
 class Reset:
-    """A solution without arbitrary parameter values.
+    """Solution in which unidentifiable parameters have neutral values.
 
     Attributes
     ----------
@@ -153,7 +153,7 @@ class Reset:
 def reset_unidentified(
     problem: Problem, solution: Solution, errors: StandardErrors, start: Mapping[str, float]
 ) -> Reset:
-    """Set idle effects to their null, and unidentified parameters towards a neutral value.
+    """Set effects without influence to their null, and unidentifiable parameters to neutral values.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def _idle_to_null(
     errors: StandardErrors,
     start: Mapping[str, float],
 ) -> Reset:
-    """Set the parameters of idle effects to exactly their null."""
+    """Set the parameters of effects without influence to exactly their null."""
     by_name = {problem.names[i]: errors.error(k) for k, i in enumerate(problem.open)}
     idle = idle_effects(
         problem.effects, problem.parameters, solution.values.tolist(), by_name, problem.fixed
@@ -207,7 +207,7 @@ def _idle_to_null(
 
 
 def _neutral(problem: Problem, name: str, values: Array) -> float:
-    """Value at which a parameter has no influence, or its starting value.
+    """Value at which a parameter has no influence; its starting value if there is none.
 
     A breakaway force without evidence of a peak equals the sliding force.
     """
@@ -218,7 +218,7 @@ def _neutral(problem: Problem, name: str, values: Array) -> float:
 
 
 def _moved_towards(page: Parameter, value: float, target: float, share: float) -> float:
-    """Move a value by a fraction of the distance to `target`, in the search variable.
+    """Move a value by the fraction `share` of the distance to `target`, in the search variable.
 
     An infinite `target` is reached only if the fraction is one.
     """
@@ -230,7 +230,7 @@ def _moved_towards(page: Parameter, value: float, target: float, share: float) -
 
 
 def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | None:
-    """Residuals at these values if the prediction equals that of the solution, otherwise None."""
+    """Residuals at these values if the predictions equal those of the solution, otherwise None."""
     residuals = problem.residuals(values)
     samples = solution.samples
     gaps = [a - b for a, b in zip(residuals, solution.residuals, strict=True)]
@@ -244,7 +244,7 @@ def _same(problem: Problem, solution: Solution, values: Array) -> list[Array] | 
 def parameter_values(
     problem: Problem, reset: Reset, errors: StandardErrors
 ) -> dict[str, ParameterValue]:
-    """Return values with standard errors by name; parameters that are not identifiable are held."""
+    """Return values with standard errors by name; unidentifiable parameters are marked as held."""
     results = {}
     values = reset.values.tolist()
     for i, (name, page) in enumerate(problem.parameters.items()):

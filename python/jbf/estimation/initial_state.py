@@ -26,14 +26,14 @@ Mask = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Memory:
-    """Memory of a model for the unknown state at the start of a run.
+    """Simulated motions and limits that determine the initial-state transient of a model.
 
     Attributes
     ----------
     speeds
         Speeds of motions before a run that lead to different states, as fractions of its top speed.
     margin
-        Factor on the duration of the difference that is excluded.
+        Factor on the duration of the difference, for the excluded duration.
     max_run_share, max_campaign_share
         Largest excluded fraction of a run, and of a campaign.
     """
@@ -47,7 +47,7 @@ class Memory:
 def initial_memory(
     law: str, effects: Iterable[str], settings: TransientSettings = DEFAULT.transient
 ) -> Memory | None:
-    """Return the memory of a law and its effects for the initial state; None if they have none."""
+    """Return the transient settings for a law with effects; None if they have no initial state."""
     page, s = find_law(law), settings
     by_speed = page.has_memory and not page.has_bristle
     if has_unknown_start(effects):

@@ -1,7 +1,7 @@
 """Samples next to a jump of the friction whose time is uncertain.
 
 Friction jumps at a reversal of the motion. The record does not determine the sign of the samples
-there, and these samples do not count (`Samples`). An effect that shifts the jump in time (a delay
+there, and these samples are excluded (`Samples`). An effect that shifts the jump in time (a delay
 or backlash) also shifts the uncertain samples. The model then has a ramp over one sampling interval
 where the record has a jump within the interval. The prediction error is about half of the change
 over the interval. It reduces the weight of the sample in a fit, and tests exclude the sample.
@@ -35,19 +35,19 @@ It follows from the estimator.
 
 
 def moves_jumps(effects: Iterable[str]) -> bool:
-    """Whether one of the effects moves the times of jumps."""
+    """Whether any of the effects shifts friction jumps in time."""
     return any(find_effect(name).moves_jumps for name in effects)
 
 
 def spreads_jumps(effects: Iterable[str]) -> bool:
-    """Whether one of the effects spreads a jump over a long time."""
+    """Whether any of the effects spreads a friction jump over many samples."""
     return any(find_effect(name).spreads_jumps for name in effects)
 
 
 def active_effects(
     effects: Iterable[str], pages: Mapping[str, Parameter], values: Iterable[float]
 ) -> list[str]:
-    """Effects that are not at their null: at least one parameter with a null differs from it.
+    """Effects with at least one parameter that differs from its null.
 
     `pages` and `values` are in the same order, that of the parameters' full names.
     """
@@ -60,7 +60,7 @@ def active_effects(
 
 
 def jumps(prediction: Array, settings: JumpSettings = DEFAULT.jumps) -> Array:
-    """Change of a prediction (N) at samples in or next to a jump, N; zero elsewhere."""
+    """Change of a prediction, N, at samples in or next to a friction jump; zero elsewhere."""
     change = np.abs(np.diff(prediction))
     # A ramp across a sample contributes to two changes, so one neighbour may belong to it. The two
     # jumps at a backlash gap may be equally close.
@@ -79,10 +79,10 @@ def samples_near_jumps(
     predictions: Sequence[Array],
     effects: Sequence[str],
 ) -> Samples:
-    """Return the samples with weights adapted to the jumps of the predictions.
+    """Reduce the weights of samples at which the time of a predicted friction jump is uncertain.
 
-    The weights are unchanged if the effects neither move jumps nor spread them. The effects must
-    not be at their null.
+    The weights are unchanged if the effects neither shift nor spread jumps. The effects must not be
+    at their null.
     """
     moves, spreads = moves_jumps(effects), spreads_jumps(effects)
     if not (moves or spreads):
@@ -103,7 +103,7 @@ def samples_near_jumps(
 def _without_jumps(
     p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
-    """Mask without samples next to a jump, and weights for an error of half of the jump."""
+    """Exclude samples next to a jump, and compute weights for an error of half the jump."""
     change = jumps(prediction, settings)
     kept = counted & (change == 0.0)
     return kept, weight * _share(0.5 * change, _residual_rms(p, kept, prediction))
@@ -112,13 +112,14 @@ def _without_jumps(
 def _without_reversals(
     p: Prepared, counted: Mask, weight: Array, prediction: Array, settings: JumpSettings
 ) -> tuple[Mask, Array]:
-    """Mask without samples after a reversal of uncertain time, and weights for the error."""
+    """Exclude samples after a reversal of uncertain time, and compute weights for its error."""
     noise_rms = _residual_rms(p, counted, prediction)
     error_n = timing_errors(p, prediction, settings.max_timing_error * noise_rms)
     return counted & (error_n == 0.0), weight * _share(error_n, noise_rms)
 
 
 def _residual_rms(p: Prepared, kept: Mask, prediction: Array) -> float:
+    """Root mean square of the residual of a prediction at the samples of a mask, N."""
     return float(np.sqrt(np.mean((prediction - p.friction)[kept] ** 2))) if kept.any() else 0.0
 
 
@@ -129,7 +130,7 @@ def _share(error_n: Array, noise_rms: float) -> Array:
 
 
 def timing_errors(p: Prepared, prediction: Array, least_n: float) -> Array:
-    """Standard error of a prediction (N) after each reversal, due to the error of its time.
+    """Standard error of a prediction after each reversal, N, due to the uncertain reversal time.
 
     Shape (n,); zero elsewhere, and from where the error falls below `least_n`.
     """
@@ -155,7 +156,7 @@ def timing_errors(p: Prepared, prediction: Array, least_n: float) -> Array:
 
 
 def _reversals(p: Prepared) -> tuple[list[int], list[int]]:
-    """Last samples before each reversal, and first samples after it.
+    """Indices of the last sample before, and of the first sample after, each reversal.
 
     Only reversals without a rest in between are included.
     """

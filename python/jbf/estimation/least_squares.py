@@ -19,7 +19,7 @@ MOST_HELD = 2_000_000
 Larger results are computed again for each access. It limits the effort only.
 """
 MOST_SEARCHED = 400_000
-"""Largest number of samples in a search; with more, a selection of runs is sufficient.
+"""Largest number of samples in a search; if there are more, a selection of runs is used.
 
 It limits the effort only.
 """
@@ -63,7 +63,7 @@ class OnDemand(Sequence[Array]):
 
 
 def memory_groups(lengths: Sequence[int], width: int) -> list[list[int]]:
-    """Group consecutive runs such that the rows of a group, of the given width, fit into memory."""
+    """Group consecutive runs so that the matrix rows of a group (`width` columns) fit in memory."""
     groups: list[list[int]] = []
     held = GROUP
     for i, length in enumerate(lengths):
@@ -76,10 +76,10 @@ def memory_groups(lengths: Sequence[int], width: int) -> list[list[int]]:
 
 
 def select_runs(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
-    """Select runs with half of the largest number of samples of a search.
+    """Select runs for a search, with half of the largest permitted number of samples.
 
-    All runs are selected if there are too few samples. The selection is at regular intervals by
-    name, and does not depend on the order of the runs.
+    All runs are selected if a selection has too few samples. The selection is at regular intervals
+    by name, and does not depend on the order of the runs.
     """
     interval = 2.0 * sum(lengths) / MOST_SEARCHED
     if interval <= 2.0 or len(lengths) < 2.0 * interval:
@@ -89,7 +89,7 @@ def select_runs(lengths: Sequence[int], names: Sequence[str]) -> list[int]:
 
 
 def triangular(r: Array, j: Array) -> tuple[Array, Array]:
-    """Reduce a residual and its derivatives to as many rows as there are columns.
+    """Reduce residuals and their Jacobian to as many rows as columns by a QR decomposition.
 
     An orthogonal transformation of the rows changes neither sums of squares nor a Gauss-Newton step
     (Golub & Van Loan, Matrix Computations, section 5.3).
@@ -109,7 +109,7 @@ def least_squares(design: Array, target: Array) -> Array:
 
 
 def unexplained(design: Array, target: Array) -> Array:
-    """Part of a target that linear combinations of the columns of a design do not explain."""
+    """Residual of the projection of a target on the column space of a design."""
     # Scale by powers of two, which are exact, so that the squares of large columns do not overflow.
     _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
     design = np.ldexp(design, -power)
@@ -120,7 +120,7 @@ def unexplained(design: Array, target: Array) -> Array:
 
 
 def spanned(design: Array) -> Array:
-    """Orthonormal columns that span those of a design, shape (n, rank)."""
+    """Orthonormal basis of the column space of a design, shape (n, rank)."""
     _, power = np.frexp(np.max(np.abs(design), axis=0, initial=0.0))
     design = np.ldexp(design, -power)
     size = np.linalg.norm(design, axis=0)
@@ -129,6 +129,6 @@ def spanned(design: Array) -> Array:
 
 
 def unexplained_square(design: Array, target: Array) -> float:
-    """Sum of squares of the part of a target that a design does not explain."""
+    """Sum of squares of the residual of the projection of a target on a design's columns."""
     residual = unexplained(design, target)
     return float(residual @ residual)

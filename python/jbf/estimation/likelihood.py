@@ -24,7 +24,10 @@ Array = npt.NDArray[np.float64]
 
 
 def likelihood_gain(richer: Solution, simpler: Solution) -> float:
-    """Log-likelihood gain, with the smaller of the two models' weights for each sample."""
+    """Log-likelihood gain of the richer solution over the simpler one, on common sample weights.
+
+    For each sample the smaller of the two models' weights is used.
+    """
     if richer.samples is simpler.samples:
         return simpler.cost - richer.cost
     shared = common_samples(richer.samples, simpler.samples)
@@ -68,7 +71,7 @@ _shares: WeakKeyDictionary[Solution, float] = WeakKeyDictionary()
 
 
 def effective_share(solution: Solution) -> float:
-    """Number of independent samples per sample, 0 to 1, from the innovations of a solution."""
+    """Effective number of independent samples divided by the number of samples, 0 to 1."""
     if solution not in _shares:
         samples = solution.samples
         innovations = samples.weighted_innovations(solution.residuals, solution.noise)
@@ -77,7 +80,7 @@ def effective_share(solution: Solution) -> float:
 
 
 def share_of_gain(richer: Solution, simpler: Solution) -> float:
-    """Factor on a log-likelihood gain for innovations that are not white, at most one.
+    """Factor, at most one, that corrects a log-likelihood gain for correlated innovations.
 
     The factor is the smaller of two estimates. One is computed from all autocorrelations, the other
     from the long-run variance of the score in the direction in which the two solutions differ.
@@ -94,7 +97,7 @@ def share_of_gain(richer: Solution, simpler: Solution) -> float:
 
 
 def robust_gain(richer: Solution, simpler: Solution) -> float:
-    """Log-likelihood gain in which the influence of each sample is bounded.
+    """Log-likelihood gain in which the contribution of each sample is bounded.
 
     Residuals are clipped at a few robust standard deviations of those of the richer solution.
     """
@@ -118,6 +121,7 @@ def _innovation_pairs(
     """
 
     def whitened(residual: Array, run: int) -> Array:
+        """Innovations of a run without the correlation due to its random effects."""
         empty = np.zeros((len(residual), 0))
         return samples.only([run]).stacked([residual], [empty], richer.noise)[0]
 
@@ -132,7 +136,7 @@ def independent_share(
     steps: Sequence[float],
     settings: NoiseSettings = DEFAULT.noise,
 ) -> float:
-    """Number of independent samples per sample of the given innovations, 0 to 1.
+    """Effective share of independent samples among the given innovations, 0 to 1.
 
     The innovations of a correct model are white. Those of a wrong model are autocorrelated, and n
     of them contain the information of fewer independent samples (Bartlett 1946). The
@@ -156,22 +160,25 @@ def independent_share(
 
 
 def score_gain(problem: Problem, values: Array, near: Solution) -> float:
-    """Score test statistic of a model at its null.
+    """Score test statistic: log-likelihood gain predicted for a model at its null.
 
-    The statistic is the log-likelihood gain predicted for one full Gauss-Newton step from `values`,
-    with the noise of the solution `near`.
+    The prediction is that of one full Gauss-Newton step from `values`, with the noise of the
+    solution `near`.
     """
     return promised_gain(*problem.gauss_newton_rows(values, near.samples, near.noise))
 
 
 def next_step_gain(solution: Solution) -> float:
-    """Predicted log-likelihood gain of a step from a solution; zero if it has converged."""
+    """Log-likelihood gain that the next Gauss-Newton step predicts; zero after convergence."""
     r, j = solution.stacked()
     return promised_gain(r, j, len(r))
 
 
 def promised_gain(r: Array, j: Array, count: int) -> float:
-    """Predicted log-likelihood gain of a step, from `count` innovations and their derivatives."""
+    """Log-likelihood gain that a Gauss-Newton step predicts, from innovations and Jacobian.
+
+    `count` is the number of innovations before their reduction to triangular form.
+    """
     remaining = max(unexplained_square(j, r), 1e-300)
     return count * float(np.log(max(float(r @ r), 1e-300) / remaining))
 

@@ -33,33 +33,33 @@ With half of them, an effect whose null is a flat region of the objective stays 
 bounds the computing time only.
 """
 FOLLOWED = 2
-"""Number of starting points that receive these evaluations when candidates are ranked.
+"""Number of starting points searched for a few evaluations when candidates are ranked.
 
 It limits the effort only.
 """
 MANY = 24
-"""Largest number of starting points that are all evaluated on all runs.
+"""Largest number of starting points that are all evaluated on the complete campaign.
 
 It limits the effort only.
 """
 LIKELY = 6
-"""Fraction (one in this number) of a larger set that is kept; at least `MANY` are kept.
+"""Divisor of a larger number of starting points that are kept; at least `MANY` are kept.
 
 They are ranked on a single run: the one with the highest speed, which covers all speeds. It bounds
 the computing time only.
 """
 LOOKED = 3
-"""Evaluations of a first look, which begins at the best starting point of the first seed.
+"""Number of evaluations of a first, short search (`Approach.look`).
 
-It limits the effort only.
+It starts from the best starting point of the first seed. It limits the effort only.
 """
 MAX_EVALUATIONS = 60
 """Maximum number of evaluations of a search that converges. It limits the effort only."""
 FOLLOWED_IN_A_FIT = 6
-"""Number of starting points that receive a few evaluations when a single model is fitted.
+"""Number of starting points searched for a few evaluations when a single model is fitted.
 
-Without a film they are searched to convergence, which is then inexpensive. The squares of a wrong
-law have many local minima. It limits the effort only.
+For a law without a film, these are searched to convergence, which is then inexpensive. The squares
+of a wrong law have many local minima. It limits the effort only.
 """
 NESTED_EVALUATIONS = 30
 """Evaluations of a fit of the law without its effects. It limits the effort only."""
@@ -67,14 +67,19 @@ NESTED_EVALUATIONS = 30
 
 @dataclass(frozen=True)
 class Look:
-    """Result of a few steps of a fit compared with a smaller model, in log-likelihood gain.
+    """Result of a few steps of a fit, compared with a smaller model.
 
     Attributes
     ----------
+    values
+        Parameter values reached.
     gain
         Log-likelihood gain (2 x difference of log likelihood) reached so far.
     promised
         Log-likelihood gain predicted by the linear model at the best of the visited points.
+
+    lines
+        Residuals and Jacobian at these values; None if they were not stored.
     """
 
     values: Array
@@ -84,18 +89,20 @@ class Look:
 
 
 class Approach:
-    """Search from the best of all starting points, assuming white noise.
+    """Search for the minimum from the best of all starting points, assuming white noise.
 
     Parameters
     ----------
+    problem
+        The model.
     seeds
         Known values by name; the other parameters have their starting values.
     each
         Continue from the best starting point of each seed instead of the best of all.
     stepped
-        One additional starting point: the end of a step from a smaller model. The starting values
-        are those of a strong effect. The minimum of a weak effect may be separated from them by a
-        maximum of the objective.
+        One additional starting point: the end of a Gauss-Newton step from a smaller model. The
+        starting values are those of a strong effect. The minimum of a weak effect may be separated
+        from them by a maximum of the objective.
     """
 
     def __init__(
@@ -116,24 +123,25 @@ class Approach:
 
     @cached_property
     def _nearest(self) -> Array:
-        """Best starting point of the first seed, or the step from a smaller model."""
+        """Starting point nearest to a smaller model: a step from it, or from the first seed."""
         return min([*self._likely(0), *self._stepped], key=self._square)
 
     @cached_property
     def starts(self) -> list[Array]:
-        """Starting points, best first."""
+        """Starting points in order of increasing sum of squares."""
         groups = [self._likely(k) for k in range(len(self._groups))]
         if self._each:
             groups = [[min(group, key=self._square)] for group in groups]
         return sorted(itertools.chain(*groups, self._stepped), key=self._square)
 
     def _likely(self, k: int) -> list[Array]:
-        """Starting points of seed k, reduced to the best ones on one run if there are many."""
+        """Starting points of seed `k`; if there are many, only the best ones on one run."""
         if k not in self._kept:
             self._kept[k] = self._best_on_fastest_run(self._groups[k])
         return self._kept[k]
 
     def _best_on_fastest_run(self, group: list[Array]) -> list[Array]:
+        """Starting points with the smallest sums of squares on the run with the highest speed."""
         thinned = self.thinned
         runs = thinned.campaign.prepared
         if len(group) <= MANY or len(runs) < 2:
@@ -146,14 +154,14 @@ class Approach:
         return [group[i] for i in order[: max(MANY, len(group) // LIKELY)]]
 
     def _square(self, values: Array) -> float:
-        """Sum of squares of weighted residuals, N^2, computed once for each starting point."""
+        """Sum of squares of weighted residuals at a starting point, N^2, computed once."""
         key = values.tobytes()
         if key not in self._squares:
             self._squares[key] = self.thinned.square(values)
         return self._squares[key]
 
     def look(self, near: Solution) -> Look:
-        """Compute the gain over `near` after a few steps from the best start of the first seed."""
+        """Search by a few steps from the first seed; compute the gain over a smaller model."""
         problem, thinned, visited = self.problem, self.thinned, self.visited
         samples = thinned.campaign.samples
         search(thinned, samples, self._nearest, WHITE, LOOKED, visited=visited)
@@ -179,7 +187,7 @@ class Approach:
         return Look(lowest.values, gain, promised, lines)
 
     def solution_of(self, look: Look, near: Solution) -> Solution:
-        """Return a first look as a solution, with the noise of the smaller model."""
+        """Convert the result of a first look to a solution, with the noise of the smaller model."""
         problem, lines = self.problem, look.lines
         samples = problem.samples_at(look.values, lines)
         values = problem.wrapped(look.values)
@@ -254,6 +262,7 @@ def approach(
 
 
 def _log_ratio(before: float, after: float) -> float:
+    """Logarithm of a ratio of sums of squares, finite for zero squares."""
     return float(np.log(max(before, 1e-300) / max(after, 1e-300)))
 
 
@@ -265,7 +274,7 @@ def _square(problem: Problem, thinned: Problem, visited: Visited, values: Array)
 
 
 def settle(problem: Problem, near: Solution, samples: Samples | None = None) -> Solution:
-    """Converge from a solution, with coloured noise.
+    """Continue from a solution to convergence, with coloured noise.
 
     Parameters
     ----------
@@ -303,6 +312,7 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
         samples, noise = near.samples, near.noise
 
         def square(values: Array, samples: Samples = samples) -> float:
+            """Sum of squares of weighted residuals, N^2, at parameter values."""
             return problem.square(values, samples)
 
         lower, upper = problem.lower[index], problem.upper[index]
@@ -315,7 +325,7 @@ def search_peaks(problem: Problem, near: Solution) -> Solution:
 
 
 def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
-    """Minimise: approach, settle, and search for a higher maximum of the likelihood."""
+    """Minimise the sum of squares from all starting points to convergence, with other maxima."""
     if find_law(problem.law).has_film:
         near = approach(problem, seeds, MAX_EVALUATIONS, followed=FOLLOWED_IN_A_FIT)
     else:
@@ -331,7 +341,7 @@ def minimum(problem: Problem, seeds: Sequence[Mapping[str, float]]) -> Solution:
 
 
 def not_above_nested(problem: Problem, solution: Solution) -> Solution:
-    """Return the solution, or a better one found from the optimum of the law without its effects.
+    """Return the solution, or a better one found from the optimum of the law without effects.
 
     The law is nested in a model with effects: with the effects at their null, the predictions are
     equal. A search that ends above the optimum of the law has therefore reached a local minimum.

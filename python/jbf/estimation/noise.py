@@ -45,14 +45,14 @@ class Noise:
     colour: float = 0.0
 
     def innovations(self, values: Array, step_s: float) -> Array:
-        """Whiten values of shape (n,) or (n, k) along the first axis."""
+        """Whiten noise values of shape (n,) or (n, k), at uniform steps, along the first axis."""
         if self.white:
             return values
         phi, white_share = self._coefficients(step_s)
         return _core.first_order_filter((1.0, -phi), -phi * white_share, values)
 
     def coloured(self, innovations: Array, step_s: float) -> Array:
-        """Return the noise with the given innovations; the inverse of :meth:`innovations`."""
+        """Noise with the given innovations; the inverse of :meth:`innovations`."""
         if self.white:
             return innovations
         phi, white_share = self._coefficients(step_s)
@@ -81,7 +81,7 @@ class Noise:
         return ratio / (1.0 + ratio)
 
     def with_share(self, share: float, step_s: float) -> Noise:
-        """Return noise of the same correlation time with this coloured share (below 1)."""
+        """Return noise with the same correlation time and the given coloured share (below 1)."""
         if share <= 0.0:
             return WHITE
         phi_squared = float(np.exp(-2.0 * step_s / self.memory_s))
@@ -96,7 +96,7 @@ WHITE = Noise()
 def innovation_cost(
     noise: Noise, residuals: Sequence[Array], steps: Sequence[float], masks: Sequence[Mask]
 ) -> float:
-    """Return `n log(mean square innovation)`: minus twice the log likelihood, up to a constant."""
+    """Cost of a noise model: ``n log(mean square innovation)``, -2 x log likelihood + constant."""
     total, count = 0.0, 0
     for residual, step, mask in zip(residuals, steps, masks, strict=True):
         e = noise.innovations(residual, step)[mask]
@@ -138,7 +138,7 @@ def estimate_noise(
     most_n: float | None = None,
     settings: NoiseSettings = DEFAULT.noise,
 ) -> Noise:
-    """Estimate the noise model with the smallest innovations of the given residuals.
+    """Estimate the noise model of residuals, white plus a coloured part, by maximum likelihood.
 
     The noise is white unless the gain of a coloured part exceeds its threshold. The standard
     deviation of the coloured part is limited to `most_n`, N, if it is given. Without this limit,
@@ -149,14 +149,17 @@ def estimate_noise(
     low, high = np.log(shortest), np.log(longest)
 
     def unpack(x: Array) -> Noise:
+        """Noise model for the search variables: log of the correlation time, and colour."""
         memory, colour = special.expit(x)
         return Noise(float(np.exp(low + (high - low) * memory)), float(colour))
 
     def cost(x: Array) -> float:
+        """Cost (`innovation_cost`) at the search variables."""
         return innovation_cost(unpack(x), residuals, steps, masks)
 
     @lru_cache(maxsize=1)
     def derivatives(values: bytes) -> tuple[Array, Array]:
+        """Gradient and Hessian of the cost, cached by the bytes of the search variables."""
         x = np.frombuffer(values)
         slope, curvature = _cost_derivatives(unpack(x), residuals, steps, masks)
         unit = special.expit(x)
@@ -165,9 +168,11 @@ def estimate_noise(
         return slope * inner, curvature * np.outer(inner, inner) + 1e-6 * np.eye(2)
 
     def slope(x: Array) -> Array:
+        """Gradient of the cost."""
         return derivatives(x.tobytes())[0]
 
     def curvature(x: Array) -> Array:
+        """Hessian of the cost."""
         return derivatives(x.tobytes())[1]
 
     starts = [np.array([m, c]) for m in (-1.0, 1.5) for c in (-4.0, -1.5, 0.5)]

@@ -21,7 +21,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 def noise_floor(prepared: Sequence[Prepared], samples: Samples) -> float:
-    """Standard deviation of the noise on the friction record, N, from the data only.
+    """Standard deviation of the noise on the friction record, N, without use of a model.
 
     Runs whose force is a command or was filtered do not contain the noise. The result is zero if
     all runs are of this kind: the noise floor is then unknown.
@@ -59,7 +59,7 @@ def noise_upper_bound(prepared: Sequence[Prepared], samples: Samples) -> float |
 
 
 def _white(prepared: Sequence[Prepared], samples: Samples) -> float:
-    """White part of the noise, N, from third differences and quantisation steps."""
+    """Standard deviation of the white noise, N, from third differences and quantisation steps."""
     squares = []
     for p, counted in zip(prepared, samples.counted, strict=True):
         values, dither_square = _dithered(p)
@@ -83,7 +83,7 @@ def _dithered(p: Prepared) -> tuple[Array, float]:
 
 
 def _pooled(squares: Sequence[tuple[float, int]], settings: NoiseSettings) -> float | None:
-    """Root of the mean of variances, weighted by their samples; None if there are too few."""
+    """Standard deviation pooled over variances with sample counts; None for few samples."""
     weight = sum(count for _, count in squares)
     if weight < settings.min_floor_samples:
         return None
@@ -91,7 +91,7 @@ def _pooled(squares: Sequence[tuple[float, int]], settings: NoiseSettings) -> fl
 
 
 def _repeat_squares(prepared: Sequence[Prepared], samples: Samples) -> list[tuple[float, int]]:
-    """Variance of the noise in the repeated periods of each run, and the number of samples."""
+    """Noise variance from repeated periods, N^2, and the number of samples, for each run."""
     return [
         _repeat_square(p, counted, samples.settings)
         for p, counted in zip(prepared, samples.counted, strict=True)
@@ -101,14 +101,14 @@ def _repeat_squares(prepared: Sequence[Prepared], samples: Samples) -> list[tupl
 def _squares_at_rest(
     prepared: Sequence[Prepared], settings: NoiseSettings
 ) -> list[tuple[float, int]]:
-    """Variance of the noise in the rests of all runs, and the number of samples of each."""
+    """Noise variance, N^2, and the number of samples, of each rest in all runs."""
     return [
         square for p in prepared for square in _rest_squares(p.motion.resting, p.friction, settings)
     ]
 
 
 def _rest_squares(resting: Mask, values: Array, settings: NoiseSettings) -> list[tuple[float, int]]:
-    """Variance about a straight line in every long rest, with the number of samples.
+    """Variance of values about a straight line in each long rest, and the number of samples.
 
     The last samples may belong to a motion that the encoder does not yet show.
     """
@@ -133,7 +133,7 @@ def _detrended(values: Array) -> Array:
 
 
 def _repeat_square(prepared: Prepared, counted: Mask, settings: Settings) -> tuple[float, int]:
-    """Variance of the noise from the same motion a period later, and the number of samples used."""
+    """Noise variance of one run, N^2, from the same motion one period later; samples used."""
     shift = period_samples(prepared.motion.velocity, settings.periods)
     if shift is None:
         return 0.0, 0
@@ -152,7 +152,7 @@ def _repeat_square(prepared: Prepared, counted: Mask, settings: Settings) -> tup
 
 
 def period_samples(velocity: Array, settings: PeriodSettings = DEFAULT.periods) -> int | None:
-    """Period of a repeated motion in samples, or None."""
+    """Number of samples in a period of the motion; None if the motion does not repeat."""
     n = len(velocity)
     if n < settings.min_samples or np.ptp(velocity) == 0.0:
         return None

@@ -28,7 +28,7 @@ It limits the effort only.
 
 
 def fits_at_once(campaign: Campaign, law: str, effects: Sequence[str]) -> int:
-    """Number of parallel fits for a campaign.
+    """Number of fits of a campaign to run in parallel.
 
     The number is one if the matrices of long records fill the memory. It is also one for
     user-defined functions, since they may have an internal state.

@@ -1,10 +1,10 @@
-"""Spatial periods (pitches) at which the force of a drive repeats: starting values for their fit.
+"""Spatial periods (pitches) at which a drive's force repeats: starting values for their fit.
 
 The likelihood of a pitch has one maximum for each pitch that the travel can resolve. The width of
 the maxima decreases with the length of the travel, so that a search from a distant start does not
 converge to the highest one. The starting values are therefore the highest lines of the spatial
-spectrum of the force. The dependence of the force on speed, on acceleration and, once per turn, on
-angle is removed before, independently of the law.
+spectrum of the force. Before this, the dependence of the force on speed, acceleration and, once per
+turn, angle is removed, independently of the law.
 
 The maximum over all pitches increases the gain by chance. In noise, the highest line of all
 resolvable pitches has a gain of `2 log(pitches)` in twice the log likelihood. There are fewer
@@ -50,7 +50,7 @@ _forces_of: WeakKeyDictionary[Campaign, tuple[Array, Array, Array]] = WeakKeyDic
 
 
 def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
-    """Most likely pitches of a campaign, m, most likely first; empty if the travel is too short.
+    """Most likely pitches of a campaign, m, the most likely first; empty for a short travel.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def pitches(campaign: Campaign, *, along: bool) -> tuple[float, ...]:
 
 
 def longest_pitch(campaign: Campaign) -> float:
-    """Longest pitch that fits often enough into the travel of the runs, m.
+    """Longest pitch, m, with the required number of periods within the travel of the runs.
 
     The pitch is infinite for runs without travel.
     """
@@ -74,7 +74,7 @@ def longest_pitch(campaign: Campaign) -> float:
 
 
 def known_pitches(rig: Rig) -> tuple[float, ...]:
-    """Travel of one turn of the screw and of the motor, m (rad for a joint), from [drive].
+    """Pitches known from a rig's [drive]: travel per turn of screw and motor, m (rad for a joint).
 
     The result is empty if the rig's [drive] does not determine it.
     """
@@ -89,7 +89,7 @@ def known_pitches(rig: Rig) -> tuple[float, ...]:
 
 
 def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
-    """Pitches of the highest lines in the spatial spectrum of the remaining force."""
+    """Pitches, m, of the highest lines in the spatial spectrum of the remaining force."""
     place, rest, speed = _remaining_force(campaign)
     if len(place) < PADDING * KNOTS:
         return ()
@@ -121,7 +121,7 @@ def _pitches(campaign: Campaign, along: bool) -> tuple[float, ...]:
 
 
 def _wave(signal: Array, place: Array, pitch_m: float) -> Array:
-    """Least-squares fit of the wave of a pitch to a signal."""
+    """Least-squares fit of a cosine and a sine of one pitch to a signal over the position."""
     phase = 2.0 * np.pi * place / pitch_m
     pair = np.stack([np.cos(phase), np.sin(phase)], axis=1)
     solution, *_ = np.linalg.lstsq(pair, signal, rcond=None)
@@ -168,7 +168,7 @@ def _compute_remaining_force(campaign: Campaign) -> tuple[Array, Array, Array]:
 
 
 def _regressors(angle: Array, speed: Array, p: Prepared, moving: Mask, knots: Knots) -> Array:
-    """Regressors of a run's force other than position, shape (n, k)."""
+    """Regressors of the force of a run on speed, acceleration and angle, shape (n, k)."""
     slope = p.motion.acceleration[moving]
     return np.stack([slope, np.cos(angle), np.sin(angle), *_hat_functions(speed, knots)], axis=1)
 
@@ -183,7 +183,7 @@ def _centred_by_direction(rows: Array, speed: Array) -> Array:
 
 
 def _knots(speed: Array) -> Knots:
-    """Knots of a piecewise linear function of speed, for each direction."""
+    """Knots of a piecewise linear function of speed, for each direction of motion."""
     by_direction = []
     for sign in (-1.0, 1.0):
         one_way = speed * sign > 0.0
@@ -204,6 +204,6 @@ def _hat_functions(speed: Array, knots: Knots) -> list[Array]:
 
 
 def _sample_spacing(campaign: Campaign) -> float:
-    """Usual distance between samples, m."""
+    """Typical distance between the positions of successive samples, m."""
     steps = [np.abs(np.diff(p.motion.angle_rad))[m[1:] & m[:-1]] for p, m in campaign.moving]
     return float(np.median(np.concatenate(steps))) * campaign.arm_m

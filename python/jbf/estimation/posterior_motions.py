@@ -1,4 +1,4 @@
-"""Other posteriors of the motion of all runs of a problem."""
+"""Replacement of the estimated (posterior) motions of all runs of a problem by other ones."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jbf.records.motion.smoothing import Smoothed
 
 Array = npt.NDArray[np.float64]
 STEP = 0.5
-"""Step of the numerical derivatives by the motion, in standard errors of the motion.
+"""Step of numerical derivatives with respect to the motion, in standard errors of the motion.
 
 It is a numerical resolution.
 """
@@ -31,7 +31,7 @@ def posteriors(problem: Problem) -> list[Smoothed | None]:
 
 
 def with_posteriors(problem: Problem, motions: Sequence[Smoothed | None]) -> Problem:
-    """Return the problem with other posteriors of the motions; None keeps that of a run."""
+    """Return the problem with other posterior motions; None keeps that of the run."""
     prepared = []
     for p, smoothed in zip(problem.campaign.prepared, motions, strict=True):
         if smoothed is not None:
@@ -47,7 +47,7 @@ def with_posteriors(problem: Problem, motions: Sequence[Smoothed | None]) -> Pro
 
 
 def rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> Problem:
-    """Return the problem with the noise intensity of the motion multiplied by a factor.
+    """Return the problem with the noise intensity of the motion's process times a factor.
 
     See `Smoothed.rougher`.
     """
@@ -56,7 +56,7 @@ def rougher(problem: Problem, factor: float, *, same_corners: bool = False) -> P
 
 
 def with_corners_of_forces(problem: Problem, solution: Solution, errors: ErrorsInMotion) -> Problem:
-    """Return the problem with corners of the motion where the forces require them.
+    """Return the problem with corners of the motion (abrupt speed changes) located by the forces.
 
     See `Smoothed.with_corners_of`.
     """
@@ -85,12 +85,14 @@ def with_corners_of_forces(problem: Problem, solution: Solution, errors: ErrorsI
 
 
 def moved(prepared: Prepared, axis: int) -> tuple[Prepared, Array]:
-    """Return a run with one component of its motion changed, and the change, shape (n,).
+    """Change one component of a run's motion; return the run and the change, shape (n,).
 
-    The change is a fraction of a standard error, in powers of m (or rad) and s.
+    `axis` is 0 for position, 1 for speed and 2 for acceleration. The change is a fraction of a
+    standard error of this component.
     """
 
     def off(motion: EstimatedMotion) -> tuple[EstimatedMotion, Array]:
+        """The motion with one component changed, and the change."""
         errors = motion.errors
         assert errors is not None
         step = STEP * np.sqrt(np.maximum(errors.covariance[:, axis, axis], 0.0))

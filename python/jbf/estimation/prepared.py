@@ -1,4 +1,4 @@
-"""A run prepared for many fits, with its estimated motion as an object of the compiled core."""
+"""A run prepared for many fits, with its estimated motion as an input of the compiled core."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ It is a numerical resolution.
 
 
 def slides(motion: EstimatedMotion) -> Mask:
-    """Mask of the samples where friction has a known direction, shape (n,).
+    """Mask of the samples at which the direction of sliding is known, shape (n,).
 
     At rest, friction balances the force of the drive up to the breakaway level in either direction.
     The residual is therefore undefined at rest. It is also undefined near a reversal.
@@ -52,21 +52,34 @@ def slides(motion: EstimatedMotion) -> Mask:
 
 
 class NoMotion(InputError):
-    """A run without motion, or without a known direction of motion."""
+    """Error for a run without motion, or without a known direction of motion."""
 
 
 def coasting(rig: Rig) -> float | None:
-    """Known mass, kg, or inertia, kg m^2, of a coast-down; None where a friction was recorded."""
+    """Mass, kg, or inertia, kg m^2, of a coast-down; None if the friction was recorded."""
     drive = rig.drive
     return drive.moved if drive is not None and drive.friction == "none" else None
 
 
 @dataclass(frozen=True)
 class Prepared:
-    """One prepared run: its motion, its usual sampling interval, and its recording artefacts.
+    """One prepared run: its estimated motion, corrected force and recording artefacts.
 
-    `Samples` defines which of its samples count. A model is compared with `friction_n`: the
-    readings of the run, corrected for the known quantisation bias of its converter.
+    `Samples` defines which of its samples are included in a fit.
+
+    Attributes
+    ----------
+    rig, run
+        The rig, and the run as read.
+    motion
+        Motion estimated at the times of the force.
+    friction
+        Force with which a model is compared, N: the readings, corrected for the known quantisation
+        bias of their converter.
+    step_s
+        Typical sampling interval, s.
+    examined
+        Recording artefacts of the run.
     """
 
     rig: Rig
@@ -80,27 +93,27 @@ class Prepared:
 
     @property
     def converter_step_n(self) -> float:
-        """Quantisation step of the run's converter, N; zero if it is negligible."""
+        """Quantisation step of the force converter, N; zero if it is negligible."""
         return max((f.size for f in self.examined.findings if f.kind == "steps"), default=0.0)
 
     @property
     def has_noise(self) -> bool:
-        """Whether the record contains the noise of the force.
+        """Whether the friction record contains the noise of a force sensor.
 
-        This is false for a command, a filtered force, or a force derived from the motion.
+        False for a command, a filtered force, or a force derived from the motion.
         """
         read = coasting(self.rig) is None
         return read and all(f.kind != "smooth_force" for f in self.examined.findings)
 
     @property
     def drawn_at_hz(self) -> float:
-        """Sampling rate of the force, Hz, if samples are interpolated; otherwise zero."""
+        """Original sampling rate of the force, Hz, if samples are interpolated; otherwise zero."""
         drawn = (f for f in self.examined.findings if (f.kind, f.unit) == ("interpolated", "Hz"))
         return max((f.size for f in drawn), default=0.0)
 
     @property
     def motion_as_read(self) -> tuple[Array, EstimatedMotion]:
-        """Times at which the motion was read, s, and the motion there."""
+        """Times of the motion readings, s, and the motion at these times."""
         return self.recorded or (self.run.time_s, self.motion)
 
     @classmethod
@@ -112,14 +125,14 @@ class Prepared:
         starts: Sequence[ReadingErrors] = (),
         settings: MotionSettings = DEFAULT.motion,
     ) -> Prepared:
-        """Estimate the motion of a run.
+        """Prepare a run: examine its record and estimate its motion.
 
         Parameters
         ----------
         period_s
             Sampling interval of the force in other runs of the same logger, if known, s.
         starts
-            Errors of the readings of other runs of the same logger.
+            Errors of the motion readings of other runs of the same logger, as starting values.
         settings
             Settings of the motion.
 
@@ -198,12 +211,12 @@ class Prepared:
 
     @property
     def slides(self) -> Mask:
-        """Mask of the samples where friction has a known direction (:func:`slides`), shape (n,)."""
+        """Mask of the samples with a known direction of sliding (:func:`slides`), shape (n,)."""
         return slides(self.motion)
 
     @property
     def readings_n(self) -> Array:
-        """Force readings of the run, N."""
+        """Force readings of the run as recorded, N."""
         assert self.run.friction is not None
         return self.run.friction
 
@@ -213,7 +226,7 @@ class Prepared:
         return replace(self, examined=replace(self.examined, findings=findings))
 
     def shifted(self, late_s: float, drift: float) -> Prepared:
-        """Return the run with its force compared with the motion at an earlier time.
+        """Return the run with its force shifted to earlier times.
 
         Parameters
         ----------
@@ -242,10 +255,10 @@ class Prepared:
 
     @cached_property
     def core(self) -> Driven:
-        """Motion of the run as an object of the compiled core.
+        """Motion of the run as an input of the compiled core.
 
-        If the force was read less often than the motion, the object also contains the motion
-        between the force readings, because the times of starts and reversals matter.
+        If the force was read less often than the motion, the input also contains the motion between
+        the force readings, because the times of starts and reversals matter.
         """
         time = self.run.time_s
         if self.recorded is None:
@@ -263,13 +276,13 @@ class Prepared:
     def __getstate__(self) -> dict[str, Any]:
         """Return the state for pickling, without the object of the compiled core.
 
-        The object is created again after unpickling.
+        That object is created again at the first access after unpickling.
         """
         return {name: value for name, value in vars(self).items() if name != "core"}
 
 
 def _independent(motion: EstimatedMotion, spacing: float) -> Mask:
-    """Mask of samples whose acceleration errors are independent, shape (n,).
+    """Mask of samples so far apart that their acceleration errors are independent, shape (n,).
 
     The covariance of the errors at two times is the product of the smoother gains between them and
     the covariance at the later time.
@@ -287,7 +300,7 @@ def _independent(motion: EstimatedMotion, spacing: float) -> Mask:
 
 
 def _of_readings(run: Run, motion: EstimatedMotion, examined: Examined) -> list[Finding]:
-    """Findings on the force readings in relation to the motion."""
+    """Findings on the force readings of a run in relation to its motion."""
     wrong_sign = find_wrong_sign(run, motion, examined.usable)
     if any(f.kind == "steps" for f in examined.findings):
         return [*wrong_sign]  # quantisation steps count as noise
@@ -295,7 +308,7 @@ def _of_readings(run: Run, motion: EstimatedMotion, examined: Examined) -> list[
 
 
 def _derived(run: Run, moved: float) -> Finding:
-    """Finding that the friction was derived from the deceleration."""
+    """Finding that the friction was derived from the deceleration of a mass or inertia `moved`."""
     quantities = run.quantities
     mass = f"{moved:.5g} {quantities.unit('kg')}"
     words = f"the {quantities.noun} is computed as {mass} times the deceleration"

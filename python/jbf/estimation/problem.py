@@ -1,7 +1,7 @@
-"""A campaign, a law and effects: predictions and derivatives in the search variables.
+"""Fitting problem of a law with effects: predictions and Jacobian in the search variables.
 
 The search variable of a scale parameter is its logarithm, so that the parameter remains positive
-and a step is a ratio.
+and a step changes it by a factor.
 """
 
 from __future__ import annotations
@@ -40,10 +40,13 @@ from jbf.records.toml_file import number
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Lines = tuple[list[Array], list[Array]]
-"""Residuals and derivatives of the prediction by the search variables, one array per run each."""
+"""Residuals, and Jacobian of the prediction in the search variables, one array per run each."""
 
 SLOPES_COST = 2.0
-"""Cost of a prediction with derivatives relative to one without. It limits the effort only."""
+"""Computing cost of a prediction with derivatives, relative to one without derivatives.
+
+It limits the effort only.
+"""
 BOUNDLESS = 1e50
 """Derivatives above this are treated as diverged, since a search squares them.
 
@@ -52,7 +55,7 @@ It is a numerical tolerance.
 
 
 class Best:
-    """The best values seen by a search, for use if it is stopped early."""
+    """Parameter values with the smallest sum of squares so far, if a search is stopped."""
 
     def __init__(self) -> None:
         self.values: Array | None = None
@@ -65,7 +68,7 @@ class Best:
 
 
 class Problem:
-    """A fitting problem: the parameters of a law and effects, some of them held, for a campaign."""
+    """Fitting problem for a campaign: the parameters of a law and its effects, some held fixed."""
 
     def __init__(
         self,
@@ -114,7 +117,7 @@ class Problem:
         return values
 
     def wrapped(self, values: Array) -> Array:
-        """Return values with angles wrapped into (-period/2, period/2]."""
+        """Return parameter values with angles wrapped into the interval (-period/2, period/2]."""
         values = values.copy()
         for i, page in enumerate(self.parameters.values()):
             if page.period is not None:
@@ -122,7 +125,7 @@ class Problem:
         return values
 
     def starts(self, seed: Mapping[str, float]) -> list[Array]:
-        """Return all combinations of starting values for the parameters that `seed` lacks."""
+        """All combinations of starting values of the parameters for which `seed` has no value."""
         choices = [
             (seed[name],) if name in seed else page.starts for name, page in self.parameters.items()
         ]
@@ -131,13 +134,13 @@ class Problem:
     # ---- predictions ------------------------------------------------------------------------
 
     def predict(self, values: Array, selection: Sequence[int] | None = None) -> list[Array]:
-        """Predictions, N, one array per run; `selection` selects runs."""
+        """Predicted friction, N, one array per run; `selection` has the indices of the runs."""
         motions = [p.core for p in self._runs(selection)]
         self.campaign.work.take(self.chain.inner_steps(values, motions))
         return self.chain.predict(values, motions)
 
     def residuals(self, values: Array, selection: Sequence[int] | None = None) -> list[Array]:
-        """Record minus prediction, N, one array per run; `selection` selects runs."""
+        """Record minus prediction, N, one array per run; `selection` has indices of runs."""
         runs = self._runs(selection)
         return [p.friction - f for f, p in zip(self.predict(values, selection), runs, strict=True)]
 
@@ -147,9 +150,9 @@ class Problem:
         selection: Sequence[int] | None = None,
         by: Sequence[int] | None = None,
     ) -> Lines:
-        """Residuals and derivatives of the prediction with respect to the search variables.
+        """Residuals, N, and Jacobian of the prediction in the search variables, one array per run.
 
-        `selection` selects runs, and `by` selects parameters.
+        `selection` has the indices of the runs, and `by` those of the parameters.
         """
         runs, by = self._runs(selection), self.open if by is None else by
         scale = np.where(self.log, values, 1.0)[by]
@@ -162,7 +165,7 @@ class Problem:
     def gauss_newton_rows(
         self, values: Array, samples: Samples, noise: Noise, lines: Lines | None = None
     ) -> tuple[Array, Array, int]:
-        """Innovations and their derivatives in triangular form, and the number of innovations.
+        """Innovations and their Jacobian in triangular form, and the number of innovations.
 
         The triangular form (`triangular`) has fewer rows and the same inner products. The rows are
         computed from `lines`, the result of :meth:`linearise`, if it is given.
@@ -181,7 +184,7 @@ class Problem:
 
     @property
     def fits_in_memory(self) -> bool:
-        """Whether the derivatives at all samples fit into the memory limit."""
+        """Whether the Jacobian at all samples fits into the memory limit."""
         samples = sum(len(p.friction) for p in self.campaign.prepared)
         return samples * len(self.open) <= MOST_HELD
 
@@ -193,7 +196,7 @@ class Problem:
 
     @cached_property
     def thinned(self) -> Problem:
-        """The problem for the runs in `searched`."""
+        """Problem restricted to the runs in `searched`."""
         selection = self.searched
         if len(selection) == len(self.campaign.prepared):
             return self
@@ -208,6 +211,7 @@ class Problem:
         return problem
 
     def _runs(self, selection: Sequence[int] | None) -> Sequence[Prepared]:
+        """Prepared runs with the indices in `selection`; all if it is None."""
         runs = self.campaign.prepared
         return runs if selection is None else [runs[i] for i in selection]
 
@@ -217,7 +221,7 @@ class Problem:
         return samples.square(self.residuals(values))
 
     def samples_at(self, values: Array, lines: Lines | None = None) -> Samples:
-        """Samples with the weights that the model at these values implies.
+        """Samples with the weights that the model implies at these parameter values.
 
         `lines` holds the residuals at these values, if they are known.
         """
@@ -262,7 +266,7 @@ class Problem:
         message: str = "",
         lines: Lines | None = None,
     ) -> Solution:
-        """Return the solution at given values, on given samples.
+        """Compute the solution object for given parameter values and samples.
 
         It is computed from `lines`, the result of :meth:`linearise`, if it is given.
         """
@@ -283,7 +287,7 @@ class Problem:
 
 
 def bounded(jacobian: Array, scale: Array) -> Array:
-    """Derivatives with respect to the search variables; zero where they have diverged.
+    """Scale a Jacobian to the search variables, and set columns that have diverged to zero.
 
     Derivatives may diverge if the integration step is too coarse for extreme parameters. The search
     rejects such parameters because of their large residuals.

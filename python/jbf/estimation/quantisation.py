@@ -1,4 +1,4 @@
-"""Quantisation bias of a mean reading.
+"""Quantisation bias of the mean reading of a converter.
 
 The mean of readings with step q of a force f with Gaussian noise of standard deviation s is
 biased. The first and largest harmonic of the bias is
@@ -16,7 +16,7 @@ from scipy import optimize
 
 Array = npt.NDArray[np.float64]
 MOST_NOISE = 3.0
-"""Largest noise that is considered, in steps; above it the quantisation is not visible.
+"""Largest noise that is considered, in steps; at larger noise the quantisation is negligible.
 
 It bounds a search only.
 """
@@ -71,9 +71,9 @@ def bias_rms(step_n: float, noise_rms: float) -> float:
 
 
 def noise_before_converter(step_n: float, moves_n: Array) -> float:
-    """Standard deviation of the noise before the converter, N.
+    """Estimate the standard deviation of the noise before the converter, N, from equal readings.
 
-    It follows from the fraction of readings that equal the preceding one. Two values a Gaussian
+    The estimate uses the fraction of readings that equal the preceding one. Two values a Gaussian
     distance d apart, at a random position within the steps, give the same reading with probability
     `E max(0, 1 - |d| / q)`. Third differences would count the quantisation steps as noise.
 
@@ -89,6 +89,7 @@ def noise_before_converter(step_n: float, moves_n: Array) -> float:
     same = float(np.mean(np.abs(moves_n) < 0.5 * step_n))
 
     def excess(noise: float) -> float:
+        """Predicted minus observed fraction of equal successive readings."""
         return _same(noise) - same
 
     if excess(1e-3) <= 0.0:

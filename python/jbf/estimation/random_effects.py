@@ -20,14 +20,14 @@ from jbf.estimation.noise import Noise
 
 Array = npt.NDArray[np.float64]
 ROUNDING = 1e-9
-"""Fraction of the total precision below which the precision of other runs is a rounding error.
+"""Fraction of the total precision below which that of the other runs is treated as zero.
 
 It is a numerical tolerance.
 """
 
 
 def spread_between(estimates: Array, precisions: Array) -> tuple[float, float, float]:
-    """Standard deviation between runs, its p-value, and Cochran's Q over its degrees of freedom.
+    """Between-run standard deviation, its p-value, and Cochran's Q over its degrees of freedom.
 
     The standard deviation is zero if the runs differ by no more than their errors.
 
@@ -50,7 +50,7 @@ def spread_between(estimates: Array, precisions: Array) -> tuple[float, float, f
 
 @dataclass(frozen=True, eq=False)
 class RandomEffects:
-    """Random effects: deviations of the runs from the campaign.
+    """Random effects of a set of runs: Gaussian deviations of each run from the campaign.
 
     Attributes
     ----------
@@ -68,11 +68,11 @@ class RandomEffects:
     sigma_n: float
 
     def only(self, selection: Sequence[int]) -> RandomEffects:
-        """Return the random effects of a selection of runs."""
+        """Return the random effects of the runs with these indices."""
         return replace(self, directions=tuple(self.directions[i] for i in selection))
 
     def without(self, name: str) -> RandomEffects | None:
-        """Return the random effects except `name`; None if no other exists."""
+        """Return the random effects except `name`; None if it is the only one."""
         kept = [k for k, other in enumerate(self.names) if other != name]
         if not kept:
             return None
@@ -90,6 +90,7 @@ class RandomEffects:
         share = (1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None]
 
         def white(values: Array) -> Array:
+            """Weighted innovations of values of the run."""
             columns = values if values.ndim == 2 else values[:, None]
             return np.asarray((columns - u @ (share * (u.T @ columns))).reshape(values.shape))
 
@@ -118,12 +119,12 @@ class RandomEffects:
         return np.asarray(self.directions[run] @ size)
 
     def _basis(self, run: int, weight: Array, step_s: float, noise: Noise) -> tuple[Array, Array]:
-        """Orthonormal directions of the random effects, (n, q), and their sizes, (q,)."""
+        """Orthonormal basis of the random effects of a run, (n, q), and their sizes, (q,)."""
         n = self._innovations(run, weight, step_s, noise)
         u, size, _ = np.linalg.svd(n, full_matrices=False)
         return u, size
 
     def _innovations(self, run: int, weight: Array, step_s: float, noise: Noise) -> Array:
-        """Innovations of the directions of a run, in standard deviations, shape (n, q)."""
+        """Whitened contributions of the random effects to a run, in standard deviations, (n, q)."""
         directions = self.directions[run] * weight[:, None]
         return noise.innovations(directions, step_s)[weight > 0.0] / self.sigma_n

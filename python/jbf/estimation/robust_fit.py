@@ -31,21 +31,26 @@ FREEDOM = 3.0
 ROUNDS = 4
 """Number of iterations of weights and fits. It limits the effort only."""
 ELSEWHERE = 0.05
-"""Difference of predictions, as a fraction of the residual's RMS, above which estimates differ.
+"""Difference of two models' predictions above which their estimates differ.
+
+It enters no verdict.
+
+The difference is a fraction of the residual's RMS.
+"""
+BETTER = 0.97
+"""Ratio of held-out RMS values below which one of them counts as smaller.
 
 It enters no verdict.
 """
-BETTER = 0.97
-"""Ratio of held-out RMS values below which one counts as smaller. It enters no verdict."""
 NO_WORSE, SHARPER = 1.02, 0.8
-"""Ratio of held-out RMS values that is accepted, and ratio of medians required with it.
+"""Accepted ratio of held-out RMS values, if the ratio of the medians is at most the second value.
 
 It enters no verdict.
 """
 
 
 def best_weighting(problem: Problem, plain: Solution) -> Solution:
-    """Return the solution with the smallest held-out error: `plain` or one with robust weights."""
+    """Choose between least squares (`plain`) and robust weights by the held-out error."""
     best: Solution = plain
     errors: Array | None = None
     for weights in (huber, student):
@@ -61,7 +66,7 @@ def best_weighting(problem: Problem, plain: Solution) -> Solution:
 
 
 def _better(robust_errors: Array, errors: Array) -> bool:
-    """Whether held-out errors are smaller: in their RMS or in their median.
+    """Whether the errors of a robust fit are smaller than others, in their RMS or their median.
 
     The median is used if outliers dominate the RMS, provided that the RMS does not clearly
     increase.
@@ -72,12 +77,15 @@ def _better(robust_errors: Array, errors: Array) -> bool:
 
 
 def huber(residual: Array) -> Array:
-    """Square roots of Huber's weights for absolute residuals in standard deviations."""
+    """Square roots of the Huber weights of absolute residuals given in standard deviations."""
     return np.asarray(np.sqrt(np.minimum(1.0, TUNING / np.maximum(residual, 1e-300))))
 
 
 def student(residual: Array) -> Array:
-    """Square roots of Student's t weights; outliers have almost no weight (Lange et al. 1989)."""
+    """Square roots of the weights of Student's t for absolute residuals in standard deviations.
+
+    Outliers have almost no weight (Lange et al. 1989).
+    """
     return np.asarray(np.sqrt((FREEDOM + 1.0) / (FREEDOM + residual**2)))
 
 

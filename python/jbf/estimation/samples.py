@@ -1,11 +1,11 @@
 """Selection and weights of samples for a model, by run.
 
 The likelihood, the score tests and all tests of the residual structure of a model use the same
-selection and weights. A sample does not count in three cases. Within a few samples of a reversal,
-the record does not determine the sign of the friction. Position and speed may contradict each
-other. At rest, friction balances the force of the drive up to the breakaway level, and a law
-predicts no value. A model may exclude further samples (`jumps`). A fit uses the weight of each
-sample; a test uses the samples that count.
+selection and weights. A sample is excluded in three cases. Within a few samples of a reversal, the
+record does not determine the sign of the friction. Position and speed may contradict each other. At
+rest, friction balances the force of the drive up to the breakaway level, and a law predicts no
+value. A model may exclude further samples (`jumps`). A fit uses the weight of each sample; a test
+uses the included samples only (`counted`).
 """
 
 from __future__ import annotations
@@ -30,20 +30,19 @@ T = TypeVar("T", bound=np.generic)
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """The samples of a set of runs; every tuple has one entry per run.
+    """Included samples of a set of runs, with their weights; every tuple has one entry per run.
 
     Attributes
     ----------
     runs
         Names of the runs.
     steps_s
-        Usual sampling interval of each run, s.
+        Typical sampling interval of each run, s.
     counted
         True at the samples that tests, RMS and noise use, shape (n,).
     weight
-        Weight of each sample in a fit, 0 to 1, shape (n,). The weight is 1 for a sample that
-        counts. It is smaller next to a jump whose time is fitted, and for a sample with larger
-        noise.
+        Weight of each sample in a fit, 0 to 1, shape (n,). The weight is 1 for an ordinary sample.
+        It is smaller next to a jump whose time is fitted, and for a sample with larger noise.
     between
         Random effects of the runs; None if none are known.
     level
@@ -67,7 +66,7 @@ class Samples:
 
     @classmethod
     def of(cls, prepared: Iterable[Prepared], settings: Settings = DEFAULT) -> Samples:
-        """Select the samples that slide in a known direction and have a usable reading."""
+        """Select the samples with a known direction of sliding and a usable reading."""
         prepared = tuple(prepared)
         counted = tuple(p.slides & p.examined.usable for p in prepared)
         return cls(
@@ -80,13 +79,13 @@ class Samples:
 
     @property
     def count(self) -> int:
-        """Number of samples that count, in all runs."""
+        """Number of included samples in all runs."""
         return sum(int(c.sum()) for c in self.counted)
 
     # ---- parts ------------------------------------------------------------------------------
 
     def only(self, selection: Sequence[int]) -> Samples:
-        """Return the samples of a selection of runs."""
+        """Return the samples of the runs with these indices."""
         return Samples(
             tuple(self.runs[i] for i in selection),
             tuple(self.steps_s[i] for i in selection),
@@ -99,7 +98,7 @@ class Samples:
         )
 
     def within(self, masks: Sequence[Mask]) -> Samples:
-        """Return the samples within masks, one per run."""
+        """Restrict the included samples to those that are True in the masks, one mask per run."""
         return replace(
             self,
             counted=tuple(c & m for c, m in zip(self.counted, masks, strict=True)),
@@ -112,7 +111,7 @@ class Samples:
         robust: Sequence[Array],
         between: RandomEffects | None,
     ) -> Samples:
-        """Return the samples with further weights and random effects.
+        """Return the samples with other weights and random effects.
 
         Parameters
         ----------
@@ -129,24 +128,24 @@ class Samples:
         return replace(self, weight=weight, between=between, level=levels)
 
     def with_known_motion(self) -> Samples:
-        """Return the samples where the motion's errors have at most the variance of the noise."""
+        """Restrict to samples where the motion's errors have at most the variance of the noise."""
         if self.motion is None:
             return self
         return self.within([self.motion.variance_ratio(i) <= 1.0 for i in range(len(self.runs))])
 
     def tested(self) -> Samples:
-        """Return the samples with zero weight for those that do not count."""
+        """Return the samples with zero weight for excluded ones."""
         weight = tuple(np.where(c, w, 0.0) for c, w in zip(self.counted, self.weight, strict=True))
         return replace(self, weight=weight)
 
     # ---- sizes ------------------------------------------------------------------------------
 
     def flat(self, values: Sequence[npt.NDArray[T]]) -> npt.NDArray[T]:
-        """Concatenated values of the samples that count, over all runs."""
+        """Values of the included samples of all runs, concatenated."""
         return np.concatenate([v[c] for v, c in zip(values, self.counted, strict=True)])
 
     def rms(self, residuals: Sequence[Array]) -> float:
-        """Root mean square of residuals over the samples that count, N."""
+        """Root mean square of residuals over the included samples, N."""
         total = sum(float(np.sum(r[c] ** 2)) for r, c in zip(residuals, self.counted, strict=True))
         return float(np.sqrt(total / max(self.count, 1)))
 
@@ -163,10 +162,10 @@ class Samples:
         noise: Noise,
         selection: Sequence[int] | None = None,
     ) -> tuple[Array, Array]:
-        """Weighted innovations as one vector, and their derivatives as one matrix.
+        """Weighted innovations of all runs as one vector, and their Jacobian as one matrix.
 
-        `selection` selects runs. A sample without weight is a gap: a zero is passed to the noise
-        filter there.
+        `selection` has the indices of the runs. A sample without weight is a gap: a zero is passed
+        to the noise filter there.
         """
         if self.motion is not None:
             return self.motion.stacked(residuals, jacobian, self.weight, selection)
@@ -185,7 +184,7 @@ class Samples:
         return np.concatenate(r), np.concatenate(j)
 
     def cost(self, residuals: Sequence[Array], noise: Noise) -> float:
-        """Return `n log(mean square innovation)`: -2 x log likelihood, up to a constant."""
+        """Cost of residuals: ``n log(mean square innovation)``, -2 x log likelihood + constant."""
         if self.between is not None or self.motion is not None:
             empty = [np.zeros((len(r), 0)) for r in residuals]
             r, _ = self.stacked(residuals, empty, noise)
@@ -194,7 +193,7 @@ class Samples:
         return innovation_cost(noise, weighted, self.steps_s, [w > 0.0 for w in self.weight])
 
     def without_deviations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Residuals minus the predicted random effects of their runs, N."""
+        """Residuals without the predicted random effects of their runs, N, one array per run."""
         if self.between is None:
             return list(residuals)
         return [
@@ -203,13 +202,13 @@ class Samples:
         ]
 
     def weighted_innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
-        """Innovations of weighted residuals, one array per run; zero without weight."""
+        """Innovations of weighted residuals, one array per run; zero at samples without weight."""
         return self._innovations(residuals, noise, self.weight, [w > 0.0 for w in self.weight])
 
     def innovations(self, residuals: Sequence[Array], noise: Noise) -> list[Array]:
         """Innovations for tests, one array per run, scaled to the smallest noise level.
 
-        They are zero where a sample does not count.
+        They are zero at excluded samples.
         """
         weights = [c * w for c, w in zip(self.counted, self.weight, strict=True)]
         return self._innovations(residuals, noise, weights, self.counted)

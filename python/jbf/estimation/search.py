@@ -22,12 +22,12 @@ from jbf.estimation.samples import Samples
 
 Array = npt.NDArray[np.float64]
 NEAR = 0.3
-"""Largest relative difference of each parameter between two points that are close.
+"""Largest relative difference of each parameter between two points compared for equivalence.
 
 It is a numerical tolerance.
 """
 SAME = 0.1
-"""Largest difference of the predictions at equivalent points, as a fraction of the residual.
+"""Largest difference of predictions at equivalent points, as a fraction of the residual.
 
 Both linear models must give at most this difference; the sums of squares then differ by about one
 hundredth. It is a numerical tolerance.
@@ -35,17 +35,20 @@ hundredth. It is a numerical tolerance.
 ENDED = 1e-6
 """Relative difference of sums of squares at which a search ends. It is a numerical tolerance."""
 REACH = 5.0
-"""Range of the scan, as a factor on the value upwards and downwards. It bounds a search only."""
+"""Range of a scan for other maxima, as a factor on the value upwards and downwards.
+
+It bounds a search only.
+"""
 POINTS = 41
-"""Number of points of the scan. It is a numerical resolution."""
+"""Number of points of a scan for other maxima. It is a numerical resolution."""
 CLIMBED = 2
-"""Number of maxima that are followed by a search. It limits the effort only."""
+"""Number of maxima of a scan that are followed by a search. It limits the effort only."""
 Method = Literal["dogbox", "trf"]
 
 
 @dataclass(frozen=True)
 class SearchPoint:
-    """A point of a search with its innovations and derivatives.
+    """A point of a search with its innovations and their Jacobian.
 
     Attributes
     ----------
@@ -70,16 +73,16 @@ class SearchPoint:
 
 @dataclass
 class Visited:
-    """Points of one likelihood that searches have visited.
+    """Points of one objective function that searches have visited.
 
     Attributes
     ----------
     points
         Point by the key of its parameter values.
     ended
-        Path of each search that ended.
+        Points of each search that ended, in order.
     lowest
-        Lowest point, with the residuals and derivatives of all samples.
+        Point with the smallest sum of squares, with residuals and Jacobian of all samples.
     """
 
     points: dict[bytes, SearchPoint] = field(default_factory=dict)
@@ -87,13 +90,13 @@ class Visited:
     lowest: tuple[SearchPoint, Lines] | None = None
 
     def store(self, point: SearchPoint, lines: Lines | None) -> None:
-        """Store a point, and the residuals and derivatives of all samples at the lowest point."""
+        """Store a point; residuals and Jacobian of all samples are kept for the lowest one."""
         self.points[_key(point.values)] = point
         if lines is not None and (self.lowest is None or point.square < self.lowest[0].square):
             self.lowest = (point, lines)
 
     def lines_at(self, values: Array) -> Lines | None:
-        """Residuals and derivatives at the lowest point; None unless `values` are those of it."""
+        """Residuals and Jacobian at the lowest point if it has these values, otherwise None."""
         if self.lowest is None or self.at(values) is not self.lowest[0]:
             return None
         return self.lowest[1]
@@ -113,7 +116,7 @@ class Visited:
 
 @dataclass(frozen=True)
 class SearchResult:
-    """Result of a search: parameter values, whether it converged, and the reason for its end."""
+    """Result of a search: parameter values, whether it converged, and why it ended."""
 
     values: Array
     converged: bool
@@ -121,7 +124,7 @@ class SearchResult:
 
 
 class _Joined(Exception):
-    """The search has reached a point that another search has visited."""
+    """Signal that a search has reached a point that another search has visited."""
 
 
 def search(
@@ -150,6 +153,7 @@ def search(
     path: list[SearchPoint] = []
 
     def evaluate(x: Array) -> SearchPoint:
+        """Point of the search at the variables `x`, evaluated at most once."""
         values = problem.decode(x, start)
         point = memory.at(values)
         if point is None:
@@ -168,9 +172,11 @@ def search(
         return point
 
     def residual(x: Array) -> Array:
+        """Innovations at the variables `x`, in triangular form."""
         return -evaluate(x).residual
 
     def jacobian(x: Array) -> Array:
+        """Jacobian of the innovations at the variables `x`, in triangular form."""
         return evaluate(x).jacobian
 
     low, high = problem.encode(problem.lower), problem.encode(problem.upper)
@@ -203,14 +209,14 @@ def search(
 
 
 def _key(values: Array) -> bytes:
-    """Key of parameter values, insensitive to rounding errors in their last bits."""
+    """Dictionary key of parameter values, insensitive to rounding errors in their last bits."""
     part, power = np.frexp(values)
     key: Array = np.ldexp(np.round(np.ldexp(part, 44)), power - 44)
     return key.tobytes()
 
 
 def _joins(point: SearchPoint, other: list[SearchPoint]) -> bool:
-    """Whether a point is equivalent to one of another search that ended as low or lower."""
+    """Whether a point is equivalent to one of another search that ended at most as high."""
     if min(visited.square for visited in other) > (1.0 + ENDED) * point.square:
         return False
     return any(_equivalent(point, visited) for visited in other)
@@ -231,7 +237,7 @@ def _equivalent(a: SearchPoint, b: SearchPoint) -> bool:
 def other_peaks(
     square: Callable[[Array], float], values: Array, index: int, lower: float, upper: float
 ) -> list[Array]:
-    """Best local minima of `square` along one parameter, except the current one.
+    """Best local minima of `square` as a function of one parameter, except the current one.
 
     Parameters
     ----------
@@ -247,6 +253,7 @@ def other_peaks(
     scanned = scanned[(scanned > lower) & (scanned < upper)]
 
     def with_value(value: float) -> Array:
+        """Parameter values in which the scanned parameter has this value."""
         moved: Array = values.copy()
         moved[index] = value
         return moved

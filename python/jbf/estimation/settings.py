@@ -1,4 +1,4 @@
-"""Settings of the estimation: every number in it that influences a verdict, by concern.
+"""Settings of the estimation: every number in it that influences a verdict, by topic.
 
 A diagnosis passes them as the field `estimation` of its policy. They belong to the samples of a
 campaign (`Samples.settings`), so that each statistic of these samples uses the same ones.
@@ -12,13 +12,13 @@ from typing import Any
 
 
 def documented(default: Any, decides: str, source: str) -> Any:
-    """Return a dataclass field with its default, what it decides, and the source of the value."""
+    """Dataclass field with a default, what it decides, and the source of the value."""
     return field(default=default, metadata={"decides": decides, "source": source})
 
 
 @dataclass(frozen=True)
 class NoiseSettings:
-    """Noise model of the force, and noise floor of the records."""
+    """Settings for the noise model of the force and the noise floor of the records."""
 
     longest_memory_s: float = documented(
         0.6,
@@ -71,7 +71,7 @@ class NoiseSettings:
 
 @dataclass(frozen=True)
 class VarianceSettings:
-    """Long-run (HAC) variance of scores."""
+    """Settings for the long-run (HAC) variance of scores."""
 
     window_s: float = documented(
         3.0, "length of the windows, s", "five times the longest correlation time of a noise model"
@@ -93,7 +93,7 @@ class VarianceSettings:
 
 @dataclass(frozen=True)
 class BlockSettings:
-    """Blocks of the residual whose signs are reversed to calibrate the threshold."""
+    """Settings for the blocks of the residual whose signs are reversed in the wild bootstrap."""
 
     min_length_s: float = documented(
         1.0, "minimum length of a block, s", "longer than the longest correlation time of noise"
@@ -105,7 +105,7 @@ class BlockSettings:
 
 @dataclass(frozen=True)
 class ConditionSettings:
-    """Operating conditions that the runs must cover for an effect to be a candidate."""
+    """Ranges of operating conditions that the runs must cover for an effect to be a candidate."""
 
     min_load_difference: float = documented(
         0.05, "minimum relative difference for two loads to count as different", "convention"
@@ -130,7 +130,7 @@ class ConditionSettings:
 
 @dataclass(frozen=True)
 class FilmSettings:
-    """Films that the records can resolve."""
+    """Limits for films that the records can resolve."""
 
     max_steps: float = documented(
         200.0,
@@ -154,7 +154,7 @@ class FilmSettings:
 
 @dataclass(frozen=True)
 class TransientSettings:
-    """Initial-state transients, which are excluded from a fit."""
+    """Settings for the exclusion of initial-state transients from a fit."""
 
     max_difference: float = documented(
         0.2,
@@ -207,7 +207,7 @@ class TransientSettings:
 
 @dataclass(frozen=True)
 class JumpSettings:
-    """Samples next to jumps of the predicted friction."""
+    """Settings for the detection of friction jumps, and of samples with an uncertain jump time."""
 
     min_share: float = documented(
         0.1, "share of the largest friction above which a change may be a jump", "convention"
@@ -226,7 +226,7 @@ class JumpSettings:
 
 @dataclass(frozen=True)
 class DelaySettings:
-    """Time delays of the force by run, and drift of its clock."""
+    """Settings for time delays of the force by run, and for the drift of its clock."""
 
     linear_s: float = documented(
         8e-3,
@@ -267,7 +267,7 @@ class DelaySettings:
 
 @dataclass(frozen=True)
 class QuantisationSettings:
-    """Bias of readings by coarse quantisation."""
+    """Settings for the bias of readings by coarse quantisation."""
 
     remaining_bias: float = documented(
         0.3,
@@ -278,7 +278,7 @@ class QuantisationSettings:
 
 @dataclass(frozen=True)
 class HeldOutSettings:
-    """Held-out errors of prediction."""
+    """Settings for held-out prediction errors."""
 
     max_folds: int = documented(
         12, "number of folds above which groups of runs are held out together", "computing time"
@@ -304,7 +304,7 @@ class HeldOutSettings:
 
 @dataclass(frozen=True)
 class MotionSettings:
-    """Errors of the estimated motion in the likelihood."""
+    """Settings for errors of the estimated motion in the likelihood."""
 
     coast_down_spacing: float = documented(
         2.0,
@@ -365,7 +365,7 @@ class MotionSettings:
 
 @dataclass(frozen=True)
 class PeriodSettings:
-    """Detection of motions that repeat, whose records are replicates."""
+    """Settings for the detection of periodic motions, whose records are replicates."""
 
     min_samples: int = documented(
         100, "minimum number of samples for a run to be tested for a period", "convention"
@@ -384,7 +384,7 @@ class PeriodSettings:
 
 @dataclass(frozen=True)
 class Settings:
-    """Numbers of the estimation that influence a verdict, by concern."""
+    """Settings of the estimation that influence a verdict, by topic."""
 
     noise: NoiseSettings = NoiseSettings()
     variance: VarianceSettings = VarianceSettings()
@@ -401,4 +401,4 @@ class Settings:
 
 
 DEFAULT = Settings()
-"""Settings where none are given."""
+"""Default settings of the estimation."""

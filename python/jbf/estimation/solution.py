@@ -17,10 +17,12 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Parameter values of a model, with the quantities derived from them.
+    """Parameter values of a fitted model, with residuals, Jacobian and noise model.
 
     Attributes
     ----------
+    effects
+        Effects of the model.
     values
         Parameter values, shape (k,).
     residuals
@@ -28,11 +30,15 @@ class Solution:
     jacobian
         Derivative of the prediction with respect to each search variable, one (n, k) a run. For
         large numbers of samples, both are computed at each access.
+    noise
+        Noise model of the residuals.
     cost
         `n log(mean square innovation)` over weighted samples.
+    converged, message
+        Convergence flag and message of the search.
     samples
         Samples used by the model at these values: fewer than those of the campaign if an effect
-        moves the times of jumps.
+        shifts friction jumps in time.
     systematic
         Systematic error of each search variable, shape (k,): its change if the motion is smoothed
         less, and between fits of similar likelihood. None where the errors of the motion are
@@ -57,9 +63,9 @@ class Solution:
 
     @cached_property
     def rms(self) -> float:
-        """Root mean square of the residuals over the samples that count, N."""
+        """Root mean square of the residuals over the included samples, N."""
         return self.samples.rms(self.residuals)
 
     def stacked(self) -> tuple[Array, Array]:
-        """Innovations of the residuals and of the derivatives, over weighted samples."""
+        """Innovations (whitened residuals) and their Jacobian, for weighted samples of all runs."""
         return self.samples.stacked(self.residuals, self.jacobian, self.noise)

@@ -34,12 +34,12 @@ SINGULAR = 1e12
 It is a numerical tolerance.
 """
 TAKES_PART = 1e-3
-"""Weight in an unidentifiable combination above which a parameter takes part in it.
+"""Weight of a parameter in an unidentifiable combination above which it is unidentifiable.
 
 It is a numerical tolerance.
 """
 BENT = 0.3
-"""Permitted deviation from one of the rise of the deviance at one standard error.
+"""Accepted deviation from one of the rise of the deviance one standard error from the minimum.
 
 It enters no verdict.
 """
@@ -75,12 +75,12 @@ class StandardErrors:
     separate: Mask
 
     def error(self, k: int) -> float:
-        """Standard error in the parameter's unit; nan if it is unknown."""
+        """Standard error of the free parameter `k` in its unit; nan if it is unknown."""
         return float(self.sd[k] * self.inflation[k] * self.scale[k])
 
 
 def standard_errors(problem: Problem, solution: Solution) -> StandardErrors:
-    """Compute the uncertainty of the free parameters at a solution."""
+    """Compute the standard errors and correlations of the free parameters at a solution."""
     r, j = solution.stacked()
     free = j.shape[1]
     variance = float(r @ r) / max(len(r) - free, 1)
@@ -112,7 +112,7 @@ def standard_errors(problem: Problem, solution: Solution) -> StandardErrors:
 
 
 def _inflation(solution: Solution, covariance: Array, sensitive: Mask) -> Array:
-    """Ratio of each robust standard error to that from the curvature, shape (k,).
+    """Ratio of robust (HAC) to curvature-based standard error of each parameter, shape (k,).
 
     The variance of the score is estimated from the innovations within runs (Newey & West 1987) and
     between runs; the larger one is used.
@@ -138,7 +138,7 @@ def _inflation(solution: Solution, covariance: Array, sensitive: Mask) -> Array:
 
 
 def _separate(normal: Array) -> Mask:
-    """Mask of the parameters that take no part in an unidentifiable combination."""
+    """Mask of the parameters that are part of no unidentifiable combination."""
     sizes, axes = np.linalg.eigh(normal)
     unseen = axes[:, sizes * SINGULAR < sizes[-1]]
     return np.asarray(np.linalg.norm(unseen, axis=1) < TAKES_PART)
@@ -147,7 +147,7 @@ def _separate(normal: Array) -> Mask:
 def doubtful_errors(
     problem: Problem, solution: Solution, parameters: Mapping[str, ParameterValue]
 ) -> tuple[str, ...]:
-    """Names of the parameters, other than held ones, whose standard error is not valid.
+    """Names of estimated parameters whose standard error is not valid.
 
     Notes
     -----

@@ -25,14 +25,14 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Starts = tuple[float, ...]
 CELL_ERROR = 0.03
-"""Initial error of a load cell in a search, as a fraction of the largest force.
+"""Starting value of a load-cell error, as a fraction of the largest force.
 
 It only starts a search.
 """
 SHORTEST_M = 1e-9
-"""Shortest stroke, m; used for a drive that does not move. It is a numerical tolerance."""
+"""Lower limit of a stroke, m, which is used for a drive that does not move."""
 BEYOND = 0.1
-"""Margin of the stroke at either end, as a fraction of the travel of the runs.
+"""Margin added to the stroke at either end, as a fraction of the travel of the runs.
 
 Waves whose slope vanishes at the ends of the stroke can then describe a slope at those of the runs.
 It defines an effect, not a criterion.
@@ -41,17 +41,17 @@ It defines an effect, not a criterion.
 
 @dataclass(frozen=True)
 class Scales:
-    """Typical magnitudes of a campaign.
+    """Typical magnitudes of the friction, speed and stroke of a campaign.
 
     Attributes
     ----------
     median_n
-        Median friction.
+        Median friction, N.
     kinetic_n, viscous_n_s_m
         Intercept and slope of a line, over speed, through the friction in the direction of motion
         of the slow and the fast half of the samples.
     breakaway_n
-        High quantile of the friction at low speed.
+        High quantile of the friction at low speed, N.
     slow_m_s, usual_m_s
         Quantiles of the speed, m/s.
     stroke_m, resolved_m
@@ -106,7 +106,7 @@ def scales(campaign: Campaign) -> Scales:
 
 
 def _strokes(p: Prepared, moving: Mask) -> Array:
-    """Distances between reversals, m; the whole travel without a reversal."""
+    """Distances between reversals of a run, m; the whole travel if there is no reversal."""
     v = p.motion.velocity
     steps = 0.5 * (v[1:] + v[:-1]) * np.diff(p.run.time_s)
     path = np.concatenate(([0.0], np.cumsum(steps)))
@@ -118,7 +118,7 @@ def _strokes(p: Prepared, moving: Mask) -> Array:
 
 
 def stroke(campaign: Campaign) -> tuple[float, float]:
-    """Lowest and highest position of a campaign's stroke, m (rad for a joint).
+    """Lowest and highest position of the strokes of all runs, m (rad for a joint).
 
     Both are computed from the motion only, so that no information on held-out forces is used.
     """
@@ -132,7 +132,7 @@ def stroke(campaign: Campaign) -> tuple[float, float]:
 
 
 def _stiffness(s: Scales) -> Starts:
-    """Starting values of the stiffness: breakaway force divided by a displacement.
+    """Starting values of a contact stiffness: breakaway force divided by a displacement.
 
     The displacements are a tenth of a stroke, the smallest resolved distance and their geometric
     mean.
@@ -155,7 +155,7 @@ RULES: dict[str, Callable[[Scales], Starts]] = {
     "damping": lambda s: (0.05 * s.kinetic_n / s.usual_m_s,),
     "drag": lambda s: (0.1 * s.kinetic_n,),
 }
-"""Rules by the name in a catalogue entry: magnitudes to starting values, most likely first."""
+"""Rules by their name in a catalogue entry: from magnitudes to starting values, likeliest first."""
 LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
     "drive_play": lambda s: tuple(share * s.stroke_m for share in (1e-2, 1e-3, 1e-4)),
     # A drive that deflects by a hundredth or a thousandth of a stroke under the friction, and
@@ -168,17 +168,17 @@ LINEAR_RULES: dict[str, Callable[[Scales], Starts]] = {
     ),
     "drive_damping": lambda s: (s.breakaway_n / s.usual_m_s,),
 }
-"""Rules for a drive on a linear axis; the catalogue values are those of a shaft."""
+"""Rules for linear axes where the catalogue values are those of a shaft."""
 
 
 def _run_time(campaign: Campaign) -> Starts:
-    """A third and a tenth of the duration of a usual run, s."""
+    """Starting values of a time constant, s: 1/3 and 1/10 of the duration of a typical run."""
     median_s = float(np.median([p.run.duration_s for p in campaign.prepared]))
     return (0.3 * median_s, 0.1 * median_s)
 
 
 def _reference_temperature(campaign: Campaign) -> Starts:
-    """Reference temperature of the lubricant's viscosity, C.
+    """Starting value of the reference temperature of the lubricant's viscosity, C.
 
     If the rig has none, the mean of the recorded temperatures is used, rounded to one degree.
     """
@@ -191,7 +191,7 @@ def _reference_temperature(campaign: Campaign) -> Starts:
 
 
 def _largest_n(campaign: Campaign) -> float:
-    """The 99 % quantile of the absolute recorded force, N."""
+    """Largest recorded force, N, as the 99 % quantile of its magnitude."""
     forces = np.concatenate([p.friction[np.isfinite(p.friction)] for p in campaign.prepared])
     return max(float(np.quantile(np.abs(forces), 0.99)), 1e-5)
 
@@ -203,17 +203,17 @@ CAMPAIGN_RULES: dict[str, Callable[[Campaign], Starts]] = {
     "stroke_middle": lambda c: (0.5 * sum(stroke(c)),),
     "stroke_half": lambda c: (0.5 * float(np.diff(stroke(c))[0]),),
 }
-"""Rules that need more than the magnitudes; without a result the catalogue values apply."""
+"""Rules that use the runs; if the result is empty, the catalogue values apply."""
 RULES_OF_ANY_LAW: dict[str, Callable[[Campaign], Starts]] = {
     "reference_temperature": _reference_temperature,
     "cell_play": lambda c: (CELL_ERROR * _largest_n(c),),
     "cell_cubic": lambda c: (CELL_ERROR / _largest_n(c) ** 2,),
 }
-"""Rules that apply to any law, whether or not its parameters are in newtons: the records are."""
+"""Rules that apply to every law, because they concern quantities of the records."""
 
 
 def _starts_down_to_sample(page: Parameter, campaign: Campaign) -> Starts:
-    """Catalogue values, and successive thirds of them down to the smallest resolved delay, s."""
+    """Starting values of a delay, s: the catalogue's, and thirds down to the resolved one."""
     least, step = min(page.starts), float(np.median([p.step_s for p in campaign.prepared]))
     count = int(np.ceil(np.log(max(least / (0.25 * step), 1.0)) / np.log(3.0)))
     return (*page.starts, *(least / 3.0**k for k in range(1, count + 1)))
@@ -222,12 +222,12 @@ def _starts_down_to_sample(page: Parameter, campaign: Campaign) -> Starts:
 RULES_BESIDE_THE_CATALOGUE: dict[str, Callable[[Parameter, Campaign], Starts]] = {
     "lateness": _starts_down_to_sample,
 }
-"""Rules that extend the values of the catalogue."""
+"""Rules whose starting values are added to those of the catalogue."""
 PITCHES = ("pitch", "ripple_pitch")
 
 
 def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit a transition speed by the data.
+    """Limit the bounds of a transition speed to speeds that the data resolve.
 
     A film with a transition speed of several times the highest recorded speed has no influence on
     the record, and its equations are stiff.
@@ -240,13 +240,13 @@ def _bounded(page: Parameter, campaign: Campaign) -> Parameter:
 
 
 def _limited_by_travel(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit a pitch by the travel, which must contain several periods of a ripple."""
+    """Limit the bounds of a pitch: the travel must contain several periods."""
     upper = min(page.upper, longest_pitch(campaign))
     return replace(page, upper=max(upper, page.lower * (1.0 + 1e-6)))
 
 
 def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
-    """Limit a time by the records.
+    """Limit the bounds of a time parameter by the duration of the records.
 
     The limit of a delay is a fraction of the shortest run. The limit of any other time is the
     longest run, since slower processes are not identifiable.
@@ -259,7 +259,7 @@ def _within_the_record(page: Parameter, campaign: Campaign) -> Parameter:
 
 
 def _inside(page: Parameter, starts: Starts) -> Parameter:
-    """Return the catalogue entry with these starting values, limited to its bounds.
+    """Return a catalogue entry with these starting values, clipped to its bounds.
 
     The entry is unchanged if `starts` is empty.
     """

@@ -1,4 +1,4 @@
-"""Fit of the base law along known motions, to a tolerance, with exact derivatives.
+"""Fit of the base law along exactly known motions, with exact derivatives.
 
 The motions are known exactly (a sine of the drive) and not only as recorded samples. The step size
 of the solver follows from the tolerance and not from the sampling. For records with effects, noise
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 REST_SHARE = 1e-9
-"""Fraction of the top speed below which a sample is at rest: friction is set-valued there.
+"""Fraction of the top speed below which a sample is at rest, where friction is set-valued.
 
 It enters no verdict.
 """
@@ -39,7 +39,7 @@ It enters no verdict.
 
 @dataclass(frozen=True, repr=False)
 class TrajectoryFit(Estimates):
-    """Fitted parameters of the base law.
+    """Parameters of the base law, fitted along exactly known motions.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class TrajectoryFit(Estimates):
     message: str
 
     def _facts(self) -> Mapping[str, Any]:
-        """Entries of `to_dict` in addition to the parameters."""
+        """Entries that a result adds to `to_dict`, in addition to its parameters."""
         return {
             "sum_of_squares": self.sum_of_squares,
             "samples": self.nobs,
@@ -169,7 +169,7 @@ def fit_trajectories(
     last: tuple[bytes, Array, Array] | None = None
 
     def evaluate(x: Array) -> tuple[Array, Array]:
-        """Residuals and their derivatives with respect to the logarithms of the parameters."""
+        """Residuals and their Jacobian in the logarithms of the parameters."""
         nonlocal evaluations, last
         if last is None or last[0] != x.tobytes():
             evaluations += 1
@@ -191,9 +191,11 @@ def fit_trajectories(
         return last[1], last[2]
 
     def residuals(x: Array) -> Array:
+        """Residuals at the logarithms `x` of the parameters."""
         return evaluate(x)[0]
 
     def slopes(x: Array) -> Array:
+        """Jacobian of the residuals at the logarithms `x` of the parameters."""
         return evaluate(x)[1]
 
     optimum = optimize.least_squares(
@@ -224,6 +226,7 @@ def fit_trajectories(
 
 
 def _parameter(page: Parameter, value: float, error: float, *, sensitive: bool) -> ParameterValue:
+    """Fitted parameter with its standard error; held, with a reason, if not identifiable."""
     note = reason_not_identifiable(
         page, value, error, sensitive=sensitive, separate=bool(np.isfinite(error))
     )

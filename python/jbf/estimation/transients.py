@@ -1,4 +1,4 @@
-"""Samples that depend on an unrecorded state of the model.
+"""Exclusion of samples that depend on an unrecorded state of the model.
 
 A film, a contact or a load cell with backlash starts a run in an unknown state (`initial_state`). A
 film also depends on motion in a gap of the record. These samples do not identify the friction law
@@ -34,7 +34,7 @@ from jbf.records.findings.finding import Finding
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 EDGE = 1e-3
-"""Fraction of a gap in which a simulated motion changes its speed. It is a numerical resolution."""
+"""Fraction of a gap within which a simulated motion changes its speed."""
 RANKING_EVALUATIONS = 8
 """Evaluations of a fit that is accurate enough to estimate the rate of the film.
 
@@ -45,12 +45,12 @@ It limits the effort only.
 def check_film_rate(
     campaign: Campaign, law: str, clock: Clock, seed: Mapping[str, float] | None = None
 ) -> None:
-    """Raise an InputError if the film of a law is too fast for these records at every start.
+    """Raise an InputError if the film of a law is too fast for the records at every start value.
 
     Parameters
     ----------
     seed
-        Starting values by name.
+        Starting values by name; the other parameters have those of the catalogue.
     """
     if not find_law(law).has_film:
         return
@@ -110,7 +110,7 @@ def samples_affected_by_gaps(problem: Problem, values: Array, least_n: float) ->
 
 
 def _gaps(p: Prepared, gap_steps: float) -> npt.NDArray[np.intp]:
-    """Indices of the last samples before gaps."""
+    """Indices of the last sample before each gap of a run."""
     return np.flatnonzero(np.diff(p.run.time_s) > gap_steps * p.step_s)
 
 
@@ -182,7 +182,7 @@ def _without_unrecorded(problem: Problem, values: Array, residuals: Sequence[Arr
 
 
 def _state(law: str, effects: Iterable[str]) -> str:
-    """Description of the state that was unknown at the start of a run."""
+    """Text that names the state of a law and its effects that is unknown at the start of a run."""
     page = find_law(law)
     cell = has_unknown_start(effects)
     if page.has_film:

@@ -28,14 +28,14 @@ Places = npt.NDArray[np.intp]
 
 
 def robust_size(values: Array) -> float:
-    """Standard deviation from the median absolute value; zero for an empty array."""
+    """Robust standard deviation of values, from their median magnitude; zero without values."""
     if not len(values):
         return 0.0
     return float(np.median(np.abs(values))) / 0.6745
 
 
 def clipped_square(errors: Array, size: float, clip_sigma: float) -> float:
-    """Sum of squares with errors clipped at `clip_sigma` standard deviations of `size`."""
+    """Sum of squares of errors clipped at `clip_sigma` times the standard deviation `size`."""
     return float(np.sum(np.minimum(errors**2, (clip_sigma * size) ** 2)))
 
 
@@ -45,7 +45,7 @@ def score_square(
     step_s: float,
     settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
-    """Squared score over its long-run variance, chi-square with one degree per direction.
+    """Squared score divided by its long-run variance; chi-square, one degree per direction.
 
     The variance of each direction is at least that of white noise.
 
@@ -76,7 +76,7 @@ def score_inflation(
     Parameters
     ----------
     directions, innovations
-        One array a run, shape (n,); of any scale.
+        Derivatives of the score and innovations, one array a run, shape (n,); of any scale.
     """
     directions, square = _scaled(directions)
     white = _mean_square(innovations)
@@ -97,7 +97,7 @@ def significant_inflation(
     steps_s: Sequence[float],
     settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
-    """Ratio of the variance of a score to its variance in white noise; one if not significant.
+    """Variance of a score relative to white noise; one if the ratio is not significant.
 
     A direction that is nonzero in few windows only does not give a reliable variance. Parameters as
     for :func:`score_inflation`.
@@ -116,7 +116,7 @@ def significant_inflation(
 
 
 def _scaled(directions: Sequence[Array]) -> tuple[Sequence[Array], float]:
-    """Directions divided by their largest element, and their sum of squares.
+    """Directions divided by their largest element, and the sum of squares of the result.
 
     The scaling avoids an overflow of the squares. The sum is zero if all elements are zero or one
     of them is infinite.
@@ -134,7 +134,7 @@ def cluster_inflation(
     inflation: float,
     settings: VarianceSettings = DEFAULT.variance,
 ) -> float:
-    """Ratio of the variance of a score to its variance in white noise, from the scatter of runs.
+    """Variance of a score relative to white noise, from the scatter between runs as clusters.
 
     The ratio is zero if the scatter is not significant. An offset that differs between runs lasts
     longer than any window, so that the runs are used as clusters (Liang & Zeger 1986).
@@ -142,7 +142,7 @@ def cluster_inflation(
     Parameters
     ----------
     inflation
-        Ratio from the windows within the runs.
+        Ratio from windows within the runs (`score_inflation`).
     """
     scores = np.array([float(d @ e) for d, e in zip(directions, innovations, strict=True)])
     sizes = np.array([float(d @ d) for d in directions])
@@ -158,7 +158,7 @@ def cluster_inflation(
 
 
 def _mean_square(innovations: Sequence[Array]) -> float:
-    """Mean square of the innovations that count; the others are zero."""
+    """Mean square of the innovations of included samples; those of the others are zero."""
     counted = sum(int(np.count_nonzero(e)) for e in innovations)
     return sum(float(np.sum(e**2)) for e in innovations) / max(counted, 1)
 
@@ -177,7 +177,7 @@ def long_run_variance(
 
 
 def blocks_of(samples: Samples, share: float) -> Places:
-    """Start indices of blocks among the samples with weight, with all runs concatenated.
+    """First index of each block among the weighted samples of all runs, concatenated.
 
     No block spans two runs.
 

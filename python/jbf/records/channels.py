@@ -30,7 +30,9 @@ REQUIRED_COLUMNS = ("friction_n", *MOTION)
 
 
 def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[str, Mask]]:
-    """Merge channels on the union of their time stamps, within the time range of the motion.
+    """Merge channels with separate clocks on the union of their time stamps.
+
+    The union is limited to the time range of the motion.
 
     Parameters
     ----------
@@ -73,7 +75,7 @@ def side_by_side(channels: Channels, name: str) -> tuple[dict[str, Array], dict[
 
 
 def recorded_samples(time_s: Array, values: Array) -> tuple[Array, Array]:
-    """Return instants and readings of a column, without missing values if its clock is separate.
+    """Instants and readings of a column, without missing values if its clock is separate.
 
     A small number of missing values is kept, so that the later checks reject them.
     """
@@ -91,7 +93,7 @@ def filled(time_s: Array, values: Array, valid: Mask) -> Array:
 
 
 def of_motion(read: Mapping[str, Mask]) -> Mask | None:
-    """Mask of the most densely sampled motion channel; None if all motion channels are complete."""
+    """Mask of the readings of the most densely sampled motion channel; None if all are complete."""
     masks = [read[column] for column in MOTION if column in read]
     return max(masks, key=lambda mask: int(mask.sum())) if masks else None
 

@@ -57,7 +57,7 @@ MOTION = ("velocity_m_s", "position_m", "angle_rad")
 
 
 def attribute(column: str) -> str:
-    """Return the attribute of `Run` that holds a column of `COLUMNS`."""
+    """Name of the attribute of `Run` that holds a column of `COLUMNS`."""
     return ATTRIBUTES.get(column, column)
 
 
@@ -209,7 +209,7 @@ def check_columns(
 
 
 def selection(selector: slice | npt.ArrayLike, count: int, name: str) -> Any:
-    """Return a slice or a boolean mask of shape (count,) that selects samples.
+    """Check a selector of samples: a slice, or a boolean mask of shape (count,), and return it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Counts in words: `1 run`, `3 runs`."""
+"""Text for counts: `1 run`, `3 runs`."""
 
 from __future__ import annotations
 

@@ -140,6 +140,7 @@ def _checked_header(
 
 
 def _is_number(cell: str) -> bool:
+    """Whether a cell is a number or empty."""
     try:
         float(cell)
     except ValueError:
@@ -300,7 +301,7 @@ def read_run(path: PathLike, rig: Rig | None = None, *, need_friction: bool = Tr
 
 
 def _by_speed(columns: Mapping[str, Array], speed: str) -> dict[str, Array]:
-    """Sort steady states by speed and give them a time axis.
+    """Sort steady states by speed and give them a nominal time axis.
 
     The differences between adjacent samples are then mostly noise, regardless of the order in which
     the states were measured.
@@ -315,9 +316,9 @@ def _separately_clocked(
 ) -> tuple[Array, Mask] | None:
     """Return the readings of a channel with a separate clock, and the mask of its non-empty cells.
 
-    None if a cell is not a number, or if the share of empty cells is below `SEPARATE_CLOCK_SHARE`.
-    A fast channel may have a smaller share; every row without a value of it must then have a value
-    of a slower channel.
+    Returns None if a cell is not a number, or if the share of empty cells is below
+    `SEPARATE_CLOCK_SHARE`. A fast channel may have a smaller share; every row without a value of it
+    must then have a value of a slower channel.
     """
     sampled = _filled_cells(cells)
     if not sampled.any():
@@ -336,6 +337,7 @@ def _separately_clocked(
 
 
 def _filled_cells(cells: Sequence[str]) -> Mask:
+    """Mask of the non-empty cells of a column."""
     return np.array([bool(cell.strip()) for cell in cells])
 
 
@@ -344,7 +346,7 @@ def _is_a_clock(sampled: Mask) -> bool:
 
 
 def _required(header: Sequence[str], need_friction: bool) -> list[str]:
-    """Required columns for a rig without a drive."""
+    """Names of the required columns of a file for a rig without a drive."""
     # The first motion column in the header suffices; without any, the speed is reported as missing.
     motion = next((column for column in MOTION if column in header), MOTION[0])
     if any(_near_miss(name, MOTION[:1]) for name in header):

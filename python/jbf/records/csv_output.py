@@ -14,7 +14,7 @@ def csv_of_columns(
     columns: Mapping[str, npt.NDArray[np.float64]],
     read: Mapping[str, npt.NDArray[np.bool_] | None],
 ) -> str:
-    """Return columns of equal length as CSV text.
+    """Convert columns of equal length to CSV text.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ Array = npt.NDArray[np.float64]
 
 
 def fill_gaps(name: str, time_s: Array, celsius: Array) -> tuple[Array, tuple[Finding, ...]]:
-    """Interpolate the gaps of a temperature, C, linearly, and report them as a finding."""
+    """Interpolate the gaps of a temperature record, C, linearly, and report them as a finding."""
     finite = np.isfinite(celsius)
     if finite.all():
         return celsius, ()

@@ -1,4 +1,4 @@
-"""Drive, slide or joint: section `[drive]` of `rig.toml`, with motion and friction measurement."""
+"""Drive of a machine: section `[drive]` of `rig.toml`, with motion and friction measurement."""
 
 from __future__ import annotations
 
@@ -134,19 +134,19 @@ class Drive:
 
     @property
     def moved(self) -> float | None:
-        """Known moved inertia (kg m^2) or mass (kg); None if unknown."""
+        """Known inertia (kg m^2) or mass (kg) that the drive accelerates; None if unknown."""
         return self.inertia_kg_m2 if self.motion == "rotary" else self.mass_kg
 
     @property
     def _of_motor(self) -> float | None:
-        """Torque of the motor per unit of the reading; None for a force or a linear motor."""
+        """Motor torque, N m, per unit of the reading; None for a force sensor or a linear motor."""
         if self.torque_constant_n_m_a is not None:
             return self.torque_constant_n_m_a
         return None if self.rated_torque_n_m is None else self.rated_torque_n_m / 100.0
 
     @property
     def motor_rad(self) -> float | None:
-        """Motor angle, rad, per unit of travel (rad or m); None if no pitch is given."""
+        """Motor angle, rad, per unit of travel of the driven part (rad or m); None if unknown."""
         if self.motion == "rotary":
             return self.gear_ratio
         return None if self.pitch_m is None else self.gear_ratio * 2.0 * math.pi / self.pitch_m
@@ -164,14 +164,14 @@ class Drive:
 
     @property
     def quantities(self) -> Quantities:
-        """Units and words of the results."""
+        """Units and names of the quantities in results."""
         kind = ROTARY if self.motion == "rotary" else LINEAR
         read = kind.read_by(_SENSORS[self.friction])
         return read.in_volts() if self.friction == "voltage" else read
 
     @classmethod
     def from_mapping(cls, content: object, prefix: str) -> Drive:
-        """Build a drive from its TOML section; errors name the key, preceded by `prefix`."""
+        """Create a drive from its TOML section; errors name the key, preceded by `prefix`."""
         keys = [f.name for f in fields(cls)]
         section: Mapping[str, Any] = table(content, prefix)
         refuse_unknown(section, keys, f"{prefix}.")

@@ -1,4 +1,4 @@
-"""Columns of the file of a drive, and their conversion to the driven part when they are read.
+"""Columns in the files of a drive, and their conversion to the driven part on reading.
 
 Columns that begin with `motor_`, the current and the percentages refer to the motor. They are
 converted to the joint or the slide with `gear_ratio` and `pitch_m`. If several columns hold the
@@ -64,7 +64,7 @@ _TURNED = ("angle_rad", "motor_angle_rad")
 
 @dataclass(frozen=True)
 class DriveColumns:
-    """Possible columns of the file of a drive.
+    """Columns that the files of a drive may have, with their conversion factors.
 
     For each quantity: the column names, each with its conversion factor to the driven part.
     """
@@ -76,7 +76,7 @@ class DriveColumns:
 
     @classmethod
     def of(cls, drive: Drive) -> DriveColumns:
-        """Return the columns that a drive of this kind may have."""
+        """Create the table of columns for a drive."""
         motor = drive.motor_rad
         if drive.motion == "rotary":
             speed, place = {"velocity_rad_s": 1.0, "speed_rpm": RPM}, {"angle_rad": 1.0}
@@ -96,7 +96,8 @@ class DriveColumns:
     def required(self, header: Sequence[str], need_friction: bool) -> list[str]:
         """Return the required columns: the time, a motion and a friction.
 
-        For each quantity this is the column in the header, or else the first one possible.
+        For each quantity this is the column that is present in the header, or otherwise the first
+        possible one.
         """
 
         def sole(names: Sequence[str]) -> str:
@@ -137,14 +138,14 @@ class DriveColumns:
         return renamed, tuple(findings)
 
     def called(self, columns: Mapping[str, Array]) -> dict[str, str]:
-        """Return the mapping from each file column that is read to its name in a run."""
+        """Map each file column that is read to its name in a run."""
         read = (
             (next((c for c in sizes if c in columns), ""), t) for t, sizes, _ in self._targets()
         )
         return {column: target for column, target in read if column}
 
     def _targets(self) -> tuple[tuple[str, Mapping[str, float], str], ...]:
-        """Column name in a run, file columns with their conversion factors, and the unit."""
+        """Column name in a run, file columns with conversion factors, and unit, by quantity."""
         unit = self.drive.quantities
         place = "angle_rad" if self.drive.motion == "rotary" else "position_m"
         return (
@@ -171,7 +172,7 @@ def _friction(drive: Drive) -> dict[str, float]:
 
 
 def _foreign_columns(columns: DriveColumns) -> dict[str, str]:
-    """Columns that this drive cannot have, each with a remedy."""
+    """Columns of other kinds of machines that this drive cannot have, each with a remedy."""
     first = next(iter(columns.friction), None)
     remedies = {}
     if first not in ("friction_n", None):

@@ -33,7 +33,7 @@ def read_campaign(folder: PathLike) -> tuple[Rig, list[Run]]:
 
 
 def campaigns_in(folder: PathLike) -> dict[str, Path]:
-    """Find the subfolders of a folder that hold a rig or a run, by name.
+    """Find the subfolders of a folder that contain a rig or a run, by name.
 
     Raises
     ------

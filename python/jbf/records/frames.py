@@ -80,6 +80,7 @@ def columns_of_dataset(dataset: Any) -> tuple[dict[str, Any], str]:
 
 
 def _names(frame: object) -> list[str] | None:
+    """Column names of a table; None if the object has none."""
     if isinstance(frame, Mapping):
         return [str(name) for name in frame]
     for attribute in ("column_names", "columns"):
@@ -105,7 +106,7 @@ def _by_arrow(frame: object, name: str) -> Any:
 
 
 def _numbers(column: Any) -> Array | None:
-    """Return a column as numbers; None if it holds anything else."""
+    """Values of a column as numbers; None if it contains anything else."""
     if hasattr(column, "to_numpy") and not hasattr(column, "__array__"):
         column = column.to_numpy()
     values = np.asarray(column)

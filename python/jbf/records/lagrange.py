@@ -1,4 +1,4 @@
-"""Lagrange interpolation of a few samples at a further instant."""
+"""Lagrange interpolation of a few samples."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Array = npt.NDArray[np.float64]
 
 
 def weights_at_zero(t: Array) -> Array:
-    """Lagrange weights at time zero for values at the times `t`, shape (points, ...)."""
+    """Lagrange weights that interpolate values at the times `t` to time zero, shape of `t`."""
     weights = np.ones_like(t)
     for j in range(len(t)):
         for k in range(len(t)):

@@ -1,4 +1,4 @@
-"""Units and words for the friction and motion of a rig.
+"""Units and names of the friction and motion quantities of a rig.
 
 Every law in newtons and metres is also valid for a torque and an angle, which are equivalent to a
 force and a displacement at a radius of one metre. The numerical values are equal; this module
@@ -31,7 +31,7 @@ _FORCES = re.compile(r"\(N m\)|N m\b|N\b")
 
 @dataclass(frozen=True)
 class Quantities:
-    """Units and words for the numbers of a rig.
+    """Units and names of a rig's quantities.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Quantities:
         return replace(self, sensor=sensor)
 
     def in_volts(self) -> Quantities:
-        """Return the quantities of a motor whose voltage replaces its force or torque.
+        """Quantities of a motor whose recorded voltage replaces its force or torque.
 
         Coulomb friction is then in V, viscous friction (with the back-EMF) in V s/rad or V s/m, and
         inertia in V s^2/rad or V s^2/m: the constants kS, kV and kA of a feedforward.
@@ -88,7 +88,7 @@ class Quantities:
         )
 
     def to_dict(self) -> dict[str, str]:
-        """Units of friction, motion and speed, for JSON."""
+        """Units of friction, displacement and speed, JSON-serialisable."""
         return {"force": self.force, "motion": self.length, "velocity": self.speed}
 
 

@@ -18,7 +18,7 @@ LEAST_LOAD = 1e-9
 
 
 def recorded_load(rig: Rig, run: Run) -> Array | None:
-    """Return the load of each sample, shape (N,); None if none was recorded.
+    """Recorded load at each sample, shape (N,); None if none was recorded.
 
     The load is `load_n`, N. On an axis without a bearing it may be the column `pressure_pa`,
     converted to bar (1e5 Pa), on which the friction of a seal depends. Parameters "over load" are

@@ -123,7 +123,12 @@ class Lubricant:
 
 @dataclass(frozen=True)
 class Load:
-    """The load; `normal_n` is the normal load on one bearing, N.
+    """Normal load on a bearing.
+
+    Attributes
+    ----------
+    normal_n
+        Normal load on one bearing, N.
 
     Raises
     ------
@@ -223,7 +228,7 @@ class Rig:
 
     @property
     def quantities(self) -> Quantities:
-        """Units and words of the rig's friction and motion."""
+        """Units and names of the rig's friction and motion quantities."""
         if self.drive is not None:
             return self.drive.quantities
         return LINEAR if self.bearing is None else BEARING
@@ -275,7 +280,7 @@ class Rig:
 
     @classmethod
     def thesis(cls, table: str = "4.2") -> Rig:
-        """The rig of the thesis with the load of its table "4.2", "4.3", "4.4" or "4.5"."""
+        """The test rig of Cohn (1998), with the load of a table of this thesis: "4.2" to "4.5"."""
         loads_n = {"4.2": 104.0, "4.3": 83.5, "4.4": 104.0, "4.5": 83.5}
         if table not in loads_n:
             raise InputError(

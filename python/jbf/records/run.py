@@ -112,7 +112,7 @@ class Run(Shown):
 
     @property
     def steady(self) -> bool:
-        """True if each sample is a steady state, as in a Stribeck curve."""
+        """Whether each sample is a steady state, as in a Stribeck curve."""
         return POINT in self.extra
 
     @property
@@ -121,14 +121,14 @@ class Run(Shown):
         return float(self.time_s[-1] - self.time_s[0]) if len(self) else 0.0
 
     def columns(self) -> dict[str, Array]:
-        """Return the arrays that are present, by column name: known ones first, then `extra`."""
+        """Arrays that are present, by column name: known columns first, then `extra`."""
         standard = {column: getattr(self, attribute(column)) for column in COLUMNS}
         if not self.speed_recorded:
             del standard["velocity_m_s"]
         return {name: a for name, a in standard.items() if a is not None} | self.extra
 
     def _called(self) -> dict[str, Array]:
-        """Return `columns` under names that state their units."""
+        """Arrays of the run under column names that state their units."""
         called = {
             "friction_n": self.quantities.friction_column,
             "velocity_m_s": self.quantities.speed_column,
@@ -136,11 +136,11 @@ class Run(Shown):
         return {called.get(name, name): a for name, a in self.columns().items()}
 
     def _arrays(self) -> dict[str, Array]:
-        """Return `columns`, always including the speed."""
+        """Arrays of the run by column name, always including the speed."""
         return {"velocity_m_s": self.velocity} | self.columns()
 
     def select(self, which: slice | npt.ArrayLike) -> Run:
-        """Return the samples that a slice or a boolean mask of shape (N,) keeps, as a run.
+        """Return the selected samples as a run; `which` is a slice or a mask of shape (N,).
 
         A selection may be shorter than `MIN_SAMPLES`, and a mask may leave gaps in time.
 
@@ -365,7 +365,7 @@ class Run(Shown):
         )
 
     def at(self, time_s: Array, friction: Array) -> Run:
-        """Return the run at other instants within it, with the friction there, N.
+        """Interpolate the run to other instants within it, with given friction there, N.
 
         All other columns are interpolated linearly; angles that restart at each turn are unwrapped.
         """

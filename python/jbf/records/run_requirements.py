@@ -1,4 +1,4 @@
-"""Requirements on a run: columns that a part needs, and the quantities of its rig."""
+"""Check that a run has required columns, and the quantities of its rig."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def require(run: Run, columns: str | Iterable[str], why: str) -> None:
 
 
 def run_on(rig: Rig, run: Run) -> Run:
-    """Return the run with the quantities of its rig.
+    """Return the run with the units of its rig, after a check that both belong together.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Usual sizes of machine parts: a value far outside of them is most likely in another unit."""
+"""Plausible sizes of machine parts: a value far outside is probably in another unit."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ The limits are those of large machines. They exclude usual values that were writ
 or drum of a hoist may have a larger pitch.
 """
 _OTHER_UNITS = ("mm", "um", "mPa s")
-"""Units in which data sheets state these values."""
+"""Units in which data sheets commonly state dimensions and viscosities."""
 
 
 def warn_of_unusual_sizes(sections: Mapping[str, Mapping[str, Any]]) -> None:
@@ -41,6 +41,7 @@ def warn_of_unusual_sizes(sections: Mapping[str, Mapping[str, Any]]) -> None:
 
 
 def _message(place: str, value: float, least: float, most: float) -> str:
+    """Text of the warning for one value, with a suggestion of its unit."""
     named = unit_of_name(place)
     assert named is not None
     unit = named[1]

@@ -17,7 +17,7 @@ In a wider gap the error of the estimated step, multiplied by the number of step
 
 
 def last_digit(values: Array) -> float:
-    """Return the unit of the last decimal digit of the samples, or their binary rounding error."""
+    """Value of the last decimal digit of the samples, or their binary rounding error."""
     top = float(np.max(np.abs(values)))
     if top == 0.0:
         return 0.0
@@ -30,7 +30,7 @@ def last_digit(values: Array) -> float:
 
 
 def resolution(values: Array) -> float:
-    """Return the smallest difference that samples can have: a quantisation step or a digit.
+    """Smallest possible difference between samples: the quantisation step, or one last digit.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Outliers at the ends of a channel.
+"""Outliers among the first and last samples of a channel.
 
 Examples are the first samples before a converter is ready, and the last samples of a buffer that
 was not full. An outlier within a record is detected from the adjacent samples on both sides; at an
@@ -20,7 +20,7 @@ Mask = npt.NDArray[np.bool_]
 MAX_OUTLIERS = 3
 """Largest number of outliers at each end."""
 MIN_RATIO = 4.0
-"""Threshold, relative to the largest deviation of an inner sample from the following samples."""
+"""Threshold for the deviation of an end sample, relative to the largest one of inner samples."""
 LEAST_SAMPLES = 60
 
 
@@ -41,7 +41,7 @@ def end_outliers(time: Array, values: Array, neighbours: int) -> Mask:
 
 
 def _count_outliers(time: Array, values: Array, neighbours: int) -> int:
-    """Count the outliers at the beginning."""
+    """Number of outliers at the beginning of a channel."""
     n = len(values) - neighbours
     t = np.stack([time[k : n + k] - time[:n] for k in range(1, neighbours + 1)])
     y = np.stack([values[k : n + k] - values[:n] for k in range(1, neighbours + 1)])
@@ -55,7 +55,11 @@ def _count_outliers(time: Array, values: Array, neighbours: int) -> int:
 def ends_finding(
     channel: str, what: str, run: str, mask: Mask, error: Array, unit: str, done: str
 ) -> Finding | None:
-    """Return the finding for outliers at the ends, or None; `error` has their deviations."""
+    """Finding for outliers at the ends of a channel; None without outliers.
+
+    `error` has the deviations of the samples, `mask` is True at the outliers, and `done` is the
+    action taken.
+    """
     if not mask.any():
         return None
     half = len(mask) // 2

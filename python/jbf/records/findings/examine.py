@@ -1,4 +1,4 @@
-"""Examine a run: collect all findings of the force, and determine its usable readings."""
+"""Examination of a run: all findings on its force, and its usable force readings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Mask = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Examined:
-    """Result of the examination of a run.
+    """Findings on a run, and its usable force readings.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Examined:
 
 
 def examine(run: Run, velocity: Array | None = None, period_s: float | None = None) -> Examined:
-    """Detect the recording artefacts of a friction record.
+    """Detect the recording artefacts of the friction record of a run.
 
     Parameters
     ----------

@@ -22,13 +22,13 @@ A smaller force may be a residual of the fitted offset, inertia and spring.
 JACKKNIFE_BLOCKS = 12
 """Number of blocks of the record for the jackknife standard error."""
 LEAST = 100
-"""Minimum number of samples in motion; at least a quarter of them in each direction."""
+"""Minimum number of samples in motion; at least a quarter must be in each direction."""
 SLOW = 0.02
 """Speed, relative to the top speed, below which the force may have causes other than friction."""
 
 
 def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Finding]:
-    """Find a force that acts in the direction of the motion.
+    """Report a force with the wrong sign, which acts in the direction of the motion.
 
     Forces of an offset, an inertia and a spring also act in this direction in part of a record;
     these forces are fitted together with the friction. In a record of one direction, an offset
@@ -60,7 +60,7 @@ def find_wrong_sign(run: Run, motion: EstimatedMotion, usable: Mask) -> list[Fin
 
 
 def _reversing_force(x: Array, force: Array) -> tuple[float, float]:
-    """Return the force that reverses with the motion, and its jackknife standard error."""
+    """Force that reverses with the motion (fitted with regressors `x`), and its jackknife error."""
     part = np.arange(len(force)) * JACKKNIFE_BLOCKS // len(force)
     normal = np.stack([x[part == k].T @ x[part == k] for k in range(JACKKNIFE_BLOCKS)])
     right = np.stack([x[part == k].T @ force[part == k] for k in range(JACKKNIFE_BLOCKS)])

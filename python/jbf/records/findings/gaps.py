@@ -18,7 +18,7 @@ JITTER_WINDOW = 4
 
 
 def find_gaps(run: Run) -> list[Finding]:
-    """Find missing rows in an evenly sampled record; they are not filled in.
+    """Report missing rows of an evenly sampled record; they are not filled in.
 
     The state of a model is integrated across the gap.
     """

@@ -35,7 +35,7 @@ Within this distance of a reversal or of a start from rest, the friction may hav
 
 
 def glitches(values: Array) -> Mask:
-    """Detect outliers: samples that deviate from both adjacent samples in the same direction."""
+    """Mask of outliers: samples that deviate from both adjacent samples in the same direction."""
     n = len(values)
     outliers = np.zeros(n, dtype=bool)
     if n < LEAST_SAMPLES:
@@ -103,7 +103,7 @@ def _interpolated_force(run: Run, mask: Mask) -> Array:
 
 
 def _breakaway(velocity: Array) -> Mask:
-    """Mask of the samples next to a reversal or an end of a rest."""
+    """Mask of the samples next to a reversal or to the end of a rest, where breakaway occurs."""
     top = float(np.max(np.abs(velocity), initial=0.0))
     direction = np.where(np.abs(velocity) > SLOW_SHARE * top, np.sign(velocity), 0.0)
     # In a slow reversal, the sign changes many samples from both ends of the slow segment.

@@ -41,7 +41,7 @@ def held_mask(values: Array) -> Mask:
 
 
 def _by_steps(values: Array) -> float:
-    """Probability of an unchanged reading with noise, in the middle of a quantisation step."""
+    """Probability that noise leaves a quantised reading unchanged, in the middle of a step."""
     step, noise = step_of(values), noise_of(values)
     if step == 0.0:
         return 0.0
@@ -51,7 +51,7 @@ def _by_steps(values: Array) -> float:
 
 
 def find_held(run: Run, explained: Mask) -> tuple[list[Finding], Mask]:
-    """Find segments in which the force is constant.
+    """Report segments in which the force is held (constant although the motion changes).
 
     Parameters
     ----------

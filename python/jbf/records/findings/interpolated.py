@@ -119,7 +119,10 @@ def find_native(time: Array, values: Array) -> Native | None:
 
 
 def find_native_of(time: Array, values: Array, period_s: float) -> Native | None:
-    """Recover the original readings, with a period known from another run of the same logger."""
+    """Recover the original readings with a known period; None if it does not fit.
+
+    The period is that of another run of the same logger.
+    """
     if len(time) < 2 * WINDOW or is_smooth(values):
         return None
     noise = _noise(values, max(ROUNDING * float(np.ptp(values)), 4.0 * last_digit(values)))
@@ -144,13 +147,16 @@ def _noise(values: Array, rounding: float) -> float:
 
 
 def _exact(values: Array, noise: float) -> float:
-    """Largest RMS residual of an accepted polygon: a share of the noise, or digit rounding."""
+    """Largest RMS residual at which a polygon is accepted: a share of the noise, or rounding."""
     digits = MAX_ROUNDING_RATIO * resolution(values) / np.sqrt(12.0)
     return float(max(EXACT * noise, min(digits, MAX_ROUNDING_TO_NOISE * noise)))
 
 
 def _search_windows(values: Array, rounding: float) -> list[int]:
-    """First samples of the search windows: along the record, and at the most frequent changes."""
+    """Index of the first sample of each window in which a polygon is searched.
+
+    The windows are spread over the record; further ones are where the values change most often.
+    """
     last = len(values) - WINDOW
     bends = np.abs(np.diff(values, 2)) > rounding
     along: list[int] = np.linspace(0, last, WINDOW_COUNT).astype(int).tolist()
@@ -193,7 +199,7 @@ def _of_short_period(time: Array, values: Array, step: float) -> Native | None:
 
 
 def _beats(time: Array, values: Array, step: float) -> Array:
-    """Candidate periods, s, from the modulation of the noise variance of a record.
+    """Candidate periods of interpolation, s, from the modulation of the noise variance.
 
     The noise variance of an interpolated sample is smallest in the middle between two readings.
     """
@@ -211,13 +217,13 @@ def _beats(time: Array, values: Array, step: float) -> Array:
 
 
 def _grid(periods: Array) -> tuple[Array, Array]:
-    """All pairs of period and phase, s."""
+    """All combinations of periods and phases of the search grid, s."""
     each = np.repeat(periods, len(PHASES))
     return each, np.tile(PHASES, len(periods)) * each
 
 
 def _as_rough_as_noise(values: Array) -> bool:
-    """Return True if adjacent samples are uncorrelated, which excludes interpolation."""
+    """Whether adjacent samples are uncorrelated, which excludes interpolation."""
     adjacent = np.median(np.abs(values[2:] - 2.0 * values[1:-1] + values[:-2]))
     distant = np.median(
         np.abs(values[2 * LONG_LAG :] - 2.0 * values[LONG_LAG:-LONG_LAG] + values[: -2 * LONG_LAG])
@@ -226,7 +232,7 @@ def _as_rough_as_noise(values: Array) -> bool:
 
 
 def is_smooth(values: Array, share: float = SMOOTH) -> bool:
-    """Return True for a record without noise: a polygon fits any smooth curve."""
+    """Whether a record has no noise, so that a polygon fits it without interpolation."""
     second, third = np.abs(np.diff(values, 2)), np.abs(np.diff(values, 3))
     return bool(np.quantile(third, 0.7) < share * np.quantile(second, 0.7))
 
@@ -261,7 +267,7 @@ def _extended_polygon(
 def _longest(
     time: Array, values: Array, period: float, phase: float, noise: float
 ) -> tuple[float, float]:
-    """Return the longest multiple of a period whose polygon fits.
+    """Longest multiple of a period, with its phase, at which the polygon still fits.
 
     Corners at a fraction of the true period fit equally well, but are not readings.
     """
@@ -281,6 +287,7 @@ def _longest(
 def _fit_polygon(
     time: Array, values: Array, period: float, phase: float, noise: float
 ) -> Native | None:
+    """Fit a polygon of given period and phase to a record; None if the residual is too large."""
     residual, knots, corners = polygon(time, values, period, phase)
     inside = (knots >= time[0]) & (knots <= time[-1]) & np.isfinite(corners)
     if residual > _exact(values, noise) or inside.sum() > MOST_CORNERS * len(time):

@@ -68,7 +68,7 @@ def find_interpolated_samples(time: Array, values: Array) -> Native | None:
 
 
 def _far_from_corners(line: Mask, corner: Mask) -> bool:
-    """Return whether most samples on lines are far from the nearest corner."""
+    """Whether most samples on straight lines are far from the nearest corner."""
     if not corner.any() or not line.any():
         return True
     place, corners = np.flatnonzero(line), np.flatnonzero(corner)

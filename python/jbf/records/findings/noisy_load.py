@@ -17,7 +17,7 @@ CONSTANT_RANGE = 1e-9
 
 
 def only_noise(load: Array) -> bool:
-    """Return True for a column whose changes are white noise.
+    """Whether the changes of a load column are white noise about a constant.
 
     Both tests must be passed: no significant line in the periodogram (Fisher 1929), and a
     cumulative periodogram that is linear in the frequency (Bartlett 1954).
@@ -35,12 +35,12 @@ def only_noise(load: Array) -> bool:
 
 
 def steady_load(load: Array) -> Array:
-    """Return the mean at every sample if the load is only noise about it; else return the load."""
+    """Load without noise: its mean at every sample if the load is constant, otherwise unchanged."""
     return np.full(len(load), float(np.mean(load))) if only_noise(load) else load
 
 
 def find_noisy_load(name: str, load: Array | None) -> list[Finding]:
-    """Find a load that consists only of noise about its mean."""
+    """Report a recorded load that consists only of noise about its mean."""
     if load is None or not only_noise(load):
         return []
     size = float(np.std(load))

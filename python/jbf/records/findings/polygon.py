@@ -1,4 +1,4 @@
-"""Polygons with corners evenly spaced in time: residual of the best fit, and refinement.
+"""Fit of polygonal lines with corners evenly spaced in time, by period and phase.
 
 The samples are linear in the values at the corners, which follow by linear least squares. Only the
 period and the phase are searched.
@@ -13,7 +13,7 @@ from scipy import linalg
 Array = npt.NDArray[np.float64]
 
 USUAL_HALVINGS, MOST_HALVINGS = 9, 14
-"""Usual and largest number of halvings of the search range.
+"""Number of halvings of the search range: default, and largest.
 
 The search continues beyond the usual number as long as the residual decreases.
 """
@@ -24,7 +24,7 @@ BATCH_SAMPLES = 2**13
 
 
 def polygon(time: Array, values: Array, period: float, phase: float) -> tuple[float, Array, Array]:
-    """Fit the best polygon; return its RMS residual per degree of freedom, and its corners.
+    """Fit a polygonal line of given period and phase; return its residual and its corners.
 
     Returns
     -------
@@ -47,7 +47,7 @@ def polygon_rms(time: Array, values: Array, period: Array, phase: Array) -> Arra
 
 
 def _solved(time: Array, values: Array, period: Array, phase: Array) -> tuple[Array, Array, Array]:
-    """Fit the best polygons.
+    """Fit polygonal lines for several periods and phases at once.
 
     Each fit is a tridiagonal system; all fits are solved together as one block-diagonal system.
 
@@ -93,8 +93,8 @@ def refined(
     Parameters
     ----------
     near
-        True if the given values are known to be right. Then the early abort is disabled and more
-        halvings are allowed.
+        True if the given values are known to be nearly right. Then the early abort is disabled and
+        more halvings are allowed.
     """
     length = float(time[-1] - time[0])
     reach_period, reach_phase = 0.12 * period**2 / length, 0.06 * period

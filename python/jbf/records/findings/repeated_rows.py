@@ -52,7 +52,7 @@ def repeated_rows(run: Run) -> Mask | None:
 
 
 def _of_rests(run: Run, same: Mask, moving: Mask) -> Mask:
-    """Mask of the repetitions that are longer than those in motion: rests without new values."""
+    """Mask of repeated rows during rests, which are longer than repetitions in motion."""
     edges = np.diff(np.concatenate(([0], same.astype(np.int8), [0])))
     firsts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     lasted = run.time_s[ends] - run.time_s[firsts]
@@ -69,7 +69,7 @@ def _of_rests(run: Run, same: Mask, moving: Mask) -> Mask:
 
 
 def as_read(run: Run) -> Run:
-    """Return the run without repeated rows, with a finding that reports them."""
+    """Remove repeated rows from a run, and report them in a finding."""
     again = repeated_rows(run)
     if again is None:
         return run

@@ -23,7 +23,7 @@ ROUNDING_TOLERANCE = 1e-6
 
 
 def copies(runs: Sequence[Run]) -> dict[int, int]:
-    """Indices of runs that repeat an earlier run, mapped to the index of the first one."""
+    """Map the index of each run that duplicates an earlier run to the index of that run."""
     first_of_copy: dict[int, int] = {}
     for i, run in enumerate(runs):
         for first in range(i):
@@ -34,7 +34,7 @@ def copies(runs: Sequence[Run]) -> dict[int, int]:
 
 
 def same_recording(a: Run, b: Run) -> bool:
-    """Return whether two runs are the same recording, sample by sample."""
+    """Whether two runs are the same recording, sample by sample."""
     columns_a, columns_b = a.columns(), b.columns()
     if a.friction is None or len(a) != len(b) or set(columns_a) != set(columns_b):
         return False
@@ -49,7 +49,7 @@ def _same(name: str, a: Array, b: Array) -> bool:
 
 
 def repeated(first: Run, again: Run) -> Finding:
-    """Return the finding for a duplicate run."""
+    """Finding that a run duplicates another one."""
     words = f"identical to run {first.name} in every sample"
     size = float(len(again))
     return Finding("repeated_run", "friction_n", again.name, size, "samples", "left out", words)

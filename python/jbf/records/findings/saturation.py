@@ -15,7 +15,7 @@ Mask = npt.NDArray[np.bool_]
 MIN_READINGS = 5
 """Minimum number of identical readings at an extreme value of a noisy channel."""
 MIN_LEVEL_RATIO = 2.0
-"""Minimum ratio of their number to that at each adjacent level; noise alone has smaller tails."""
+"""Minimum ratio of the number of readings at the extreme level to that at adjacent levels."""
 ADJACENT_LEVELS = 3
 """Number of levels next to the extreme that are compared."""
 MIN_NOISE_STEPS = 0.6
@@ -32,7 +32,7 @@ The unclipped readings in this window are a selection of the lower values, and w
 
 
 def saturated(values: Array) -> tuple[Mask, list[float]]:
-    """Return a mask of the samples near saturated readings, and the saturated values."""
+    """Mask of the samples near saturated readings, and the saturated values."""
     from scipy import ndimage  # importing takes most of a second
 
     mask = np.zeros(len(values), dtype=bool)
@@ -65,7 +65,7 @@ def _noise(values: Array) -> float:
 
 
 def find_saturation(run: Run) -> tuple[list[Finding], Mask]:
-    """Find readings at the end of the range of the force.
+    """Report saturated readings of the force, and mask the samples near them.
 
     Returns
     -------

@@ -10,7 +10,7 @@ from jbf.records.run import Run
 
 
 def separate_clock(run: Run) -> list[Finding]:
-    """Return a finding if the force was not sampled at the instants of the motion."""
+    """Report a force that was not sampled at the instants of the motion."""
     force, motion = run.read.get("friction_n"), of_motion(run.read)
     if force is None and motion is None:
         return []

@@ -99,7 +99,7 @@ def _readings_before(begins: Array) -> npt.NDArray[np.intp] | None:
 
 
 def _spread(begins: Array, periods: Array) -> Array:
-    """Range, in steps, of the phases of the sequences for each clock period, shape (p,)."""
+    """Range, in steps, of the phases of the sequences for each trial period, shape (p,)."""
     phases = np.sort(np.mod(begins[None, :], periods[:, None]), axis=1)
     around = np.concatenate([np.diff(phases, axis=1), phases[:, :1] + periods[:, None]], axis=1)
     around[:, -1] -= phases[:, -1]
@@ -108,7 +108,7 @@ def _spread(begins: Array, periods: Array) -> Array:
 
 
 def _extended_ticks(begins: Array, start: int, period: float) -> npt.NDArray[np.intp] | None:
-    """Tick numbers of all sequences, extended outwards from a few; None if the phase drifts."""
+    """Clock-tick numbers of all sequences, extended from a few; None if the phase drifts."""
     low, high = start, start + LEAST_ROWS
     while True:
         rows = begins[low:high]

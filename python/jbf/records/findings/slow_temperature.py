@@ -26,7 +26,7 @@ NOISE_K = 0.1
 def recorded_temperature(run: Run) -> Array | None:
     """Return the temperature of a run, C, shape (n,), without held steps and noise.
 
-    None if no temperature was recorded.
+    Returns None if no temperature was recorded.
     """
     if run.temperature_c is None:
         return None
@@ -55,9 +55,9 @@ def find_slow_temperature(run: Run) -> list[Finding]:
 
 
 def _smoothed_temperature(time: Array, celsius: Array) -> tuple[Array, float, float]:
-    """Temperature of the body, C; hold time of its readings, s; their noise, K.
+    """Temperature without steps or noise, C; hold time of its readings, s; their noise, K.
 
-    The latter two are zero if no correction was made.
+    Hold time and noise are zero if no correction was made.
     """
     interpolated, held_s = _through_jumps(time, celsius)
     noise_k = noise_of(interpolated)
@@ -67,7 +67,7 @@ def _smoothed_temperature(time: Array, celsius: Array) -> tuple[Array, float, fl
 
 
 def _through_jumps(time: Array, celsius: Array) -> tuple[Array, float]:
-    """Interpolate through the midpoints of the jumps of a staircase.
+    """Interpolate a stepwise temperature record linearly through the midpoints of its jumps.
 
     Also returns the median duration of its steps, s.
     """
@@ -83,7 +83,7 @@ def _through_jumps(time: Array, celsius: Array) -> tuple[Array, float]:
 
 
 def _averaged(time: Array, celsius: Array) -> Array:
-    """Mean over `SMOOTH_S` around each sample, with linear interpolation between samples."""
+    """Moving average of a temperature over `SMOOTH_S`, with interpolation between samples."""
     area = np.concatenate(([0.0], np.cumsum(0.5 * np.diff(time) * (celsius[1:] + celsius[:-1]))))
     # The window is symmetric, so that a linear rise is unchanged up to both ends.
     half = np.minimum(0.5 * SMOOTH_S, np.minimum(time - time[0], time[-1] - time))

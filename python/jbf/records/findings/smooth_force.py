@@ -23,7 +23,7 @@ ROUNDING_SHARE = 1e-4
 
 
 def is_without_noise(force: Array) -> bool:
-    """Return whether a force in motion has no detectable white noise.
+    """Whether a force in motion has no detectable white noise.
 
     Notes
     -----
@@ -37,7 +37,7 @@ def is_without_noise(force: Array) -> bool:
 
 
 def find_smooth_force(run: Run, sliding: Mask) -> list[Finding]:
-    """Return a finding if the force is a command, or was filtered.
+    """Report a force that is a command or was filtered, since it has no noise.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ MIN_STEP_TO_NOISE = 0.5
 
 
 def step_of(values: Array, *, drawn: bool = False) -> float:
-    """Return the quantisation step of the readings; zero if they are not quantised.
+    """Quantisation step of readings; zero if they are not quantised.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def step_of(values: Array, *, drawn: bool = False) -> float:
 
 
 def _group_levels(values: Array) -> Array:
-    """Return the levels of values close to them, ascending: the middle value of each group."""
+    """Levels of a quantised record, ascending: the middle value of each group of close values."""
     ordered = np.sort(values)
     tolerance = LEVEL_TOLERANCE * float(np.ptp(ordered)) / (MOST_LEVELS * len(ordered))
     begins = np.flatnonzero(np.concatenate(([True], np.diff(ordered) > tolerance)))
@@ -60,7 +60,7 @@ def _group_levels(values: Array) -> Array:
 
 
 def find_steps(run: Run, usable: Mask, *, drawn: bool = False) -> list[Finding]:
-    """Find quantisation steps of the force that are comparable with its noise.
+    """Report quantisation steps of the force that are comparable with its noise.
 
     Only usable readings are examined; `drawn` as in `step_of`.
     """

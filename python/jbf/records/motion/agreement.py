@@ -18,7 +18,7 @@ MAX_CONTRADICTION_SHARE = 0.01
 def contradiction_of(
     time: Array, path: Array, speed: Array, sd_path: float, sd_speed: float
 ) -> Array:
-    """Difference between speed and path around each sample, m/s; zero if they agree.
+    """Significant difference between recorded speed and path at each sample, m/s; zero elsewhere.
 
     Possible causes are a filter transient and an outlier. If the share of differing samples exceeds
     `MAX_CONTRADICTION_SHARE`, the result is zero everywhere, since the standard errors are then

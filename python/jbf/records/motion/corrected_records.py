@@ -42,7 +42,7 @@ NOT_AS_RECORDED = (
 
 @dataclass(frozen=True, eq=False)
 class CorrectedRecords:
-    """Records of a motion after correction of inconsistent parts.
+    """Position and speed records of a motion, after correction of inconsistent parts.
 
     Attributes
     ----------
@@ -61,7 +61,8 @@ class CorrectedRecords:
     loose
         True at the ends where the motion is unknown, shape (n,).
     hum
-        Largest speed, m/s, that is also accepted as a rest: one count of a speed with an offset.
+        Largest recorded speed, m/s, that is also treated as rest: one count of a speed with an
+        offset.
     """
 
     path: Array | None
@@ -77,7 +78,7 @@ class CorrectedRecords:
 def corrected_records(
     run: Run, radius_m: float | None, stamps_s: Array | None = None
 ) -> CorrectedRecords:
-    """Examine the records of the motion of a run.
+    """Examine and correct the position and speed records of a run.
 
     Outliers are corrected first, because they hide other defects. The validity of a channel as a
     whole is then checked before its single samples.
@@ -162,7 +163,7 @@ def _without_speed(
     end_mask: Mask,
     unit: str,
 ) -> CorrectedRecords:
-    """Return the records of a motion without a recorded speed."""
+    """Records of a motion without a recorded speed, with the speed derived from the path."""
     speed = centred_speed(time, path)
     words = "no speed was recorded"
     derived = Finding(
@@ -173,4 +174,5 @@ def _without_speed(
 
 
 def _present(*findings: Finding | None) -> tuple[Finding, ...]:
+    """The findings that are not None."""
     return tuple(finding for finding in findings if finding is not None)

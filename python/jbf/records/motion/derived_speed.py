@@ -28,7 +28,7 @@ MAX_NOISE_RATIO = 3.0
 
 
 def derived_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
-    """Return a finding if the speed is a difference of the path; None if it was measured."""
+    """Finding that the speed was derived from the path by differences; None if it was measured."""
     if len(time) < 4 * SPANS[-1]:
         return None
     step = quantum_of(path) or step_of(path)

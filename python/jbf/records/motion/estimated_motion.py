@@ -56,16 +56,16 @@ For a velocity it is relative to the largest one; for a position, to the largest
 step.
 """
 WORTH = 0.1
-"""Smallest delay of the velocity that is reported, samples."""
+"""Smallest delay of the velocity, in samples, that is reported."""
 AT_REST_SIGMA = 3.0
 """Number of standard errors within which a speed next to a rest is zero."""
 GONE = 3.0
-"""Minimum displacement from a rest for a known direction, in standard errors of the position."""
+"""Displacement from a rest, in standard errors of the position, with a known direction."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionErrors:
-    """Joint errors of the position and its derivatives at n instants: a Markov chain.
+    """Joint errors of position and derivatives, a Markov chain over n instants.
 
     Attributes
     ----------
@@ -98,12 +98,13 @@ class MotionErrors:
 
 @dataclass(frozen=True)
 class EstimatedMotion:
-    """Estimated motion, the input of a model; all arrays of shape (n,).
+    """Estimated motion of a run, the input of a model; all arrays have shape (n,).
 
     Attributes
     ----------
     velocity, acceleration, angle_rad
-        Estimates at the samples.
+        Estimates at the samples, m/s, m/s^2 and rad (for a slide, `angle_rad` is the position in
+        m).
     velocity_error_m_s
         Standard error of the speed.
     resting
@@ -132,7 +133,7 @@ class EstimatedMotion:
 
     @property
     def aside(self) -> set[str]:
-        """Columns that were discarded as a whole, or converted."""
+        """Names of the columns that were discarded as a whole, or converted."""
         return {finding.channel for finding in self.findings if finding.kind in NOT_AS_RECORDED}
 
     def with_posterior(self, time_s: Array, smoothed: Smoothed) -> EstimatedMotion:
@@ -158,7 +159,7 @@ class EstimatedMotion:
         )
 
     def at(self, time_s: Array, instants_s: Array) -> EstimatedMotion:
-        """Motion at other instants within the record.
+        """Interpolate the motion to other instants within the record.
 
         The result is the posterior mean if available, and otherwise a cubic Hermite interpolation
         of speed and acceleration. Next to a rest, the speed is interpolated linearly.
@@ -304,7 +305,7 @@ def estimate_motion(
 
 
 def _steady(run: Run) -> EstimatedMotion:
-    """Return the motion of steady states: their speeds, without acceleration and path."""
+    """Motion of steady states: their speeds, without acceleration and path."""
     if not run.speed_recorded:
         raise InputError(
             file=run.path or run.name,
@@ -317,7 +318,7 @@ def _steady(run: Run) -> EstimatedMotion:
 
 
 def _clock(run: Run, radius_m: float | None) -> Array | None:
-    """Return the instants of an even clock, s; None if the time stamps are used unchanged."""
+    """Instants of an even sampling clock, s; None if the time stamps are used unchanged."""
     # With separate clocks, the time stamps of the force differ from those of the motion.
     even_s = None if run.read else even_clock(run.time_s)
     if even_s is None:
@@ -334,7 +335,7 @@ def _clock(run: Run, radius_m: float | None) -> Array | None:
 
 
 def _late(run: Run, delay_s: float) -> list[Finding]:
-    """Return a finding if the velocity was sampled on another clock than the position."""
+    """Finding that the velocity is delayed relative to the position; empty for a small delay."""
     if abs(delay_s) < WORTH * float(np.median(np.diff(run.time_s))):
         return []
     way = "later" if delay_s > 0.0 else "earlier"
@@ -343,7 +344,7 @@ def _late(run: Run, delay_s: float) -> list[Finding]:
 
 
 def _readings(records: CorrectedRecords, time: Array, rest: Mask) -> Readings:
-    """Return the readings of a motion, with their smallest possible errors."""
+    """Readings of position and velocity for the smoother, with their smallest possible errors."""
     n, path, speed = len(time), records.path, records.speed
     sure = certain_rests(rest)
     position, velocity = np.full(n, np.nan), np.where(sure, 0.0, np.nan)

@@ -8,7 +8,7 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 LONGEST_RESIDUAL, USUAL_RESIDUAL = 10.0, 1.0
-"""Largest distance from an even clock, and its 90 % quantile, in samples."""
+"""Largest deviation from an even clock, and limit of its 90 % quantile, in samples."""
 
 
 def even_clock(time_s: Array) -> Array | None:

@@ -17,7 +17,7 @@ MAX_NOISE_SHARE = 1e-3
 
 
 def begins_with_oscillation(time_s: Array, velocity: Array) -> bool:
-    """Return True if the speed reverses before a significant displacement."""
+    """Whether the speed at the start of a run reverses before a significant displacement."""
     v = velocity
     turns = np.flatnonzero(np.sign(v[1:]) != np.sign(v[:-1])) + 1
     if v[0] == 0.0 or not len(turns):

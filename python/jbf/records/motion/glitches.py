@@ -160,7 +160,7 @@ def _differences(change: Array) -> tuple[Array, Array]:
 
 
 def _smaller_difference(before: Array, after: Array) -> Array:
-    """Return the smaller of both differences, or zero if sign or magnitude do not match."""
+    """The smaller of two differences, or zero if their signs differ or magnitudes do not match."""
     smaller, larger = (
         np.minimum(np.abs(before), np.abs(after)),
         np.maximum(np.abs(before), np.abs(after)),
@@ -175,6 +175,7 @@ def _smaller_difference(before: Array, after: Array) -> Array:
 
 
 def _median(values: Array, window: int) -> Array:
+    """Running median over a window of samples."""
     from scipy import ndimage  # importing takes most of a second
 
     median: Array = ndimage.median_filter(values, window, mode="reflect")
@@ -182,7 +183,7 @@ def _median(values: Array, window: int) -> Array:
 
 
 def _local_median(sizes: Array) -> Array:
-    """Local median size: the largest median of the centred, preceding and following windows.
+    """Largest median of sizes in the centred, preceding and following windows of each sample.
 
     Next to a rest, half of the centred window has no noise.
     """
@@ -193,7 +194,7 @@ def _local_median(sizes: Array) -> Array:
 
 
 def _displacement_error(time: Array, path: Array, speed: Array) -> Array:
-    """Displacement by which path and speed disagree on both sides of each sample, m."""
+    """Displacement, m, by which path and speed disagree both before and after each sample."""
     gap = np.abs(np.diff(path) - 0.5 * (speed[1:] + speed[:-1]) * np.diff(time))
     both: Array = np.pad(gap, (1, 0)) + np.pad(gap, (0, 1))
     return both
@@ -213,6 +214,7 @@ def _interpolated(time: Array, values: Array, mask: Mask) -> Array:
 
 
 def _words(what: str, time: Array, mask: Mask, size: str) -> str:
+    """Text of the finding on outliers: their number, time and size."""
     index = np.flatnonzero(mask)
     first = ", ".join(f"{t:.2f} s" for t in time[index[:3]])
     singles = count_of(len(index), "outlier")

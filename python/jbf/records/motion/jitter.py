@@ -11,18 +11,18 @@ from jbf.records.motion.roughness import noise_of, step_of
 Array = npt.NDArray[np.float64]
 
 LEAST = 0.01
-"""Smallest jitter that is reported, as a share of a step."""
+"""Smallest jitter that is reported, as a share of a sampling interval."""
 STEP_TOLERANCE, MIN_REGULAR_SHARE = 0.5, 0.9
 """Largest relative deviation from the usual step, and minimum share of steps within it.
 
 Otherwise the record has no constant sampling rate.
 """
 ORDER = 5
-"""Order of the differences; they vanish for a smooth path."""
+"""Order of the path differences from which noise is estimated; they vanish for a smooth path."""
 DIFFERENCE_STD = np.sqrt(252.0)
-"""Standard deviation of these differences for unit white noise: sqrt(binomial(2 ORDER, ORDER))."""
+"""Standard deviation of differences of order `ORDER` for unit white noise."""
 MAX_CORRELATION = -0.45
-"""Correlation of adjacent differences below which they are noise; it is -5/6 for white noise."""
+"""Correlation of adjacent differences below which they are noise (white noise: -5/6)."""
 MIN_NOISE_RATIO = 3.0
 """Minimum ratio of the path noise at speed to that at slow motion, and to the encoder rounding."""
 MIN_COUNTS = 1.2
@@ -32,7 +32,7 @@ MAX_ESTIMATE_RATIO = 1.6
 
 
 def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding | None:
-    """Find time stamps with jitter relative to an even clock.
+    """Report time stamps with jitter relative to an even clock.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def uneven_stamps(name: str, time: Array, *, corrected: bool = False) -> Finding
 
 
 def jittered_path(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
-    """Find a path whose noise grows with the speed.
+    """Report a path whose noise grows with the speed, due to jitter of the sampling instants.
 
     The encoder was then read at instants that differ from the time stamps.
     """

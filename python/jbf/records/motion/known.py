@@ -9,7 +9,7 @@ from jbf.records.run import Run
 
 
 def known_motion(run: Run, radius_m: float | None) -> EstimatedMotion:
-    """Return the motion of a run whose speed is exact.
+    """Motion of a planned run, whose speed is exact.
 
     Parameters
     ----------

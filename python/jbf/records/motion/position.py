@@ -33,12 +33,12 @@ class Position:
     arm_m: float
 
     def along(self, path_m: Array) -> Position:
-        """Return the same column with another path."""
+        """Return the position record with another path, m."""
         return replace(self, path_m=path_m)
 
 
 def recorded_position(run: Run, radius_m: float | None) -> Position | None:
-    """Return the recorded path; None if only the speed was recorded."""
+    """Recorded path of a run, m; None if only the speed was recorded."""
     if run.angle_rad is not None and radius_m is not None:
         return Position(np.unwrap(run.angle_rad) * radius_m, "angle_rad", "rad", radius_m)
     if run.position_m is not None:
@@ -49,7 +49,7 @@ def recorded_position(run: Run, radius_m: float | None) -> Position | None:
 
 
 def travel_of(run: Run, radius_m: float | None) -> float:
-    """Return the largest distance between two positions of a run, m (rad for a rotary drive)."""
+    """Largest distance between two positions of a run, m (rad for a rotary drive)."""
     position = recorded_position(run, radius_m)
     if position is not None:
         return float(np.ptp(position.path_m))
@@ -60,7 +60,7 @@ def travel_of(run: Run, radius_m: float | None) -> float:
 def _position_from_ratio(time: Array, angle: Array, speed: Array) -> Position | None:
     """Convert an angle of unknown radius to a path, by its ratio to the speed.
 
-    None if this ratio is not constant.
+    Returns None if this ratio is not constant.
     """
     radius = metres_per_unit(time, angle, speed)
     if radius is None:

@@ -22,9 +22,9 @@ UNIT_TOLERANCE = 0.02
 
 
 def factor_between(time: Array, path: Array, speed: Array) -> float | None:
-    """Ratio of the rate of change of the path to the speed, if it differs from one.
+    """Ratio of the rate of change of the path to the recorded speed; None if consistent with one.
 
-    None if they agree, or if their ratio is not constant.
+    Returns None also if the ratio is not constant.
     """
     for c in window_comparisons(time, path, speed, ALL_HALF_WIDTHS):
         ratio, spread = _middle(c)
@@ -36,9 +36,9 @@ def factor_between(time: Array, path: Array, speed: Array) -> float | None:
 
 
 def metres_per_unit(time: Array, path: Array, speed: Array) -> float | None:
-    """Metres of displacement, by the speed, per unit of the path, if no radius is given.
+    """Metres of displacement per unit of the recorded path, by its ratio to the speed.
 
-    None if the ratio is not constant or is negative.
+    Returns None if the ratio is not constant or is negative.
     """
     for c in window_comparisons(time, path, speed, ALL_HALF_WIDTHS):
         ratio, spread = _middle(c)
@@ -49,7 +49,7 @@ def metres_per_unit(time: Array, path: Array, speed: Array) -> float | None:
 
 
 def slope_near(time: Array, path: Array, speed: Array, estimate: float) -> float:
-    """Ratio by least squares, over the windows whose ratio is close to a first estimate."""
+    """Least-squares ratio of path rate to speed, over windows near a first estimate of it."""
     for c in window_comparisons(time, path, speed, ALL_HALF_WIDTHS):
         ratio, _ = _middle(c)
         if abs(ratio / estimate - 1.0) < MIN_DEVIATION:
@@ -64,7 +64,7 @@ def slope_near(time: Array, path: Array, speed: Array, estimate: float) -> float
 
 
 def _middle(c: Compared) -> tuple[float, float]:
-    """Median ratio over windows of fast motion, and its spread."""
+    """Median ratio of path rate to speed over windows of fast motion, and its spread."""
     fast = np.abs(c.by_speed) > FAST * np.quantile(np.abs(c.by_speed), 0.95)
     if fast.sum() < 20:
         return 1.0, np.inf

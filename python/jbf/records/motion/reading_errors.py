@@ -32,26 +32,26 @@ In a longer record, the start, the order and the clock are chosen from the first
 parameters are estimated from the second.
 """
 PASSES = (6, 24)
-"""Passes of expectation-maximisation with normal noise, for a start, and with a t distribution.
+"""Iterations of expectation-maximisation: with normal noise, then with Student-t noise.
 
-More of the latter reduce the intensity between corners further, and the standard errors of the
-motion become too small.
+More iterations with Student-t noise reduce the intensity between corners further, and the standard
+errors of the motion become too small.
 """
 TRIED = (3, 12)
-"""Passes after which the order is chosen.
+"""Iterations of both kinds after which the order (`JERK` or `SNAP`) is chosen.
 
 With fewer passes, the order for a position loop with stick-slip is uncertain.
 """
 SNAP_GAIN = 0.02
 """Minimum gain in the lower bound, per sample, for a random snap, which smooths corners."""
 LONG_PASSES = 12
-"""Passes in which the corners are estimated with known errors of the readings."""
+"""Iterations in which corners are estimated at known errors of the readings."""
 GRID, SMOOTHEST = 2.0 * np.log(10.0), 16
 """Step of the logarithm of the intensity in a first search, and the largest number of steps."""
 FLAT = 0.5
-"""Log-likelihood gain in two of these steps below which the search ends."""
+"""Log-likelihood gain in two steps of the first search below which it ends."""
 NARROW = 2.0
-"""Range around a known intensity, decades."""
+"""Search range around a known noise intensity, decades."""
 DELAY_GAIN = 10.0
 """Minimum log-likelihood gain of a delay of the velocity."""
 START_FACTORS = (1.0, 10.0, 100.0)
@@ -76,7 +76,7 @@ LONGEST_DELAY = 1.5
 
 
 def is_even(readings: Readings, even_s: Array) -> bool:
-    """Return whether an even clock has a higher likelihood than the recorded time stamps.
+    """Whether an even clock has a higher likelihood than the recorded time stamps.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def estimate_errors(
 
 @dataclass(frozen=True, eq=False)
 class _OfPositions:
-    """Errors estimated from the positions of a part of a record alone.
+    """Reading errors estimated from the positions alone, for a part of a record.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ class _OfPositions:
 
 
 def _of_positions(readings: Readings, order: int) -> _OfPositions | None:
-    """Estimate the errors from the positions alone; None if only one channel was recorded.
+    """Estimate reading errors from the positions alone; None if only one channel was recorded.
 
     Parameters
     ----------
@@ -152,14 +152,14 @@ def _of_positions(readings: Readings, order: int) -> _OfPositions | None:
 
 
 def _bound_of(readings: Readings, errors: ReadingErrors) -> float:
-    """Lower bound of the log-likelihood with these errors, and corners for them."""
+    """Lower bound of the log-likelihood at given errors, with corners estimated for them."""
     return readings.lower_bound(errors, readings.corners(errors, LONG_PASSES))
 
 
 def _consistent(
     readings: Readings, start: ReadingErrors, by_positions: _OfPositions | None
 ) -> tuple[ReadingErrors, Array]:
-    """Errors and corners with an intensity that does not contradict the positions.
+    """Reading errors and corners whose noise intensity is consistent with the positions.
 
     The velocity of a drive may have errors that are not white noise, such as filtered counts. They
     would be taken for a rough motion. The intensity is then that of the positions alone.
@@ -175,7 +175,7 @@ def _consistent(
 
 
 def _both_read(readings: Readings) -> bool:
-    """Whether both positions and velocities were measured."""
+    """Whether both position and velocity were measured."""
     velocity = np.isfinite(readings.velocity) & (readings.velocity_shape > AT_REST)
     return bool(np.isfinite(readings.position).any() and velocity.any())
 
@@ -243,6 +243,7 @@ def _likeliest_intensity(
     ones, speed = np.ones(len(readings.time_s) - 1), readings.first_speed()
 
     def cost(log_intensity: float) -> float:
+        """Negative log-likelihood at the logarithm of the intensity."""
         tried = replace(errors, intensity=float(np.exp(log_intensity)))
         return -readings.log_likelihood(tried, ones, speed)
 
@@ -269,7 +270,7 @@ def _likeliest_intensity(
 
 
 def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
-    """Maximum-likelihood errors with or without time-stamp jitter; penalised log-likelihood."""
+    """Most likely reading errors, with or without time-stamp jitter, and their log-likelihood."""
     step = float(np.median(np.diff(readings.time_s)))
     found = _likeliest_start(readings)
     start, _ = found
@@ -282,7 +283,7 @@ def _likeliest_stamps(readings: Readings) -> tuple[ReadingErrors, float]:
 
 
 def _longest_path_window(readings: Readings, longest: int) -> slice:
-    """Window of at most `longest` samples with the longest path."""
+    """Slice of at most `longest` samples with the longest path."""
     n = len(readings.time_s)
     if n <= longest:
         return slice(0, n)
@@ -298,7 +299,7 @@ def _longest_path_window(readings: Readings, longest: int) -> slice:
 def _delayed(
     readings: Readings, start: ReadingErrors, *, known_intensity: bool = False
 ) -> tuple[ReadingErrors, Array]:
-    """Errors and corners with the maximum-likelihood delay of the velocity."""
+    """Reading errors and corners with the maximum-likelihood delay of the velocity."""
     ones = np.ones(len(readings.time_s) - 1)
     errors, corners = readings.estimated(start, ones, PASSES, known_intensity=known_intensity)
     if not _both_read(readings):
@@ -327,6 +328,7 @@ def _likeliest_delay(
     speed = readings.smoothed(errors, corners, readings.first_speed()).mean[:, 1]
 
     def cost(delay_s: float) -> float:
+        """Negative log-likelihood at a delay, s."""
         tried = replace(errors, velocity_delay_s=delay_s)
         # A variance that was estimated without a delay includes the error from it.
         least = replace(

@@ -1,4 +1,4 @@
-"""Readings of a motion and their errors."""
+"""Position and velocity readings of a motion, and their errors."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ AT_REST = 1e-3
 
 @dataclass(frozen=True)
 class ReadingErrors:
-    """Errors of the readings of a motion, and the noise that drives it.
+    """Error variances of motion readings, and the noise process of the motion itself.
 
     Attributes
     ----------
@@ -49,16 +49,16 @@ class ReadingErrors:
 
 @dataclass(frozen=True, eq=False)
 class ForceReadings:
-    """Forces as linear functions of position, velocity and acceleration.
+    """Force readings as linear functions of position, velocity and acceleration.
 
     Attributes
     ----------
     instants_s
-        Instants, s, shape (n,).
+        Instants of the readings, s, shape (n,).
     rows
         Coefficients of position, velocity and acceleration, shape (n, 3).
     values
-        Values, in the unit of the force, shape (n,).
+        Force readings, in the unit of the force, shape (n,).
     variances
         Error variances of the values; infinite for a sample that is not used.
     """
@@ -71,7 +71,7 @@ class ForceReadings:
 
 @dataclass(frozen=True)
 class Readings:
-    """Readings of a motion; all arrays of shape (n,).
+    """Position and velocity readings of a motion; all arrays have shape (n,).
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ class Readings:
     velocity_shape: Array
 
     def at(self, instants_s: Array) -> tuple[Readings, IndexArray, IndexArray]:
-        """Add instants without readings.
+        """Insert instants without readings.
 
         Returns
         -------
@@ -108,6 +108,7 @@ class Readings:
         samples, added = index[: len(self.time_s)], index[len(self.time_s) :]
 
         def spread(values: Array, missing: float) -> Array:
+            """Values at the original samples, and `missing` at the added instants."""
             spread_values = np.full(len(union), missing)
             spread_values[samples] = values
             return spread_values
@@ -123,12 +124,12 @@ class Readings:
         return readings, samples, added
 
     def positions(self) -> Readings:
-        """Return the readings without the measured velocities."""
+        """The readings without measured velocities."""
         assigned = self.velocity_shape <= AT_REST
         return replace(self, velocity=np.where(assigned, self.velocity, np.nan))
 
     def part(self, part: slice) -> Readings:
-        """Return the readings of a part of the samples."""
+        """Readings of a slice of the samples."""
         return replace(
             self,
             time_s=self.time_s[part],
@@ -166,7 +167,7 @@ class Readings:
         )
 
     def smoothed(self, errors: ReadingErrors, corners: Array, speed: Array) -> SmoothedMotion:
-        """Posterior of the motion for given errors.
+        """Posterior of the motion for given reading errors.
 
         Parameters
         ----------
@@ -193,7 +194,7 @@ class Readings:
         *,
         known_intensity: bool = False,
     ) -> tuple[ReadingErrors, Array]:
-        """Errors and factors by expectation-maximisation from starting values.
+        """Estimate reading errors and step factors by expectation-maximisation.
 
         Parameters
         ----------

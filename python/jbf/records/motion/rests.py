@@ -58,7 +58,7 @@ def still_samples(
     step
         The encoder step, m.
     hum
-        A speed, m/s, that is also accepted as a rest.
+        Largest recorded speed, m/s, that is also treated as rest.
     """
     n = len(path)
     top = float(np.max(np.abs(velocity), initial=0.0))
@@ -84,7 +84,7 @@ def still_samples(
 def _within_a_step(path: Array, slow: Mask, step: float, samples: int) -> Mask:
     """Mask of the slow samples whose path stays within the encoder step.
 
-    They are in a window of `samples` slow samples over which the path varies by at most
+    These samples are in a window of `samples` slow samples over which the path varies by at most
     `STILL_STEPS` steps.
     """
     n = len(path)
@@ -99,7 +99,7 @@ def _within_a_step(path: Array, slow: Mask, step: float, samples: int) -> Mask:
 
 
 def _ptp(values: npt.NDArray[Any], samples: int) -> Array:
-    """Range of the values in each window of `samples` samples, shape (n - samples + 1,)."""
+    """Range (maximum minus minimum) of the values in each window, shape (n - samples + 1,)."""
     low: Array = values.astype(float)
     high = low
     width = 1
@@ -113,7 +113,7 @@ def _ptp(values: npt.NDArray[Any], samples: int) -> Array:
 
 
 def _reverses(time_s: Array, velocity: Array, first: int, end: int, step: float) -> bool:
-    """Return whether one or two reversals explain an apparent rest.
+    """Whether one or two reversals explain an apparent rest.
 
     With the mean acceleration between the adjacent motions, a reversal would remain within the
     encoder step for about the same duration.
@@ -193,7 +193,7 @@ def backward_near_rest(rest: Mask, time_s: Array, velocity: Array, acceleration:
 
 
 def uncertain_near_rest(rest: Mask, path: Array, velocity: Array, shift: float) -> Mask:
-    """Mask of samples next to a rest with a displacement of less than `shift`, m, along the speed.
+    """Mask of samples next to a rest within a displacement of `shift`, m, along the speed.
 
     A polynomial oscillates at the onset of a motion, and does not determine the first direction.
     """

@@ -60,7 +60,7 @@ def white_noise(signal: Array, order: int) -> float:
 
 
 def local_noise(signal: Array) -> Array | float:
-    """`noise_of` for each sample if the noise is heteroscedastic, otherwise a single number."""
+    """Noise standard deviation of each sample if heteroscedastic, otherwise a single number."""
     overall = noise_of(signal)
     if len(signal) < 4 * NOISE_WINDOW:
         return overall
@@ -74,7 +74,7 @@ def local_noise(signal: Array) -> Array | float:
 
 
 def step_of(angle: Array) -> float:
-    """Encoder step: the smallest recorded change of the angle."""
+    """Step of an encoder: the smallest recorded change of the angle."""
     steps = np.abs(np.diff(angle))
     steps = steps[steps > 1e-12]
     return float(np.min(steps)) if len(steps) else 0.0
@@ -108,7 +108,7 @@ def quantum_of(signal: Array) -> float:
 def encoder_step(path: Array) -> float:
     """Step of the encoder that recorded a path in motion, in the unit of the path.
 
-    Zero if the samples are finer than those of any encoder.
+    The result is zero if the samples are finer than those of any encoder.
     """
     step = step_of(path)
     return 0.0 if noise_of(path) > MIN_NOISE_RATIO * step / np.sqrt(12.0) else step

@@ -23,7 +23,7 @@ MAX_DELAY_DIFFERENCE = 0.1
 
 
 def further_starts(motions: Sequence[Smoothed]) -> tuple[ReadingErrors, ...]:
-    """Starting values for the reading errors of these runs; empty if all runs have the same errors.
+    """Starting values for reading errors from other runs; empty if all runs have the same errors.
 
     Returns
     -------
@@ -44,10 +44,10 @@ def further_starts(motions: Sequence[Smoothed]) -> tuple[ReadingErrors, ...]:
 
 
 def _relative_sizes(motion: Smoothed) -> Array:
-    """Logarithms of the variances of position and velocity, and the delay of the velocity.
+    """Log variances of position and velocity, and velocity delay, relative to their tolerances.
 
-    The values are relative to the tolerances `MAX_VARIANCE_RATIO` and `MAX_DELAY_DIFFERENCE`; nan
-    for a channel that was not recorded.
+    The tolerances are `MAX_VARIANCE_RATIO` and `MAX_DELAY_DIFFERENCE`; nan for a channel that was
+    not recorded.
     """
     readings, errors = motion.readings, motion.errors
     step_s = float(np.median(np.diff(readings.time_s)))

@@ -14,14 +14,14 @@ from jbf.records.motion.readings import AT_REST, ForceReadings, ReadingErrors, R
 Array = npt.NDArray[np.float64]
 
 SHORTEST = 4
-"""Number of samples below which nothing is estimated: the motion is a parabola through them."""
+"""Number of samples below which the motion is a parabola through them."""
 TURN_GAIN = 3.0
 """Minimum log-likelihood gain of corners at all reversals."""
 
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """Posterior of a motion at n instants.
+    """Posterior (smoothed estimate) of a motion at n instants.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class Smoothed:
     corners
         Factor of the noise intensity in each step, shape (n - 1,).
     own_corners
-        The factors by the readings of the motion alone.
+        The same factors, estimated from the readings of the motion alone.
     speed
         Speed at each sample, for the effect of the errors of the time stamps, shape (n,).
     mean, covariance
@@ -58,14 +58,14 @@ class Smoothed:
         speed: Array,
         own_corners: Array | None = None,
     ) -> Smoothed:
-        """Compute the posterior for given errors."""
+        """Compute the posterior of a motion for given reading errors."""
         posterior = readings.smoothed(errors, corners, speed)
         of_motion = corners if own_corners is None else own_corners
         states = posterior.mean, posterior.covariance, posterior.gain
         return cls(readings, errors, corners, speed, *states, of_motion)
 
     def rougher(self, factor: float, *, same_corners: bool = False) -> Smoothed:
-        """Posterior of the same readings with the noise intensity multiplied by a factor.
+        """Posterior of the same readings for the noise intensity times a factor.
 
         Parameters
         ----------
@@ -83,8 +83,8 @@ class Smoothed:
         """Posterior of the same readings with corners where the forces require them.
 
         The forces determine the accelerations more exactly than the readings of the motion do. The
-        factor of the noise intensity in each step is the larger one of those with and without
-        forces. The forces are not readings of the posterior itself, so that its errors remain
+        factor of the noise intensity in each step is the maximum of the factors with and without
+        the forces. The forces are not readings of the posterior itself, so that its errors remain
         independent of theirs.
 
         Parameters
@@ -114,7 +114,7 @@ class Smoothed:
 
 
 def _composed(gain: Array, chosen: npt.NDArray[np.intp]) -> Array:
-    """Gains from each chosen instant to the next chosen one."""
+    """Smoother gains between successive chosen instants, as products of the gains of all steps."""
     first, last = chosen[:-1], chosen[1:]
     one = np.eye(gain.shape[1])
     found: Array = np.broadcast_to(one, (len(first), *one.shape)).copy()
@@ -140,7 +140,10 @@ def smooth(readings: Readings, starts: Sequence[ReadingErrors] = ()) -> Smoothed
 
 
 def _smoothed(readings: Readings, errors: ReadingErrors, corners: Array) -> Smoothed:
-    """Posterior with localised corners, and with corners at all reversals if more likely."""
+    """Posterior with corners extended to adjacent steps, or with corners at all reversals.
+
+    Corners at all reversals are used if they are more likely.
+    """
     mean = readings.smoothed(errors, corners, np.zeros(len(readings.time_s))).mean
     found = _located_to_a_step(corners)
     if errors.order == JERK:
@@ -155,7 +158,7 @@ def _smoothed(readings: Readings, errors: ReadingErrors, corners: Array) -> Smoo
 
 
 def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Array:
-    """Factors of the noise intensity that permit a jump of the acceleration at each reversal.
+    """Noise-intensity factors that permit a jump of the acceleration at each reversal.
 
     In a step with a reversal the friction reverses too, so that the acceleration may change by its
     RMS. The factors are zero in the other steps.
@@ -168,7 +171,7 @@ def _of_reversals(readings: Readings, errors: ReadingErrors, mean: Array) -> Arr
 
 
 def _located_to_a_step(corners: Array) -> Array:
-    """Factors of the noise intensity with each corner extended to the adjacent steps.
+    """Noise-intensity factors with each corner extended to the adjacent steps.
 
     The expectation for one step neglects that a corner in an adjacent step has nearly the same
     likelihood. Without the extension, the standard error of the acceleration at the sample between

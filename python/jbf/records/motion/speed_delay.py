@@ -28,7 +28,7 @@ JACKKNIFE_BLOCKS = 12
 
 
 def filtered_speed(name: str, time: Array, path: Array, speed: Array) -> Finding | None:
-    """Return a finding if the speed lags the path by more than the smoother corrects."""
+    """Finding that the speed lags the path by more than the smoother corrects, or None."""
     sharpest = min(
         (_speed_delay(c) for c in window_comparisons(time, path, speed)),
         key=lambda candidate: candidate[1],

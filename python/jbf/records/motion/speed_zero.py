@@ -1,4 +1,4 @@
-"""Offset of the speed: a speed that is not zero while the position is constant.
+"""Offset of the recorded speed: it is not zero while the position is constant.
 
 Causes are a quantised speed without a level at zero, and the offset of a tachometer. Without a
 correction, a rest would appear as creep, and its friction as friction of sliding.

@@ -1,4 +1,4 @@
-"""Held samples of a path: repeated values during a motion, followed by the current position."""
+"""Held samples of a path: repeated values in motion, followed by a jump to the true position."""
 
 from __future__ import annotations
 

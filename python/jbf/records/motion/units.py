@@ -21,7 +21,7 @@ FACTOR_TOLERANCE = 0.06
 
 @dataclass(frozen=True)
 class Mismatch:
-    """A path and a speed that differ by a factor.
+    """Finding that path and speed differ by a factor, with the correction.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Mismatch:
 
     @property
     def of_speed(self) -> bool:
-        """True if the unit of the speed is wrong."""
+        """Whether the unit of the speed, not that of the path, is wrong."""
         return self.finding.channel == "velocity_m_s"
 
 
@@ -47,7 +47,7 @@ def wrong_unit(
     speed: Array,
     quantities: Quantities = BEARING,
 ) -> Mismatch | None:
-    """Detect a path and a speed that differ by a factor.
+    """Detect a wrong unit or sign of path or speed, by their ratio; None if they agree.
 
     The speed is assumed to be wrong if the factor corresponds to one of its units, otherwise the
     path. The factor is determined from the shape of both signals.
@@ -82,7 +82,7 @@ def wrong_unit(
 
 
 def _units(position: Position, *, turns: bool) -> Iterator[tuple[str, str, float]]:
-    """Yield a column, a unit that it may be in, and the factor that results."""
+    """Yield a column, a possible unit of it, and the resulting factor between path and speed."""
     turn = 2.0 * np.pi
     arm = position.arm_m
     if position.column == "angle_rad":

@@ -1,4 +1,4 @@
-"""Path and speed over the same short windows, for their comparison.
+"""Mean speeds by path and by recorded speed over the same short windows.
 
 The change of the path over a window, divided by its duration, is the mean of the true speed. The
 recorded speed is averaged over the same window, so that both are smoothed equally for any motion.
@@ -33,7 +33,7 @@ MIN_GAP_SHARE = 0.05
 The displacement of a fast motion in such a step is unknown.
 """
 USUAL_STEP_QUANTILE = 0.9
-"""Quantile of the time steps that defines the usual step, also for uneven sampling."""
+"""Quantile of the time steps that defines the typical step, also for uneven sampling."""
 MIN_WINDOWS = 60
 """Minimum number of windows for a comparison."""
 

@@ -72,7 +72,7 @@ class Alignment:
     correlation: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain values for the ledger."""
+        """Return the alignment as plain values, for the ledger."""
         content: dict[str, Any] = {"by": self.by, "offset_s": self.offset_s}
         if self.signal:
             content["signal"] = self.signal
@@ -86,7 +86,7 @@ class Alignment:
 
     @property
     def brief(self) -> str:
-        """Text that states the offset and the drift."""
+        """One-line description of the offset and the drift."""
         beyond = self.offset_s - (self.dates_s or 0.0)
         direction = "behind" if beyond >= 0.0 else "ahead of"
         digits = int(np.clip(2 - np.floor(np.log10(self.offset_std_s or 1e-2)), 1, 6))
@@ -114,7 +114,7 @@ def align(
     clocks: Mapping[Path, FileClock],
     read_signal: ReadSignal,
 ) -> list[Alignment]:
-    """Correct the clocks of all files from which columns are used.
+    """Align the clocks of all files from which columns are used with that of the main file.
 
     Parameters
     ----------
@@ -142,6 +142,7 @@ def align(
 
 
 def _check_keys(source: SideBySide, mapping: Map) -> None:
+    """Raise an InputError for an `[align]` entry that names no further file."""
     stems = [stem_of(file) for file in source.files[1:]]
     for key in mapping.align:
         if key not in stems:
@@ -214,7 +215,7 @@ def _aligned(
 def _signals(
     source: SideBySide, mapping: Map, channels: Sequence[Channel], file: Path, text: str
 ) -> tuple[Channel, Channel]:
-    """Return the records of a common signal in the main file and in the other file."""
+    """Find the records of a common signal, `text`, in the main file and in the other file."""
     key = f"align.{stem_of(file)}"
     sides = _SIDES.fullmatch(text)
     remedy = f'write such as "{stem_of(source.path)}/trigger ~ {stem_of(file)}/trigger"'
@@ -263,7 +264,7 @@ def _date_ns(
     clock: FileClock,
     file: Path,
 ) -> int | None:
-    """Return the origin of a file's times, ns since 1970; None if the times are not dates."""
+    """Date at which the times of a file begin, ns since 1970; None if the times are not dates."""
     channel = next((c for c in channels if source.file_of(c.table) == file), None)
     if channel is None:
         return None
@@ -286,7 +287,7 @@ def _date_ns(
 
 
 def _counts_from_start(table: Table, node: Node, places: Mapping[str, tuple[Table, str]]) -> bool:
-    """Return whether the times count from the date of the table's first instant."""
+    """Whether the times of a table count from the date of its first instant."""
     columns = [table.column(places[r.column][1]) for r in references(node)]
     if len(columns) != 1:
         return False
@@ -296,6 +297,7 @@ def _counts_from_start(table: Table, node: Node, places: Mapping[str, tuple[Tabl
 
 
 def _nanoseconds(date: str | None) -> int | None:
+    """Convert an ISO date to ns since 1970; None if there is no date."""
     if not date:
         return None
     zone = _ZONE.search(date) if "T" in date or " " in date else None

@@ -25,7 +25,7 @@ Report = Callable[[str, int, int], None]
 
 
 def check_folder(path: Path, *, replace: bool, holding: Sequence[str] = ()) -> None:
-    """Raise an error if a folder is not writable or contains files other than those of an import.
+    """Raise an InputError if a folder is not writable or contains files not written by an import.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def write_campaign(
     ledger: dict[str, Any],
     report: Report | None = None,
 ) -> None:
-    """Write the folder under a temporary name and rename it when it is complete.
+    """Write a campaign folder under a temporary name, and rename it when it is complete.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def write_campaign(
 
 
 def _put(temporary: Path, target: Path) -> None:
-    """Rename the temporary folder; delete an earlier import only after the new one is in place."""
+    """Rename the temporary folder to its target; delete an earlier import only afterwards."""
     if not target.exists():
         os.replace(temporary, target)
         return

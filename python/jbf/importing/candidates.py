@@ -29,7 +29,23 @@ _BY_UNIT = ("temperature", "pressure", "current", "time", "speed", "force", "tor
 
 @dataclass(frozen=True)
 class Candidate:
-    """A column of the file and the column of a run that it may provide."""
+    """Column of a file that may provide a column of a run.
+
+    Attributes
+    ----------
+    key
+        Column of the run.
+    column, header
+        Column of the file, and its analysed header.
+    sure
+        Whether quantity and unit are certain.
+    why
+        Evidence: `by name`, `by unit` or both.
+    question
+        Open question to the user; None if there is none.
+    called
+        Name of the column in an expression, if it differs from its header.
+    """
 
     key: str
     column: Column
@@ -41,7 +57,7 @@ class Candidate:
 
     @property
     def expression(self) -> str:
-        """Expression for the map: name and, unless it is in the name, unit; `[?]` if open."""
+        """Expression of the column for a map, with its unit if the name lacks it; `[?]` if open."""
         name = written(self.called or self.column.name)
         if self.question is not None:
             return f"{name} [{OPEN}]"
@@ -51,7 +67,7 @@ class Candidate:
 
 
 def candidates_of(table: Table) -> list[Candidate]:
-    """Return the columns of a table that may provide a column of a run, without the time."""
+    """Columns of a table that may provide a column of a run, except the time."""
     candidates = [c for column in table.columns if (c := _candidate(column, table)) is not None]
     return [c for c in candidates if c.key != "time_s"]
 
@@ -121,12 +137,13 @@ def _candidate(column: Column, table: Table) -> Candidate | None:
 
 
 def _fits(unit: str, key: str) -> bool:
+    """Whether a unit text denotes the unit of a column of a run."""
     stated = parse_unit(unit)
     return stated is not None and stated.in_si == wanted_unit(key).in_si
 
 
 def _key(kind: str, header: Header) -> str:
-    """Return the column of a run for a quantity with the unit of its header."""
+    """Name of the column of a run for a quantity, `kind`, with the unit of its header."""
     unit = parse_unit(header.unit)
     size = NONE if unit is None else unit.dimensions
     motor = "motor_" if header.motor else ""
@@ -156,13 +173,19 @@ def _key(kind: str, header: Header) -> str:
 
 
 def is_unambiguous(rivals: list[Candidate], key: str) -> bool:
-    """Return whether the choice among the candidates is unambiguous."""
+    """Whether exactly one of the candidates for a column of a run can be meant."""
     exact = [c for c in rivals if c.column.name == key]
     return len(exact) == 1 or (len(rivals) == 1 and rivals[0].sure)
 
 
 def choose(key: str, rivals: list[Candidate]) -> tuple[Entry, list[str], list[Question]]:
-    """Return the column for `key`, the rejected columns and the open questions."""
+    """Choose among the candidates for a column of a run.
+
+    Returns
+    -------
+    tuple
+        Map entry of the chosen column, names of the rejected columns, and open questions.
+    """
     certain = [c for c in rivals if c.sure]
     named = [c for c in rivals if c.why != "by unit"]
     if named and len(named) < len(rivals):

@@ -25,7 +25,19 @@ CUTTING_COLUMNS = (CUT_COLUMN, KEPT_COLUMN)
 
 @dataclass(frozen=True)
 class Channel:
-    """One column of a run: its expression, its source table and its time."""
+    """One column of a run: its expression, its source table and its time.
+
+    Attributes
+    ----------
+    key, unit
+        Column of the run, and its unit.
+    text, node
+        Expression over the columns of the file, as text and parsed.
+    table
+        Table of the file with the columns of the expression.
+    clock
+        Expression of the times, or `RATE`.
+    """
 
     key: str
     text: str
@@ -36,7 +48,7 @@ class Channel:
 
 
 def channels_of(source: Source, mapping: Map) -> list[Channel]:
-    """Return the channels of a map.
+    """Resolve the columns of a map to channels of a file.
 
     Raises
     ------
@@ -75,7 +87,7 @@ def channels_of(source: Source, mapping: Map) -> list[Channel]:
 
 
 def tables_of(source: Source, options: Options) -> tuple[Table, ...]:
-    """Return the tables that the options select."""
+    """Tables of a file that the options select."""
     if options.table is None or isinstance(source, SideBySide):
         return source.tables
     for table in source.tables:
@@ -94,7 +106,7 @@ def clock_of(
     names: Mapping[str, str],
     places: Mapping[str, tuple[Table, str]],
 ) -> str:
-    """Return the time expression of a column, or `rate` if only its sampling rate is known."""
+    """Expression of the times of a column of a run; `RATE` if only its sampling rate is known."""
     if mapping.options.steady:
         return RATE
     text = mapping.clocks.get(key, mapping.columns.get("time_s"))

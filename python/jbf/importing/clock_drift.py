@@ -1,4 +1,4 @@
-"""Refine the offset between two clocks to a fraction of a sample, and estimate their drift.
+"""Offset between two clocks to a fraction of a sample, and their drift, from a common signal.
 
 Notes
 -----
@@ -47,7 +47,7 @@ ITERATIONS = 20
 
 @dataclass(frozen=True)
 class ClockFit:
-    """Clock of a record relative to that of the main record.
+    """Estimated clock of a record relative to that of the main record.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class ClockFit:
 
 @dataclass(frozen=True)
 class _Window:
-    """Samples of the slower record, and of the faster record around them with its slope."""
+    """Samples of the slower record in a window, and the faster record with its slope there."""
 
     slow_s: Array
     slow: Array
@@ -93,7 +93,7 @@ class _Window:
 
 
 def refine(main: Stream, other: Stream, coarse: Offset) -> ClockFit:
-    """Estimate offset and drift from a coarse offset.
+    """Estimate the offset and the drift of a clock, starting from a coarse offset.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def refine(main: Stream, other: Stream, coarse: Offset) -> ClockFit:
 
 
 class _Problem:
-    """Least-squares problem for one pair of records."""
+    """Least-squares problem in offset, drift, gain and zero for one pair of records."""
 
     def __init__(self, main: Stream, other: Stream, coarse: Offset) -> None:
         self.coarse = coarse
@@ -149,7 +149,7 @@ class _Problem:
         return windows
 
     def solve(self) -> ClockFit:
-        """Return the estimate of the clock."""
+        """Solve for the offset, and the drift if it is significant."""
         start = self._start()
         solution = self._minimise(start, with_drift=True)
         drift, error, clusters = solution[1], *self._drift_error(solution)
@@ -180,7 +180,7 @@ class _Problem:
         )
 
     def _start(self) -> tuple[float, float]:
-        """Return the best offset and drift on a grid of trial values."""
+        """Best offset and drift on a grid of trial values."""
         lobe = self.coarse.lobe_s
         spacing = max(self.step / TRIAL_OFFSETS_PER_STEP, lobe / 50.0)
         reach = np.arange(0.0, lobe + spacing, spacing)
@@ -198,9 +198,9 @@ class _Problem:
         return best
 
     def _model(self, offset: float, drift: float) -> tuple[Array, Array, Array, Array]:
-        """Return the slower record, the faster record at its samples, and its derivatives.
+        """Slower record, faster record at its samples, and the derivatives by offset and drift.
 
-        The derivatives are those of the faster record by offset and by drift.
+        The derivatives are those of the faster record.
         """
         slow, fast, by_offset, by_drift = [], [], [], []
         for window in self.windows:
@@ -231,7 +231,7 @@ class _Problem:
         return float(slow @ fast) / power**0.5 if power > 0.0 else 0.0
 
     def _correlation_within_windows(self, offset: float, drift: float) -> float:
-        """Return the correlation without the differences between the means of windows."""
+        """Correlation of both records after subtraction of their means in each window."""
         slow, fast, *_ = self._model(offset, drift)
         ends = np.cumsum([len(window.slow) for window in self.windows])[:-1]
         slow, fast = (
@@ -242,7 +242,7 @@ class _Problem:
         return float(slow @ fast) / power**0.5 if power > 0.0 else 0.0
 
     def _linearised(self, at: tuple[float, float], *, with_drift: bool) -> tuple[Array, Array]:
-        """Return residuals and design matrix (zero, gain, offset, drift), shape (n, 3 or 4)."""
+        """Residuals and design matrix (zero, gain, offset, drift) at a point, shape (n, 3 or 4)."""
         slow, fast, by_offset, by_drift = self._model(*at)
         mean = fast.mean()
         centred = fast - mean
@@ -254,7 +254,7 @@ class _Problem:
         return slow - slow.mean() - gain * centred, np.column_stack(columns)
 
     def _minimise(self, start: tuple[float, float], *, with_drift: bool) -> tuple[float, float]:
-        """Minimise by Gauss-Newton iterations and return the best point visited."""
+        """Minimise the sum of squares by Gauss-Newton iterations; return the best point visited."""
         best = point = start
         smallest = 1.0 - self._correlation(*start) ** 2
         lever = max(self.last_s - self.first_s, self.step)
@@ -277,11 +277,12 @@ class _Problem:
         return best
 
     def _offset_bounds(self) -> tuple[float, float]:
+        """Lower and upper bound of the offset, s."""
         reach = self.coarse.lobe_s + self.step
         return self.coarse.offset_s - reach, self.coarse.offset_s + reach
 
     def _centred(self, offset: float, drift: float) -> float:
-        """Return the middle of the offsets that fit equally well.
+        """Middle of the range of offsets that fit equally well.
 
         Such a range of offsets exists between two edges of a square wave.
         """
@@ -297,7 +298,7 @@ class _Problem:
         return middle if abs(middle - offset) > 0.1 * self.step else offset
 
     def _covariance(self, at: tuple[float, float], *, with_drift: bool) -> Array:
-        """Return the covariance of the offset, or of offset and drift, shape (1, 1) or (2, 2)."""
+        """Covariance of the offset, or of offset and drift, shape (1, 1) or (2, 2)."""
         residual, design = self._linearised(at, with_drift=with_drift)
         scores = design[:, 2:] * residual[:, None]
         ends = np.cumsum([len(window.slow) for window in self.windows])[:-1]
@@ -311,9 +312,10 @@ class _Problem:
         return covariance
 
     def _curvature(self, at: tuple[float, float], *, with_drift: bool) -> Array:
-        """Return the second derivatives of half the sum of squares, by finite differences.
+        """Hessian of half the sum of squares, by finite differences.
 
-        The squares of the slopes would include their noise, which does not determine the offset.
+        The Gauss-Newton approximation would include the noise of the slopes, which does not
+        determine the offset.
         """
         by = max(0.25 * self.step, 0.25 * self.coarse.lobe_s)
         steps = np.diag([by, 4.0 * by / max(self.last_s - self.first_s, self.step)])
@@ -334,7 +336,7 @@ class _Problem:
         return hessian
 
     def _drift_error(self, at: tuple[float, float]) -> tuple[float, float]:
-        """Return the standard error of the drift, and the effective number of windows."""
+        """Standard error of the drift, and the effective number of windows."""
         covariance = self._covariance(at, with_drift=True)
         effective = self._effective_windows()
         error = float(np.sqrt(max(covariance[1, 1], 0.0)))
@@ -343,26 +345,27 @@ class _Problem:
         return float(np.hypot(error, sampling)), effective
 
     def _effective_windows(self) -> float:
+        """Effective number of windows with information on the drift."""
         # Weights are variances of the signal: where it is constant, its slope is mostly noise.
         weights = [float(np.var(window.slow)) for window in self.windows]
         total = sum(weight**2 for weight in weights)
         return float(sum(weights) ** 2 / total) if total > 0.0 else 0.0
 
     def _sampling_error(self, windows: float) -> float:
-        """Return the standard error due to the sampling interval at edges of the signal, s."""
+        """Standard error of the offset due to the sampling interval at edges of the signal, s."""
         if self.coarse.lobe_s >= 2.0 * self.step:
             return 0.0
         return float(self.step / np.sqrt(12.0 * max(windows, 1.0)))
 
 
 def _rows_between(stream: Stream, first_s: float, last_s: float) -> Array:
-    """Return the rows between two instants that have a value."""
+    """Rows of a stream between two instants that have a value."""
     rows = stream.read(*stream.rows_between(0, first_s, last_s))
     return rows[np.isfinite(rows[:, 1])]
 
 
 def _smoothed(values: Array, width: int) -> Array:
-    """Apply a moving mean over an odd number of samples three times.
+    """Smooth values by a moving mean over an odd number of samples, applied three times.
 
     The noise of interpolated values is then equal between samples and at samples. This prevents a
     bias of the estimate towards either.

@@ -1,4 +1,4 @@
-"""Estimate the offset between two clocks from one signal that both recorded.
+"""Coarse offset between two clocks, from one signal that both recorded.
 
 The correlation is computed at every lag on a common grid. At each lag it is the Pearson coefficient
 over the samples that both records have in common (D. Padfield, "Masked object registration in the
@@ -46,7 +46,7 @@ REMEDY = "name another common signal under [align], or the offset in seconds"
 
 @dataclass(frozen=True)
 class Offset:
-    """Offset to within one lobe of the correlation.
+    """Estimated offset between two clocks, to within one lobe of the correlation.
 
     Attributes
     ----------
@@ -91,17 +91,18 @@ def find_offset(main: Stream, other: Stream) -> Offset:
 
 
 def span(stream: Stream) -> tuple[float, float]:
-    """Return the first and last time of a stream, s."""
+    """First and last time of a stream, s."""
     return stream.at(0), stream.at(stream.rows - 1)
 
 
 def usual_step(stream: Stream) -> float:
-    """Return the median step of a stream's times, s."""
+    """Median time step of a stream, s."""
     times = stream.read(0, 20_000)[:, 0]
     return float(np.median(np.diff(times))) if len(times) > 1 else 1.0
 
 
 def _pieces(first_s: float, last_s: float) -> Iterator[tuple[float, float]]:
+    """Yield the begin and end, s, of pieces of a record."""
     yield first_s, last_s
     if last_s - first_s > 1.5 * PIECE_S:
         for centre in np.linspace(first_s, last_s, PIECES + 2)[1:-1].tolist():
@@ -109,7 +110,7 @@ def _pieces(first_s: float, last_s: float) -> Iterator[tuple[float, float]]:
 
 
 def _offset_of(main: Stream, other: Stream, begin_s: float, end_s: float) -> Offset:
-    """Return the offset estimated from a piece of the other record."""
+    """Estimate the offset from a piece of the other record."""
     main_s, last_s = span(main)
     longest = max(last_s - main_s, end_s - begin_s)
     step = max(min(usual_step(main), usual_step(other)), longest / POINTS)
@@ -130,7 +131,7 @@ def _offset_of(main: Stream, other: Stream, begin_s: float, end_s: float) -> Off
 def _on_grid(
     stream: Stream, first_s: float, last_s: float, step: float, *, fill: bool
 ) -> tuple[Array, Mask]:
-    """Return the standardised means of a signal in grid cells, and which cells have samples.
+    """Standardised means of a signal in the cells of a time grid, and which cells have samples.
 
     Parameters
     ----------
@@ -169,19 +170,21 @@ def _on_grid(
 
 
 def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Mask]:
-    """Correlate `b` with shifted `a` at lags from 1 - len(b) to len(a) - 1.
+    """Masked correlation coefficients of `b` with shifted `a`, and a mask of the defined lags.
 
-    Return the correlation coefficients and a mask of the lags at which they are defined.
+    The lags are from 1 - len(b) to len(a) - 1.
     """
     from scipy.fft import irfft, next_fast_len, rfft
 
     size = next_fast_len(len(a) + len(b) - 1, real=True)
 
     def spectrum(values: Array) -> npt.NDArray[np.complex128]:
+        """Zero-padded spectrum of values."""
         transform: npt.NDArray[np.complex128] = rfft(values, size)
         return transform
 
     def sums(left: npt.NDArray[np.complex128], right: npt.NDArray[np.complex128]) -> Array:
+        """Sums of products at all lags, from two spectra."""
         circular = irfft(left * right.conj(), size)
         return np.concatenate((circular[size - len(b) + 1 :], circular[: len(a)]))
 
@@ -202,7 +205,7 @@ def _correlations(a: Array, in_a: Mask, b: Array, in_b: Mask) -> tuple[Array, Ma
 
 
 def _clear_peak(r: Array, allowed: Mask, offsets: Array) -> tuple[int, int, int]:
-    """Return the lag of the largest absolute correlation, and the first and last lag of its lobe.
+    """Lag of the largest absolute correlation, and the first and last lag of its lobe.
 
     Raises
     ------

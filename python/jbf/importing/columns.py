@@ -1,4 +1,4 @@
-"""Recognise the quantity and the unit of a column from its header.
+"""Recognition of the quantity and the unit of a column from its header.
 
 A name is split into words. Each known word indicates a quantity, and some words indicate its origin
 (a motor, a set point). If the words indicate several quantities, the unit in the header selects one
@@ -41,7 +41,7 @@ KINDS: dict[str, tuple[Dimensions, ...]] = {
     "pressure": (PRESSURE,),
     "voltage": (VOLTAGE,),
 }
-"""Dimensions that each quantity may have."""
+"""Possible dimensions of each quantity."""
 
 _WORDS = {
     "time": "t time zeit temps tiempo tempo timestamp zeitstempel uhrzeit datum date datetime "
@@ -84,6 +84,7 @@ _CLOCKS = {
 
 
 def _words(text: str) -> frozenset[str]:
+    """Set of the words of a text."""
     return frozenset(text.split())
 
 
@@ -97,7 +98,7 @@ _MODELLED = _words(
 )
 """Words for computed values, which were not measured by a sensor or a drive."""
 _SECOND_MEANINGS = {"effort": "torque"}
-"""Second meaning of a word: a force in French, a torque in robot logs. The unit decides."""
+"""Second quantity of an ambiguous word: a force in French, a torque in robot logs."""
 _ACTUAL = {"ist", "istwert", "actual", "act", "measured", "meas", "mess", "réel", "reel"}
 _ANGLES = _words(
     "angle winkel theta phi drehwinkel angolo angulo ángulo alpha encoder enc drehzahl omega "
@@ -132,7 +133,7 @@ _IN_BRACKETS = 4
 
 @dataclass(frozen=True)
 class Header:
-    """Parts of a column header.
+    """Column header, split into name, unit and indicated quantity.
 
     Attributes
     ----------
@@ -161,7 +162,7 @@ class Header:
 
 
 def split_unit(text: str) -> tuple[str, str]:
-    """Split a header into its name and the stated unit, which may be empty."""
+    """Split a header into its name and its unit, which may be empty."""
     # Names that occur twice in a file are numbered.
     heading = re.sub(r" #\d+$", "", " ".join(text.split()))
     candidates: list[tuple[str, str]] = []
@@ -185,7 +186,7 @@ def split_unit(text: str) -> tuple[str, str]:
 
 
 def parse_header(text: str, unit: str = "") -> Header:
-    """Analyse a header.
+    """Determine name, unit and quantity of a column from its header.
 
     Parameters
     ----------
@@ -227,7 +228,7 @@ def parse_header(text: str, unit: str = "") -> Header:
 
 
 def _unnumbered(words: list[str], unit: Unit | None) -> tuple[list[str], list[str]]:
-    """Split numbers off the ends of quantity words such as `q1`; return both."""
+    """Split numbers off the ends of quantity words such as `q1`; return words and numbers."""
     stems, numbers = [], []
     for word in words:
         match = _NUMBERED.fullmatch(word)
@@ -244,17 +245,18 @@ def _unnumbered(words: list[str], unit: Unit | None) -> tuple[list[str], list[st
 
 
 def _is_setpoint(word: str) -> bool:
-    """Return whether a word names a set point, alone or in a compound: Sollgeschwindigkeit."""
+    """Whether a word names a set point, alone or in a compound (Sollgeschwindigkeit)."""
     return word in _SETPOINT or "soll" in word
 
 
 def _is_label(word: str) -> bool:
+    """Whether a word is a number or letter that distinguishes columns, such as a joint."""
     has_meaning = word in _BY_WORD or word in _MOTOR or _is_setpoint(word) or word in _ACTUAL
     return not has_meaning and word not in _GENERIC and _quantity_of_last_part(word) is None
 
 
 def _quantity_of_last_part(word: str) -> str | None:
-    """Return the quantity of a compound by its known last part: Spindeldrehzahl, Hydraulikdruck."""
+    """Quantity of a compound word by its known last part (Spindeldrehzahl, Hydraulikdruck)."""
     for length in range(len(word) - 1, 3, -1):
         kind = _BY_WORD.get(word[-length:])
         if kind is not None and length >= 5:
@@ -263,7 +265,7 @@ def _quantity_of_last_part(word: str) -> str | None:
 
 
 def _choose_quantity(kinds: list[tuple[str, str]], unit: Unit | None) -> str | None:
-    """Choose the quantity among those of several words.
+    """Choose one quantity among those that several words of a header indicate.
 
     A quantity that the unit fits comes first, then long words before short ones. A load takes
     precedence over the force that its name contains.

@@ -1,4 +1,4 @@
-"""Evaluate expressions block by block, with units that are checked before values are read."""
+"""Evaluation of expressions block by block; units are checked before values are read."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Quantity:
 
 
 def column_unit(reference: Reference, units: Mapping[str, str]) -> Unit:
-    """Return the unit in which a column is read.
+    """Unit in which a column is read: that of the expression, otherwise that of the file.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def evaluate(node: Node, columns: Mapping[str, Value], units: Mapping[str, str])
 
 
 def converted(quantity: Quantity, target: Unit, key: str) -> Array:
-    """Convert values to the unit that the name of a column implies.
+    """Convert values to the unit that the name of a run column implies.
 
     Raises
     ------
@@ -145,6 +145,7 @@ def converted(quantity: Quantity, target: Unit, key: str) -> Array:
 
 
 def _product(sign: str, left: Quantity, right: Quantity) -> Quantity:
+    """Multiply or divide two quantities."""
     unit_uncertain = left.unit_uncertain or right.unit_uncertain
     if sign == "*":
         return Quantity(left.value * right.value, left.unit.times(right.unit), unit_uncertain)
@@ -154,6 +155,7 @@ def _product(sign: str, left: Quantity, right: Quantity) -> Quantity:
 
 
 def _sum(sign: str, left: Quantity, right: Quantity) -> Quantity:
+    """Add or subtract two quantities; their units must be compatible."""
     unit, value = left.unit, right.value
     if right.unit.dimensions == unit.dimensions:
         value = right.unit.converted(np.asarray(value, dtype=np.float64), unit)
@@ -172,6 +174,7 @@ def _sum(sign: str, left: Quantity, right: Quantity) -> Quantity:
 
 
 def _called(node: Call, inner: Quantity) -> Quantity:
+    """Apply a function to a quantity."""
     _no_zero(inner.unit)
     if node.function == "abs":
         return Quantity(np.abs(inner.value), inner.unit, inner.unit_uncertain)
@@ -189,6 +192,7 @@ def _called(node: Call, inner: Quantity) -> Quantity:
 
 
 def _root(inner: Quantity) -> Value:
+    """Square root of the value of a quantity."""
     if inner.unit.dimensions != NONE:
         raise InputError(
             problem=f"the square root of {inner.unit.text} has no unit",
@@ -200,7 +204,7 @@ def _root(inner: Quantity) -> Value:
 
 
 def _refuse_double_conversion(node: Binary, left: Quantity, right: Quantity) -> None:
-    """Raise an error if a bare factor would repeat the conversion of a unit."""
+    """Raise an InputError if a factor without a unit would repeat the conversion of a unit."""
     for this, other, power in ((left, right, 1), (right, left, 1 if node.sign == "*" else 0)):
         if not (other.unit_uncertain and isinstance(other.value, float) and power):
             continue
@@ -216,6 +220,7 @@ def _refuse_double_conversion(node: Binary, left: Quantity, right: Quantity) -> 
 
 
 def _no_zero(unit: Unit) -> None:
+    """Raise an InputError for a unit with an offset, such as degrees Celsius."""
     if unit.zero:
         raise InputError(
             problem=f"{unit.text} has an offset zero and cannot be used in a calculation",

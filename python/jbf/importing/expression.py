@@ -1,4 +1,4 @@
-"""Parse column expressions: `Torque [Nm] / 0.0127`, `-Drehzahl [U/min]`, `p [bar] * 3.1 [cm^2]`.
+"""Parser for column expressions: `Torque [Nm] / 0.0127`, `p [bar] * 3.1 [cm^2]`.
 
     sum     = product { ("+" | "-") product }
     product = signed { ("*" | "/") signed }
@@ -23,7 +23,7 @@ from jbf.errors import InputError, did_you_mean, quoted
 
 FUNCTIONS = ("abs", "sign", "sqrt", "sin", "cos")
 OPEN = "?"
-"""Text in the unit brackets, or in place of a value, that is not yet known."""
+"""Placeholder in unit brackets, or in place of a value, that the user must replace."""
 
 _NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?")
 _UNIT = re.compile(r"\s*\[([^\[\]]*)\]")
@@ -41,7 +41,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Reference:
-    """A column, and the unit that the expression states for it, if any."""
+    """A column in an expression, and the unit stated after it, if any."""
 
     column: str
     unit: str | None
@@ -75,7 +75,7 @@ Node = Number | Reference | Signed | Binary | Call
 
 
 def references(node: Node) -> list[Reference]:
-    """Return every column reference of an expression, from left to right."""
+    """All column references of an expression, from left to right."""
     if isinstance(node, Reference):
         return [node]
     if isinstance(node, Binary):
@@ -84,7 +84,7 @@ def references(node: Node) -> list[Reference]:
 
 
 def written(name: str) -> str:
-    """Return the name of a column as written in an expression."""
+    """Name of a column as it must be written in an expression (quoted if necessary)."""
     return f"`{name}`"
 
 
@@ -107,7 +107,7 @@ def parse_expression(text: str, names: Mapping[str, str], columns: Sequence[str]
 
 
 class _Parser:
-    """Recursive-descent parser; `at` is the index of the next character."""
+    """Recursive-descent parser of column expressions; `at` is the index of the next character."""
 
     def __init__(self, text: str, names: Mapping[str, str], columns: Sequence[str]) -> None:
         self.text = text
@@ -190,7 +190,7 @@ class _Parser:
         return inside
 
     def _longest_name(self) -> str | None:
-        """Return the longest name at this position that does not end within a word."""
+        """Longest column name at the current position that does not end within a word."""
         self._skip()
         rest = self.text[self.at :]
         for name in self.longest_first:

@@ -22,7 +22,7 @@ EPOCH_S = (1e8, 1e10)
 
 @dataclass
 class FileClock:
-    """Clock of one file.
+    """Clock of one file: origin of its times, and their correction.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class FileClock:
     rounded: bool = False
 
     def seconds(self, node: Node, values: Mapping[str, Values], units: Mapping[str, str]) -> Array:
-        """Return corrected times, s.
+        """Evaluate the time expression of a file and return corrected times, s.
 
         The whole seconds of the first time are subtracted before any rounding: in the column that
         counts from 1970, and in its unit.
@@ -75,6 +75,7 @@ def _time(node: Node, values: Mapping[str, Values], units: Mapping[str, str]) ->
 
 
 def _is_since_1970(time: Array) -> bool:
+    """Whether times, s, are plausible as seconds since 1970."""
     finite = time[np.isfinite(time)]
     return bool(finite.size) and bool(EPOCH_S[0] < finite[0] < EPOCH_S[1])
 
@@ -82,7 +83,10 @@ def _is_since_1970(time: Array) -> bool:
 def _column_since_1970(
     node: Node, values: Mapping[str, Values], units: Mapping[str, str]
 ) -> Reference | None:
-    """Return the column that counts from 1970, alone or in a sum: `secs [s] + nsecs [ns]`."""
+    """Column of a time expression that counts from 1970, such as in `secs [s] + nsecs [ns]`.
+
+    Returns None if no column counts from 1970.
+    """
     if isinstance(node, Binary) and node.sign in ("+", "-"):
         sides = (node.left, node.right) if node.sign == "+" else (node.left,)
         columns = (_column_since_1970(side, values, units) for side in sides)

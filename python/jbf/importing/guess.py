@@ -1,4 +1,4 @@
-"""Propose the quantity and unit of each column of a file, and state how certain they are."""
+"""Proposal of a map for a file: quantity and unit of each column, with their certainty."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ from jbf.importing.side_by_side import file_of
 from jbf.importing.targets import FRICTION, KNOWN, MOTION
 
 HEAD = 5_000
-"""Number of rows that are inspected."""
+"""Number of rows of a file that are inspected."""
 
 
 def guess(source: Source, joint: str | None = None) -> Guess:
-    """Propose a map for a file.
+    """Propose a map for an open file.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def guess(source: Source, joint: str | None = None) -> Guess:
 
 
 def _joints(tables: Sequence[Table]) -> list[str]:
-    """Return the labels of joints if several joints have both a friction and a motion."""
+    """Labels of joints, if several joints have both a friction and a motion; otherwise empty."""
     labels: dict[bool, list[str]] = {True: [], False: []}
     for table in tables:
         for candidate in candidates_of(table):
@@ -168,7 +168,7 @@ def _joints(tables: Sequence[Table]) -> list[str]:
 
 
 def _with_table(questions: list[Question], table: Table) -> list[Question]:
-    """Add the name of the table to the place of each question."""
+    """Add the name of the table to the place that each question names."""
     return [replace(question, place=f"{table.name}/{question.place}") for question in questions]
 
 
@@ -183,17 +183,19 @@ def _qualify_names(expression: str, table: Table, occurrences: Counter[str]) -> 
 
 
 def _order(key: str) -> int:
+    """Position of a column of a run in the map."""
     return KNOWN.index(key) if key in KNOWN else len(KNOWN)
 
 
 def _is_used(column: Column, entries: Mapping[str, Entry]) -> bool:
+    """Whether an entry of the map uses a column of the file."""
     return any(written(column.name) in entry.expression for entry in entries.values())
 
 
 def _missing_questions(
     entries: Mapping[str, Entry], source: Source, lone_motion: bool
 ) -> list[Question]:
-    """Return questions for a missing friction or motion; a motion alone is a coast-down."""
+    """Questions for a missing friction or motion; a motion alone is taken as a coast-down."""
     names = [c.name for t in source.tables for c in t.columns]
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
     questions = []
@@ -220,6 +222,7 @@ def _missing_questions(
 def _unused_columns(
     table: Table, candidates: list[Candidate], time: Entry | None
 ) -> dict[str, str]:
+    """Columns of a table that the map does not use, with the reason."""
     used = {c.column.name for c in candidates}
     reasons = {}
     for column in table.columns:

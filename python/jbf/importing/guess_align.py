@@ -1,4 +1,4 @@
-"""Propose an alignment of the clocks of files that were recorded at the same time."""
+"""Proposal for the alignment of the clocks of files recorded at the same time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NEVER = ("time", "index", "run")
 
 
 def with_alignment(guess: Guess, source: SideBySide) -> Guess:
-    """Add the further files and an `[align]` section, or a question for each open entry.
+    """Add the further files and the section `[align]` to a proposed map, or open questions.
 
     Dates align files without an entry. Otherwise, if two files have exactly one numeric column in
     common, that column is proposed. The proposal is certain if its records determine the offset.
@@ -58,7 +58,7 @@ def with_alignment(guess: Guess, source: SideBySide) -> Guess:
 
 
 def _is_used(guess: Guess, source: SideBySide, file: Path) -> bool:
-    """Return whether columns of the file are used, as far as this is decided."""
+    """Whether the proposed map uses columns of a file, as far as its entries are decided."""
     try:
         channels = channels_of(source, _without_open_columns(guess))
     except InputError:
@@ -67,7 +67,7 @@ def _is_used(guess: Guess, source: SideBySide, file: Path) -> bool:
 
 
 def _without_open_columns(guess: Guess) -> Map:
-    """Return the map without the columns whose value is still to be specified."""
+    """Proposed map without the columns whose expressions are still open."""
     mapping = guess.map()
     columns = {key: text for key, text in mapping.columns.items() if text != OPEN}
     return replace(mapping, columns=columns)
@@ -76,9 +76,9 @@ def _without_open_columns(guess: Guess) -> Map:
 def _try_alignment(
     guess: Guess, source: SideBySide, file: Path, align: Mapping[str, str | float]
 ) -> str | InputError | None:
-    """Try an alignment and describe it.
+    """Align a file with the proposed entry, and describe the result.
 
-    Return the error if it fails, and None if a time is still open.
+    Returns the error if the alignment fails, and None if a time column is still open.
     """
     mapping = replace(_without_open_columns(guess), align=align)
     try:
@@ -96,7 +96,7 @@ def _try_alignment(
 
 
 def _shared_columns(source: SideBySide, file: Path) -> list[str]:
-    """Return pairs of equally named columns of the main file and another file, as in the map."""
+    """Pairs of equally named columns of the main file and another file, as `[align]` entries."""
     by_name: tuple[dict[str, str], dict[str, str]] = ({}, {})
     for table in source.tables:
         path = source.file_of(table)
@@ -110,6 +110,7 @@ def _shared_columns(source: SideBySide, file: Path) -> list[str]:
 
 
 def _may_be_common(column: Column, table: Table) -> bool:
+    """Whether a column can be a signal that two files have in common."""
     if column.kind != "number" or column.name == table.clock:
         return False
     header = parse_header(column.name, column.unit)

@@ -1,4 +1,4 @@
-"""Derive rig sections from the columns of a file, and questions for the user."""
+"""Proposal of rig sections from the columns of a file, with questions to the user."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _QUESTIONS = {
 
 
 def guess_rig(keys: set[str], lone_motion: bool = False) -> tuple[Sections, list[Question]]:
-    """Return the sections of the rig, with `?` for open values, and the questions.
+    """Propose the sections of a rig, with `?` for open values, and the questions about them.
 
     Parameters
     ----------
@@ -103,9 +103,9 @@ def by_machine(entries: Mapping[str, Entry]) -> dict[str, Entry]:
 
 
 def redundant_motor_columns(entries: Mapping[str, Entry]) -> list[str]:
-    """Return the motor columns that are not needed if a slide has a force and a motion.
+    """Motor columns that a slide with a recorded force and motion does not need.
 
-    They would require a screw pitch.
+    These columns would require a screw pitch.
     """
     if "friction_n" not in entries or not entries.keys() & {"position_m", "velocity_m_s"}:
         return []
@@ -137,6 +137,6 @@ def force_as_torque(entries: dict[str, Entry], ignored: dict[str, str]) -> list[
 
 
 def column_of(entry: Entry) -> str:
-    """Return the file column of an entry; its key if the expression is open."""
+    """File column of a map entry; the key of the entry if its expression is open."""
     parts = entry.expression.split("`")
     return parts[1] if len(parts) > 1 else entry.key

@@ -1,4 +1,4 @@
-"""Find the time column of a table and its unit."""
+"""Detection of the time column of a table, and of its unit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Found = tuple[Entry | None, list[Question]]
 
 
 def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
-    """Return the map entry for the time of a table, and open questions about it."""
+    """Propose the map entry for the time of a table, with open questions about it."""
     if table.clock is not None:
         return Entry("time_s", written(table.clock), "clock of the format"), []
     exact = [c for c in table.columns if c.name == "time_s" and c.kind == "number"]
@@ -80,14 +80,14 @@ def guess_time(table: Table, head: Mapping[str, Values]) -> Found:
 
 
 def _one_of(candidates: Sequence[str]) -> Found:
-    """Ask which of several times is that of the recording."""
+    """Open question which of several time columns is that of the recording."""
     names = ", ".join(candidates)
     question = f"which of these is it: {names}? Those of other channels belong under [clocks]"
     return Entry("time_s", OPEN, f"one of: {names}", sure=False), [Question("time_s", question)]
 
 
 def _stamps_in_two_columns(table: Table, head: Mapping[str, Values]) -> list[tuple[str, str]]:
-    """Return the columns of seconds and of nanoseconds of each stamp, as in ROS logs."""
+    """Pairs of columns with the seconds and the nanoseconds of a time stamp, as in ROS logs."""
     parts: dict[tuple[str, bool], str] = {}
     for column in table.columns:
         match = _PART.fullmatch(column.name)
@@ -106,9 +106,9 @@ def _stamps_in_two_columns(table: Table, head: Mapping[str, Values]) -> list[tup
 def time_by_motion(
     entries: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
 ) -> Entry | None:
-    """Determine an open unit of time by the agreement of speed and change of position.
+    """Determine an open time unit by the agreement of speed and change of position.
 
-    Return the entry if exactly one unit fits, else None. Position and speed without units are
+    Returns the entry if exactly one unit fits, else None. Position and speed without units are
     assumed to be in corresponding units, such as rad and rad/s. The ratio of other pairs of units
     is not 1000, the factor between units of time.
     """
@@ -135,17 +135,18 @@ def time_by_motion(
 
 
 def _with_column_unit(entry: Entry) -> Entry:
-    """Return an entry with an open unit replaced by that of its run column."""
+    """Map entry with its open unit replaced by the unit of its run column."""
     unit = wanted_unit(entry.key).text
     return replace(entry, expression=entry.expression.replace(f"[{OPEN}]", f"[{unit}]"))
 
 
 def is_doubtful_time(header: Header) -> bool:
-    """Return whether a header is a time in `m`, which may mean minutes or milliseconds."""
+    """Whether a header is a time in `m`, which may mean minutes or milliseconds."""
     return header.kind == "time" and header.unit == "m"
 
 
 def _is_time(column: Column) -> bool:
+    """Whether the header or the kind of a column is that of a time."""
     if column.kind != "number":
         return False
     header = parse_header(column.name, column.unit)
@@ -160,11 +161,13 @@ def _is_time(column: Column) -> bool:
 
 
 def _time_unit(column: Column) -> bool:
+    """Whether the unit of a column is a unit of time."""
     unit = parse_unit(parse_header(column.name, column.unit).unit)
     return unit is not None and unit.dimensions == TIME
 
 
 def _of_number(column: Column, step: float | None = None) -> Found:
+    """Map entry and questions for a numeric time column; `step` is its median step."""
     header = parse_header(column.name, column.unit)
     if _time_unit(column):
         in_name = parse_header(column.name).unit
@@ -192,7 +195,10 @@ def _of_number(column: Column, step: float | None = None) -> Found:
 
 
 def _since_1970(column: Column, values: Values) -> Entry | None:
-    """Return an entry for a number without a unit if it counts from 1970 in exactly one unit."""
+    """Map entry for a time column without a unit whose values count from 1970; None otherwise.
+
+    The magnitude of the values must fit the years 2000 to 2100 in one of s, ms, us and ns.
+    """
     times = np.asarray(values, dtype=np.float64)
     times = times[np.isfinite(times)]
     if parse_header(column.name, column.unit).unit or not times.size:
@@ -205,7 +211,7 @@ def _since_1970(column: Column, values: Values) -> Entry | None:
 
 
 def _runs_forward(values: Values) -> bool:
-    """Return whether a column may be a clock: it increases, except where a recording restarts."""
+    """Whether a column may be a time: it increases, except where a recording restarts."""
     times = np.asarray(values, dtype=np.float64)
     steps = np.diff(times[np.isfinite(times)])
     steps = steps[steps != 0.0]
@@ -215,7 +221,7 @@ def _runs_forward(values: Values) -> bool:
 
 
 def _steps(values: Values) -> float | None:
-    """Return the median step of an increasing column, or None if it does not increase."""
+    """Median step of an increasing column; None if it does not increase."""
     steps = np.diff(np.asarray(values, dtype=np.float64))
     grows = steps[steps > 0.0]
     return float(np.median(grows)) if grows.size > 0.5 * max(steps.size, 1) else None

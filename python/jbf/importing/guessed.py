@@ -1,4 +1,4 @@
-"""Results of the inspection of a file: columns with their certainty, and open questions."""
+"""Results of the inspection of a file: proposed map entries and open questions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jbf.importing.mapping import Map
 
 @dataclass(frozen=True)
 class Question:
-    """Information that the file does not contain.
+    """Information that the file does not contain and the user must provide.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Question:
 
 @dataclass(frozen=True)
 class Entry:
-    """One line of the map.
+    """Proposed line of a map: one column of a run.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Guess:
-    """Proposed map for a file.
+    """Map proposed for a file, with its open questions.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Guess:
         return not self.questions
 
     def map(self) -> Map:
-        """Return the proposal as a map."""
+        """Convert the proposal to a `Map`."""
         columns = {entry.key: entry.expression for entry in self.entries}
         return Map(
             columns=columns,

@@ -176,7 +176,7 @@ def read_recording(
     beside: Sequence[PathLike] | None = None,
     progress: Report | None = None,
 ) -> tuple[Rig, list[Run]]:
-    """Return the rig and the runs of recordings, as `import_files` makes them, without a folder.
+    """Read the rig and the runs of recordings as `import_files` does, without writing a folder.
 
     The parameters are those of `import_files`.
 
@@ -204,6 +204,7 @@ def read_recording(
 
 
 def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
+    """List of the given files, after a check of their types."""
     if isinstance(files, str | os.PathLike) or not isinstance(files, Iterable):
         files = [path_of(files)]
     paths = [path_of(file) for file in files]
@@ -220,13 +221,13 @@ def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
 
 
 def _readable_paths(files: Sequence[PathLike]) -> tuple[Path, ...]:
-    """Return the paths of further files, each of which is readable."""
+    """Paths of further files of a recording, after a check that each is readable."""
     given = [files] if isinstance(files, str | os.PathLike) else files
     return tuple(_paths(given)) if given else ()
 
 
 def _check_further_files(paths: Sequence[Path], mapping: Map) -> None:
-    """Raise an error for several recordings with further files, or for missing further files."""
+    """Raise an InputError if several recordings have further files, or one does not exist."""
     if mapping.beside and len(paths) > 1:
         problem = f"{len(paths)} files are given together with further files of one recording"
         remedy = f"name one main file: {paths[0].name}, or omit the others"
@@ -243,7 +244,7 @@ def _map(
     joint: str | None,
     beside: Sequence[Path],
 ) -> tuple[Map, str]:
-    """Return the map and its text; without a given map, a proposal if it is certain."""
+    """Map to use and its text: the given one, or a proposal if it is certain."""
     if isinstance(given, Map):
         text = "" if given.path is None else read_text(given.path)
         return given, text
@@ -260,6 +261,7 @@ def _map(
 
 
 def _read(path: Path, mapping: Map, folder: Path, progress: Report | None) -> Recording:
+    """Read one recording through a map into temporary files."""
     folder.mkdir()
     with open_recording(path, mapping.beside, mapping.options) as source:
         recording = spooled(source, mapping, folder, progress)
@@ -268,6 +270,7 @@ def _read(path: Path, mapping: Map, folder: Path, progress: Report | None) -> Re
 
 
 def _pieces(recordings: Sequence[Recording], mapping: Map) -> list[Piece]:
+    """Cut all recordings into pieces as the map specifies."""
     _unique_names(recordings)
     if mapping.cut.file is not None:
         pieces = trimmed(mapping.cut.file, recordings)
@@ -284,7 +287,7 @@ def _pieces(recordings: Sequence[Recording], mapping: Map) -> list[Piece]:
 
 
 def _unique_names(recordings: Sequence[Recording]) -> None:
-    """Add the suffix to the names of recordings whose files have equal stems."""
+    """Add the suffix to recording names whose files have equal stems."""
     names = [recording.name for recording in recordings]
     for recording in recordings:
         if names.count(recording.name) > 1:

@@ -1,4 +1,4 @@
-"""Joints in the log of a robot: the units that their names imply, and the choice of a joint."""
+"""Joints in robot logs: units implied by their names, and the choice of one joint."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ JOINT_UNITS: tuple[tuple[set[str], dict[str, str]], ...] = (
     ),
     ({"q", "tau"}, {"q": "rad", "qd": "rad/s", "dq": "rad/s", "tau": "N m"}),
 )
-"""Units of joints by the names in robot software, for files without units."""
+"""Units of joint quantities by the column names of robot software, for files without units."""
 
 
 class JointNotChosen(InputError):
-    """A file holds several joints, and no valid one was named.
+    """Error: a file holds several joints, and no valid one was named.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class JointNotChosen(InputError):
 
 
 def with_units_of_joint_states(table: Table) -> Table:
-    """Add the units of revolute joints (`sensor_msgs/JointState`) to a table without units."""
+    """Add the units of `sensor_msgs/JointState` (revolute joints) to a table without units."""
     words = {c.name: set(re.findall("[a-z]+", c.name.lower())) for c in table.columns}
     all_words = {word for column_words in words.values() for word in column_words}
     units = next((units for needed, units in JOINT_UNITS if needed <= all_words), {})

@@ -1,6 +1,6 @@
-"""The ledger of an import, `import.json`.
+"""Ledger of an import (`import.json`).
 
-It records which file became which run, in which units, and what was left out.
+The ledger records which file became which run, in which units, and what was left out.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _PART = 1 << 20
 
 
 def file_hash(path: Path) -> str:
-    """Return the SHA-256 of a file, or of the files of a folder in the order of their names."""
+    """SHA-256 of a file, or of all files of a folder in the order of their names."""
     digest = hashlib.sha256()
     files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
     for file in files:
@@ -36,7 +36,7 @@ def file_hash(path: Path) -> str:
 def ledger_of(
     recordings: Sequence[Recording], pieces: Sequence[Piece], mapping: Map
 ) -> dict[str, Any]:
-    """Return the ledger as plain values."""
+    """Create the ledger of an import as plain values."""
     return {
         "jbf": __version__,
         "map": {
@@ -51,6 +51,7 @@ def ledger_of(
 
 
 def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
+    """Ledger entry of one recording."""
     file_pieces = [piece for piece in pieces if piece.file == recording.path.name]
     return {
         "file": recording.path.name,
@@ -69,7 +70,7 @@ def _page(recording: Recording, pieces: Sequence[Piece]) -> dict[str, Any]:
 
 
 def _further_files(recording: Recording) -> dict[str, Any]:
-    """Return the further files of a recording, and the alignment of their clocks."""
+    """Ledger entry on the further files of a recording and the alignment of their clocks."""
     if not recording.beside:
         return {}
     aligned = {alignment.file: alignment.to_dict() for alignment in recording.alignments}
@@ -87,12 +88,13 @@ def _further_files(recording: Recording) -> dict[str, Any]:
 
 
 def _span(piece: Piece) -> dict[str, Any]:
+    """Ledger entry of one piece."""
     content: dict[str, Any] = {"from_s": piece.from_s, "to_s": piece.to_s}
     return content | ({"stretch": piece.segment + 1} if piece.segment else {})
 
 
 def ledgers_of_runs(paths: Iterable[Path | None]) -> list[dict[str, Any]]:
-    """Return the ledgers in the folders of given runs; unreadable ledgers are skipped."""
+    """Ledgers in the folders of given runs; unreadable ledgers are skipped."""
     folders = dict.fromkeys(path.resolve().parent for path in paths if path is not None)
     ledgers = []
     for folder in folders:

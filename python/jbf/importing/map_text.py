@@ -1,4 +1,4 @@
-"""Write a proposed map as `map.toml`: certain, open and unused columns, each with its reason."""
+"""Text of a proposed map (`map.toml`): certain, open and unused columns, each with its reason."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ CHOICES = {
     "motion": '  # "linear" or "rotary"',
     "friction": '  # "force" (linear only), "torque", "current", "percent", "voltage", "none"',
 }
-"""Comments with the alternatives of a value."""
+"""Comments that list the alternatives for a value of the map."""
 
 
 def map_was_written_for(text: str, file_name: str) -> bool:
-    """Return whether an inspection of a file of that name wrote this map."""
+    """Whether the text of a map was proposed by an inspection of a file of this name."""
     command = re.search(r"^#   jbf import (.+) --map ", text, re.MULTILINE)
     return command is not None and Path(command[1]).name == file_name
 
 
 def map_text(guess: Guess, name: str = "map.toml") -> str:
-    """Return the text of the map, with comments."""
+    """Text of a proposed map, with comments."""
     parts = [_HEAD.format(file=guess.path, map=name)]
     if guess.questions:
         questions = "\n".join(f"#   {question}" for question in guess.questions)
@@ -92,7 +92,7 @@ def map_text(guess: Guess, name: str = "map.toml") -> str:
 
 
 def _align(guess: Guess) -> list[str]:
-    """Return the section for the clocks of further files."""
+    """Lines of the section `[align]` for the clocks of further files."""
     if not guess.beside:
         return []
     lines = [
@@ -110,7 +110,7 @@ def _align(guess: Guess) -> list[str]:
 
 
 def _relative(path: Path, main: Path) -> str:
-    """Return a path relative to the folder of the main file, in which the map is stored."""
+    """Path relative to the folder of the main file, in which the map is stored."""
     try:
         return Path(os.path.relpath(path.absolute(), real_path(main).parent)).as_posix()
     except ValueError:
@@ -122,12 +122,13 @@ def _quoted(text: str) -> str:
 
 
 def _aligned(lines: list[tuple[str, str]]) -> list[str]:
+    """Lines with their comments in one column."""
     width = max((len(line) for line, _ in lines), default=0)
     return [f"{line:<{width}}  # {why}" for line, why in lines]
 
 
 def _cut(guess: Guess) -> str:
-    """Return the section for cutting, with a column of the file that is suitable for it."""
+    """Text of the section `[cut]`, with a column of the file that is suitable for cutting."""
     for table in guess.tables:
         for column in table.columns:
             header = parse_header(column.name, column.unit)

@@ -1,4 +1,4 @@
-"""The map, `map.toml`: the file columns that provide the columns of a run, and the rig.
+"""The map (`map.toml`): expressions over file columns for the columns of a run, and the rig.
 
 [file]      options for reading the file, if not detected; further files of the recording
 [columns]   column of a run = "expression over the file's columns"
@@ -33,7 +33,7 @@ SECTIONS = ("file", "columns", "clocks", "align", "cut", *RIG)
 
 
 class OpenQuestions(InputError):
-    """Information that an import requires is missing.
+    """Error: information that an import requires is missing.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class OpenQuestions(InputError):
 
 @dataclass(frozen=True)
 class Map:
-    """Contents of a map.
+    """Contents of a map file: how the columns of files become runs of a rig.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class Map:
     align: Mapping[str, str | float] = field(default_factory=dict)
 
     def open_questions(self) -> Iterator[InputError]:
-        """Yield an error for each remaining `?`."""
+        """Yield an error for each remaining `?` in the map."""
         sections: dict[str, Mapping[str, Any]] = {
             "columns": self.columns,
             "clocks": self.clocks,
@@ -209,7 +209,7 @@ def _map_of(content: Mapping[str, Any], path: Path) -> Map:
 
 
 def _further_paths(names: object, folder: Path) -> tuple[Path, ...]:
-    """Return the further files; their paths are relative to the folder of the map."""
+    """Paths of the further files, which are relative to the folder of the map."""
     if not isinstance(names, list) or not all(isinstance(n, str) and n for n in names):
         remedy = 'write a list of files, such as ["force.csv"]'
         raise InputError(

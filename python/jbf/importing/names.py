@@ -1,4 +1,4 @@
-"""Names of file columns in expressions."""
+"""Names by which expressions refer to file columns."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jbf.importing.formats.table import Table
 
 
 def column_names(tables: Sequence[Table]) -> dict[str, str]:
-    """Return every name that denotes one column: as in the file, without unit, or with its table.
+    """Map each name that denotes one column to the column: with or without unit or table name.
 
     A column name that occurs in several tables is valid only together with the name of its table.
     """
@@ -36,12 +36,12 @@ def column_names(tables: Sequence[Table]) -> dict[str, str]:
 
 
 def qualified(table: Table, name: str, occurrences: Counter[str]) -> str:
-    """Return the name of a column, with that of its table if it occurs in several tables."""
+    """Name of a column in expressions, with its table name if it occurs in several tables."""
     return name if occurrences[name] == 1 else f"{table.name}/{name}"
 
 
 def columns_by_name(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
-    """Return the table and its column for each name that `column_names` returns."""
+    """Map each name of `column_names` to the table and the column that it denotes."""
     occurrences = Counter(column.name for table in tables for column in table.columns)
     return {
         qualified(table, column.name, occurrences): (table, column.name)
@@ -51,7 +51,7 @@ def columns_by_name(tables: Sequence[Table]) -> dict[str, tuple[Table, str]]:
 
 
 def column_units(tables: Sequence[Table]) -> dict[str, str]:
-    """Return the unit that the file states for each column."""
+    """Unit that the file states for each column, by the name of the column."""
     units = {}
     for name, (table, column_name) in columns_by_name(tables).items():
         column = table.column(column_name)

@@ -1,4 +1,4 @@
-"""Reduce a recording to the minimum and maximum in each of a few hundred intervals."""
+"""Reduction of a recording to minimum and maximum in a few hundred intervals, for plots."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _POINTS = 1_200
 
 @dataclass(frozen=True, eq=False)
 class Overview:
-    """Data for the plot of a recording.
+    """Reduced data of a recording for a plot.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Overview:
 
 
 def overview(recording: Recording) -> Overview:
-    """Return the friction, motion and load of a recording."""
+    """Reduce the friction, motion and load of a recording for a plot."""
     starts, offset = [], 0.0
     stream = recording.streams[0]
     for first, end in stream.segments:
@@ -54,6 +54,7 @@ def overview(recording: Recording) -> Overview:
 
 
 def _curve(stream: Stream, key: str, starts: list[float]) -> tuple[Array, Array, Array]:
+    """Time, minimum and maximum of a column in each interval, shape (points,) each."""
     column = stream.columns.index(key)
     size = max(stream.rows // _POINTS, 1)
     points: list[tuple[float, float, float]] = []

@@ -1,4 +1,4 @@
-"""Check the consistency of position, speed and time in their units, and ask if they disagree."""
+"""Consistency of position, speed and time in their units, with questions if they disagree."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _MIN_SAMPLES = 20
 def contradictions(
     by_key: Mapping[str, Entry], tables: Sequence[Table], heads: Mapping[str, Values]
 ) -> list[Question]:
-    """Return a question for each speed that is not the change of its position."""
+    """Questions for each speed that is not the rate of change of its position."""
     questions = []
     for place, speed in PAIRS:
         if not {place, speed, "time_s"} <= by_key.keys():
@@ -54,7 +54,7 @@ def speed_ratio(
     tables: Sequence[Table],
     heads: Mapping[str, Values],
 ) -> float | None:
-    """Return the ratio of speed to change of position, or None if they are not correlated."""
+    """Ratio of a speed to the rate of change of its position; None if they are not correlated."""
     names, units = column_names(tables), column_units(tables)
     values = []
     try:

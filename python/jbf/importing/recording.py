@@ -1,4 +1,4 @@
-"""Read a file with a map: store converted columns, each with its original clock, on the disk."""
+"""Reading of a file through a map: converted columns in temporary files, with their times."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ Array = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
 
 UNLOADED_SHARE = 0.1
-"""Share of the usual load below which a machine counts as unloaded; used in suggestions."""
+"""Share of the typical load below which a machine counts as unloaded; used in suggestions."""
 STEADY = "none: steady states"
-"""Text of the ledger for the clock of steady states."""
+"""Text in the ledger in place of a clock, for steady states."""
 
 
 def read_recording(
     source: Source, mapping: Map, folder: Path, report: Report | None = None
 ) -> Recording:
-    """Read a source with a map, and store the columns in temporary files in a folder.
+    """Read an open file through a map, and store its columns in temporary files in a folder.
 
     Raises
     ------
@@ -200,6 +200,7 @@ def _spool(
 def _values(
     channel: Channel, values: Mapping[str, Values], units: Mapping[str, str], words: _Words
 ) -> Array:
+    """Converted values of a channel in a block of rows."""
     if channel.key in (*CUTTING_COLUMNS, SIGNAL_COLUMN):
         read = [values[reference.column] for reference in references(channel.node)]
         if channel.key == KEPT_COLUMN and any(column.dtype == object for column in read):
@@ -226,7 +227,7 @@ def _values(
 
 
 class _Words:
-    """Numeric codes for words, in the order of their first occurrence."""
+    """Numeric codes for the words of text columns, in the order of their first occurrence."""
 
     def __init__(self, recording: Recording) -> None:
         self.labels = recording.labels
@@ -240,7 +241,7 @@ class _Words:
 
 
 def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
-    """Raise an error for implausibly large values, as from a division by zero; NaN is a gap."""
+    """Raise an InputError for implausibly large values, as from a division by zero."""
     beyond = np.abs(rows) > LARGEST
     if beyond.any():
         row, column = np.argwhere(beyond)[0]
@@ -252,7 +253,7 @@ def _check_sizes(columns: tuple[str, ...], rows: Array) -> None:
 
 
 def check_loads(recording: Recording, pieces: Iterable[Piece], mapping: Map) -> None:
-    """Raise an error for a run with a load that is not above zero.
+    """Raise an InputError if a run has a load that is not above zero.
 
     Raises
     ------
@@ -289,6 +290,7 @@ def _describe(
     rate: float | None,
     recording: Recording,
 ) -> dict[str, object]:
+    """Ledger entry of one channel: its expression, units, clock and gaps."""
     read = [
         {"column": r.column, "unit": units.get(r.column, "") if r.unit is None else r.unit}
         for r in references(channel.node)
@@ -315,12 +317,12 @@ def _describe(
 
 
 def _further_name(file: Path | None, recording: Recording) -> str | None:
-    """Return the name of a file, or None for the main file."""
+    """Name of a further file; None for the main file."""
     return None if file is None or file == recording.path else file.name
 
 
 def keep_common_span(recording: Recording) -> None:
-    """Leave out the rows of each stream at times that another file does not cover.
+    """Remove the rows of each stream at times that another file does not cover.
 
     Raises
     ------
@@ -357,6 +359,7 @@ def keep_common_span(recording: Recording) -> None:
 
 
 def _name(stream: Stream) -> str:
+    """Description of a stream for messages."""
     return "" if stream.source is None else stream.source.name
 
 

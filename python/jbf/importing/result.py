@@ -18,7 +18,7 @@ from jbf.results import Result
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Import(Result):
-    """Runs and a rig from recordings.
+    """Result of an import: campaign folder, rig, runs and ledger.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Import(Result):
 
     @property
     def runs(self) -> list[Run]:
-        """Runs, read again at each access."""
+        """Imported runs, read from the folder at each access."""
         names = [piece.name for piece in self.pieces if piece.keep]
         return read_runs([self.folder / f"{name}.csv" for name in names], self.rig)
 

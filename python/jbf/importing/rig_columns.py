@@ -1,4 +1,4 @@
-"""Check the columns of a map against its rig before the files are read."""
+"""Check of the columns of a map against its rig, before the files are read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jbf.records.rig import Rig
 
 
 def check_rig_columns(rig: Rig, mapping: Map) -> None:
-    """Raise an InputError if the runs could not be read with the rig."""
+    """Raise an InputError if runs with the columns of a map do not match the rig."""
     file = mapping.path or Path("the columns")
     keys = ["time_s", *mapping.columns]
     if rig.drive is not None:

@@ -1,4 +1,4 @@
-"""Write a piece of a recording as the CSV file of a run, block by block.
+"""Text of the CSV file of a run, written from a piece of a recording block by block.
 
 If clocks differ, there is a row at each instant of any clock, and cells without a sample are
 empty. Nothing is resampled.
@@ -21,20 +21,20 @@ Array = npt.NDArray[np.float64]
 
 
 def run_columns(recording: Recording) -> list[str]:
-    """Return the columns of the runs of a recording, known columns first."""
+    """Names of the columns in the runs of a recording, known columns first."""
     keys = [stream.columns[at] for stream in recording.streams for at in _written(stream)[1:]]
     standard = [key for key in COLUMNS if key in keys or key == "time_s"]
     return standard + [key for key in keys if key not in COLUMNS]
 
 
 def _written(stream: Stream) -> list[int]:
-    """Return indices of the stream columns to write: not empty and not for cutting only."""
+    """Indices of the columns of a stream that are written to runs."""
     of_cutting = [at for at, key in enumerate(stream.columns) if key in CUTTING_COLUMNS]
     return [at for at in range(len(stream.columns)) if at not in (*of_cutting, *stream.empty)]
 
 
 def run_text(recording: Recording, piece: Piece) -> Iterator[str]:
-    """Yield the text of a run in parts."""
+    """Yield the CSV text of a run in parts."""
     columns = run_columns(recording)
     called = [POINT if recording.steady and c == "time_s" else c for c in columns]
     yield ",".join(called) + "\n"
@@ -71,7 +71,7 @@ def run_rows(recording: Recording, piece: Piece, columns: list[str]) -> Iterator
 
 
 class _Part:
-    """Rows of a stream within a piece, read one block ahead."""
+    """Buffered rows of a stream within a piece."""
 
     def __init__(self, stream: Stream, piece: Piece) -> None:
         self.stream = stream
@@ -81,12 +81,12 @@ class _Part:
 
     @property
     def has_rows(self) -> bool:
-        """Whether there are rows after those that were read."""
+        """Whether there are further rows after those that were read."""
         return self.next < self.end
 
     @property
     def last(self) -> float:
-        """The last instant that was read, s."""
+        """Last instant that was read, s."""
         return float(self.rows[-1, 0]) if len(self.rows) else -np.inf
 
     def fill(self) -> bool:
@@ -98,7 +98,7 @@ class _Part:
         return bool(len(self.rows))
 
     def take(self, horizon: float) -> Array:
-        """Return and remove the buffered rows up to an instant."""
+        """Remove the buffered rows up to an instant, and return them."""
         count = int(np.searchsorted(self.rows[:, 0], horizon, side="right"))
         rows, self.rows = self.rows[:count], self.rows[count:]
         return rows

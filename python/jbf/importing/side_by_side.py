@@ -1,4 +1,4 @@
-"""Combine files that were recorded at the same time with separate clocks into one source.
+"""Source that combines files recorded at the same time with separate clocks.
 
 Each file provides one or several tables of the source, named by the stem of the file.
 """
@@ -17,7 +17,7 @@ from jbf.importing.formats.table import Options, Source, Table, Values
 
 
 class SideBySide(Source):
-    """Several open files; the clock of the first file is that of the recording.
+    """Several open files as one source; the clock of the first file is that of the recording.
 
     Attributes
     ----------
@@ -42,11 +42,11 @@ class SideBySide(Source):
         self.tables = tuple(tables)
 
     def file_of(self, table: Table) -> Path:
-        """Return the file that contains a table."""
+        """Path of the file that contains a table."""
         return self._origins[table.name][0].path
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Yield the blocks of the table's file; an error names that file."""
+        """Yield the blocks of a table from its file; an error names that file."""
         source, origin = self._origins[table.name]
         self._reading = source
         try:
@@ -55,16 +55,16 @@ class SideBySide(Source):
             raise error.within(file=source.path) from None
 
     def row_of(self, table: Table, sample: int) -> int | None:
-        """Return the row in the table's file."""
+        """Row number of a sample in the file that contains the table."""
         source, origin = self._origins[table.name]
         return source.row_of(origin, sample)
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
-        """Return the rows that the last reading skipped."""
+        """Number, reason and first row of the rows that the last reading skipped."""
         return self._reading.skipped_rows()
 
     def read_bytes(self) -> tuple[int, int]:
-        """Return the number of bytes read from the current file, and its size."""
+        """Number of bytes read from the current file, and its size."""
         return self._reading.read_bytes()
 
     def close(self) -> None:
@@ -73,12 +73,12 @@ class SideBySide(Source):
 
 
 def file_of(source: Source, table: Table) -> Path:
-    """Return the file that contains a table of a source."""
+    """Path of the file that contains a table of a source."""
     return source.file_of(table) if isinstance(source, SideBySide) else source.path
 
 
 def stem_of(path: Path) -> str:
-    """Return the name of a file without its suffix, and without a final `.gz`."""
+    """Name of a file without its suffix, and without a final `.gz`."""
     return (path.with_suffix("") if path.suffix.lower() == ".gz" else path).stem
 
 
@@ -87,7 +87,7 @@ def open_recording(
     beside: Sequence[str | os.PathLike[str]] = (),
     options: Options | None = None,
 ) -> Source:
-    """Open a file, or several that were recorded at the same time.
+    """Open a file, or several files recorded at the same time, as one source.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def open_recording(
 
 
 def _select_tables(sources: Sequence[Source], name: str | None) -> list[tuple[Table, ...]]:
-    """Return the tables of each file: those of a given name if it has any, else all."""
+    """Tables of each file with a given name; all tables of a file that has none of this name."""
     if name is None:
         return [source.tables for source in sources]
     named = [tuple(t for t in source.tables if t.name == name) for source in sources]

@@ -1,4 +1,4 @@
-"""Intermediate storage of a recording: the columns of each clock in a binary file.
+"""Intermediate storage of a recording: one binary file per clock, with its columns.
 
 The file is read in blocks, so that the memory required does not depend on the duration.
 """
@@ -28,16 +28,18 @@ Mask = npt.NDArray[np.bool_]
 
 @dataclass
 class Stream:
-    """Columns that share a clock; the first column is the time.
+    """Stored columns that share a clock; the first column is the time.
 
     Attributes
     ----------
     columns
         Names, `time_s` first.
     segments
-        First row and end of each segment of increasing time.
+        First row and end (exclusive) of each segment of increasing time.
     file
         Rows of float64; NaN for a missing sample.
+    rows
+        Number of rows.
     missing
         Number of rows without a value of each column.
     source
@@ -53,7 +55,7 @@ class Stream:
 
     @property
     def needed(self) -> list[int]:
-        """Columns whose few gaps are missing values.
+        """Indices of columns whose few gaps are missing values; rows with them are dropped.
 
         A column with more gaps is a channel with a separate clock, and its empty cells remain. The
         same rule applies when runs are read.
@@ -65,13 +67,13 @@ class Stream:
 
     @property
     def empty(self) -> list[int]:
-        """Columns without any value."""
+        """Indices of columns without any value."""
         if self.missing is None:
             return []
         return [int(column) for column in np.flatnonzero(self.missing == self.rows)]
 
     def complete(self, block: Array) -> Mask:
-        """Return a mask of the rows that have all needed values."""
+        """Mask of the rows of a block that have values in all `needed` columns."""
         mask: Mask = np.all(np.isfinite(block[:, self.needed]), axis=1)
         return mask
 
@@ -84,7 +86,7 @@ class Stream:
         self.rows += len(block)
 
     def read(self, first: int, end: int) -> Array:
-        """Return the rows from `first` to `end`, exclusive, shape (n, columns)."""
+        """Read the rows from `first` to `end`, exclusive, shape (n, columns)."""
         width = len(self.columns)
         first, end = max(first, 0), min(end, self.rows)
         count = max(end - first, 0)
@@ -123,11 +125,11 @@ class Stream:
                 first += len(part)
 
     def at(self, row: int) -> float:
-        """Return the time of a row, s."""
+        """Time of a row, s."""
         return float(self.read(row, row + 1)[0, 0])
 
     def rows_between(self, segment: int, first_s: float, last_s: float) -> tuple[int, int]:
-        """Return the first row and the end of the rows within two instants, both included."""
+        """First row and end (exclusive) of the rows within two instants, both included."""
         low, high = self.segments[segment]
         return self._search(low, high, first_s, right=False), self._search(
             low, high, last_s, right=True
@@ -146,7 +148,7 @@ class Stream:
 
 @dataclass
 class Dropped:
-    """Omitted rows and the reason, with the file if it is not the main file."""
+    """Rows that were omitted, and why; the file is stated if it is not the main one."""
 
     rows: int
     why: str
@@ -156,12 +158,24 @@ class Dropped:
 
 @dataclass
 class Recording:
-    """Contents of one file: its streams, and remarks on the reading.
+    """Contents of one recording as read: its streams, and remarks on the reading.
 
     Attributes
     ----------
     name
         Stem of the file.
+    path, format
+        The file, and the name of its format.
+    streams
+        Columns by clock.
+    dropped
+        Omitted rows.
+    channels
+        Ledger entry of each channel.
+    notes
+        Remarks on the reading.
+    labels
+        Words of text columns, in the order of their codes.
     start
         First instant as a date, if the file states it.
     clocks
@@ -189,7 +203,7 @@ class Recording:
     steady: bool = False
 
     def stream_of(self, *keys: str) -> tuple[Stream, str] | None:
-        """Return the stream and name of the first of these columns that has values."""
+        """Stream and name of the first of these columns that has values, or None."""
         for key in keys:
             for stream in self.streams:
                 if key in stream.columns and stream.columns.index(key) not in stream.empty:
@@ -203,7 +217,7 @@ class Recording:
     def seconds(
         self, file: Path, node: Node, values: Mapping[str, Values], units: Mapping[str, str]
     ) -> Array:
-        """Return the times of a file, s."""
+        """Evaluate the time expression of a file and return times of the recording, s."""
         clock = self.clock_of(file)
         time = clock.seconds(node, values, units)
         note = f"times count from {clock.origin_s:.0f} s after 1970"

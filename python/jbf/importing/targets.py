@@ -1,4 +1,4 @@
-"""Columns that an import can create, and their units."""
+"""Columns of a run that an import can create, and their units."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _STEMS = {found[0]: key for key in reversed(KNOWN) if (found := unit_of_name(key
 
 
 def wanted_unit(key: str) -> Unit:
-    """Return the unit of a column of a run, from the end of its name.
+    """Unit of a column of a run, from the suffix of its name.
 
     Raises
     ------

@@ -1,7 +1,6 @@
-"""Check the times of a stream block by block.
+"""Check of the times of a stream: repeated times are dropped, restarts begin a segment.
 
-Rows with repeated times are left out, and a segment ends where time restarts. Decreasing time
-otherwise is an error.
+The check is block by block. A decrease of time that is not a restart is an error.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ _MAX_REPEATED_SHARE = 0.1
 
 
 class TimeLine:
-    """Counter of rows of the file and of rows that are kept."""
+    """State of the check: number of rows read and kept, and where segments begin."""
 
     def __init__(self, row_of: Callable[[int], int | None]) -> None:
         self.seen = 0
@@ -38,7 +37,7 @@ class TimeLine:
         self._timeless = 0
 
     def keep(self, times: Array) -> Mask:
-        """Return a mask of the rows of the next block that are kept.
+        """Mask of the rows of the next block that are kept.
 
         Raises
         ------
@@ -86,7 +85,7 @@ class TimeLine:
             count += 1
 
     def segments(self, rows: int) -> list[tuple[int, int]]:
-        """Return the first row and end of each segment, counted in kept rows.
+        """First row and end (exclusive) of each segment, counted in kept rows.
 
         Raises
         ------
@@ -104,7 +103,7 @@ class TimeLine:
         return list(zip(self._starts, [*self._starts[1:], rows], strict=True))
 
     def dropped(self) -> list[Dropped]:
-        """Return the omitted rows and the reasons."""
+        """Omitted rows and the reasons."""
         omitted = []
         if self._repeats:
             omitted.append(Dropped(self._repeats, "time repeats", self._first_repeat))

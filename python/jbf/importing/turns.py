@@ -1,4 +1,4 @@
-"""Unwrap angles that restart at each turn."""
+"""Unwrapping of angles that restart at each turn."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TURN = 2.0 * math.pi
 
 
 def unwrapped(stream: Stream) -> list[str]:
-    """Unwrap each angle that is limited to one turn; return notes on the changes."""
+    """Unwrap each angle of a stream that is limited to one turn; return notes on the changes."""
     notes = []
     for key in _ANGLES:
         if key not in stream.columns:
@@ -40,6 +40,7 @@ def unwrapped(stream: Stream) -> list[str]:
 
 
 def _unwrapped_blocks(stream: Stream, column: int) -> Iterator[Array]:
+    """Yield the unwrapped values of a column, block by block."""
     turns, last = 0.0, math.nan
     starts = {first for first, _ in stream.segments}
     row = 0

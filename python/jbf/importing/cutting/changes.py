@@ -1,4 +1,4 @@
-"""Cut where the value of a column changes: a set point, the number of a run."""
+"""Cuts where the value of a column changes, such as a set point or a run number."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jbf.importing.spool import Stream
 
 
 def cut_at_changes(stream: Stream, column: str, why: str) -> list[Cut]:
-    """Return a cut at each change of value; a missing value counts as the value before it."""
+    """Cuts at each change of value of a column; a missing value counts as the value before it."""
     at = stream.columns.index(column)
     cuts: list[Cut] = []
     for segment, (first, end) in enumerate(stream.segments):

@@ -1,4 +1,4 @@
-"""Cut a recording into pieces by the selected methods."""
+"""Division of a recording into pieces by the selected cutting methods."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ every stop.
 
 
 def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
-    """Return the pieces of a recording in order of time, including those that are left out."""
+    """Divide a recording into pieces in order of time, including pieces that are omitted."""
     timed = [method for method in settings.by or () if method in ("rests", "cycles", "motion")]
     if recording.steady and timed:
         problem = f'"{timed[0]}" requires a motion over time, but the file contains steady states'
@@ -45,10 +45,10 @@ def cut(recording: Recording, settings: CutSettings) -> list[Piece]:
 
 
 def at_rests_by_default(recording: Recording, settings: CutSettings) -> list[Piece] | None:
-    """Cut a recording at its rests.
+    """Divide a recording at its rests, if this yields plausible runs; otherwise None.
 
-    Return None if the result has no additional runs, or exceeds the limits
-    `MAX_DISCARDED_SHARE` and `SHORTEST_S`.
+    The result is not plausible without additional runs, or beyond the limits `MAX_DISCARDED_SHARE`
+    and `SHORTEST_S`.
     """
     by_rests = replace(settings, by=("rests",), rest_s=REST_S, keep_rest_s=KEEP_REST_S)
     pieces = _cut(recording, by_rests)
@@ -104,14 +104,14 @@ def _cut(recording: Recording, settings: CutSettings) -> list[Piece]:
 
 
 def ends(recording: Recording, segment: int) -> tuple[float, float]:
-    """Return the first and last instant of a segment over all clocks, s."""
+    """First and last instant of a segment of increasing time, over all clocks, s."""
     rows = [(stream, stream.segments[segment]) for stream in recording.streams]
     first = min(stream.at(a) for stream, (a, _) in rows)
     return first, max(stream.at(b - 1) for stream, (_, b) in rows)
 
 
 def _pieces_between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> list[Piece]:
-    """Return the pieces between cuts, and the spans that the cuts remove as omitted pieces."""
+    """Pieces between cuts, and the spans that the cuts remove as omitted pieces."""
     first_s, last_s = ends(recording, segment)
     pieces: list[Piece] = []
     begin = first_s
@@ -131,7 +131,7 @@ def _pieces_between(recording: Recording, segment: int, cuts: Sequence[Cut]) -> 
 
 
 def _contains_rows(recording: Recording, segment: int, c: Cut) -> bool:
-    """Return whether there are rows between the two instants of a cut."""
+    """Whether the recording has rows in the span that a cut removes."""
     for stream in recording.streams:
         first, end = stream.rows_between(segment, c.last_s, c.first_s)
         if end - first > 2:
@@ -140,7 +140,7 @@ def _contains_rows(recording: Recording, segment: int, c: Cut) -> bool:
 
 
 def _mark_unusable(recording: Recording, piece: Piece, settings: CutSettings) -> Piece:
-    """Mark a piece as left out if it cannot be a run, with the reason."""
+    """Mark a piece as omitted if it cannot be a run, with the reason."""
     if not piece.keep:
         return piece
     read = [k for k in FRICTION if any(k in s.columns for s in recording.streams)]
@@ -164,7 +164,7 @@ def _mark_unusable(recording: Recording, piece: Piece, settings: CutSettings) ->
 
 
 def _kept(recording: Recording, piece: Piece) -> bool:
-    """Return whether the `keep` condition holds in a piece, from its first known value.
+    """Whether the `keep` condition of the map holds in a piece, from its first known value.
 
     A single value suffices because the recording is cut where the condition changes.
     """
@@ -184,7 +184,7 @@ def _kept(recording: Recording, piece: Piece) -> bool:
 
 
 def _name_runs(recording: Recording, pieces: Sequence[Piece]) -> list[Piece]:
-    """Name the runs after their file, with a number if there are several."""
+    """Name the runs of a recording after its file, with a number if there are several."""
     runs = [piece for piece in pieces if piece.keep]
     digits = len(str(len(runs)))
     number = 0

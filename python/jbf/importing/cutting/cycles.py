@@ -1,4 +1,4 @@
-"""Cut a reciprocating motion into cycles, or a recording into parts of equal duration."""
+"""Cuts at the cycles of a reciprocating motion, or into parts of equal duration."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WINDOW_S = 0.05
 
 
 def cut_at_cycles(recording: Recording, settings: CutSettings) -> list[Cut]:
-    """Return a cut at the start of each cycle of a forward stroke and a return stroke."""
+    """Cuts at the start of each cycle of a forward and a return stroke."""
     motion = MotionSpeed(recording, WINDOW_S)
     share = REST_SPEED_SHARE if settings.still is None else settings.still
     threshold = max(share * motion.top(), REST_SPEED_SIGMAS * motion.noise())
@@ -36,7 +36,7 @@ def cut_at_cycles(recording: Recording, settings: CutSettings) -> list[Cut]:
 
 
 def cut_into_parts(recording: Recording, count: int) -> list[Cut]:
-    """Return the cuts that divide each segment of increasing time into `count` equal durations."""
+    """Cuts that divide each segment of increasing time into `count` parts of equal duration."""
     stream, cuts = recording.streams[0], list[Cut]()
     for segment, (first, end) in enumerate(stream.segments):
         from_s, to_s = stream.at(first), stream.at(end - 1)

@@ -1,4 +1,4 @@
-"""Cut at steps of the load, between two constant levels."""
+"""Cuts at steps of the load between two constant levels."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SIGMAS = 8.0
 
 
 def cut_at_load_steps(recording: Recording) -> list[Cut]:
-    """Return a cut at each step of `load_n`, `load_n_m` or `pressure_pa`.
+    """Cuts at each step of `load_n`, `load_n_m` or `pressure_pa`.
 
     Raises
     ------
@@ -44,6 +44,7 @@ def cut_at_load_steps(recording: Recording) -> list[Cut]:
 
 
 def _steps(stream: Stream, segment: int, column: int) -> list[Cut]:
+    """Cuts at the steps of one load column within a segment."""
     first, end = stream.segments[segment]
     parts = [
         np.nanmedian(block[at : at + _PARTS, column])
@@ -73,7 +74,7 @@ def _steps(stream: Stream, segment: int, column: int) -> list[Cut]:
 def _edge(
     stream: Stream, first: int, end: int, part: int, column: int, before: float, after: float
 ) -> int:
-    """Return the first row that is nearer to the level after the step than to the level before."""
+    """First row of a load step that is nearer to the new level than to the old one."""
     low = max(first + (part - 1) * _PARTS, first + 1)
     values = stream.read(low, min(first + (part + 1) * _PARTS, end))[:, column]
     nearer = np.abs(values - after) < np.abs(values - before)

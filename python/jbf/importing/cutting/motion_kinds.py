@@ -1,4 +1,4 @@
-"""Cut where the kind of motion changes.
+"""Cuts where the kind of motion changes.
 
 Kinds are rest, steady speed, changing speed in one direction, and motion to and fro.
 """
@@ -24,7 +24,7 @@ MIN_WINDOWS = 3
 
 
 def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut]:
-    """Return a cut at each lasting change of the kind of motion."""
+    """Cuts at each lasting change of the kind of motion."""
     window_s = max(settings.rest_s, WINDOW_S)
     motion = MotionSpeed(recording, 0.1 * window_s)
     threshold = (REST_SPEED_SHARE if settings.still is None else settings.still) * motion.top()
@@ -50,6 +50,7 @@ def cut_at_motion_kinds(recording: Recording, settings: CutSettings) -> list[Cut
 
 
 def _kind(speed: np.ndarray, threshold: float, noise: float) -> str:
+    """Kind of motion of one window, from its speeds."""
     size = float(np.median(np.abs(speed)))
     if size <= threshold:
         return "rest"
@@ -61,7 +62,7 @@ def _kind(speed: np.ndarray, threshold: float, noise: float) -> str:
 
 
 def _to_and_fro(kinds: list[str]) -> list[str]:
-    """Classify windows in one direction between two reversals as motion to and fro."""
+    """Reclassify windows of one direction between two reversals as motion to and fro."""
     classified = list(kinds)
     turns = [i for i, kind in enumerate(kinds) if kind == "to and fro"]
     for first_turn, second_turn in pairwise(turns):
@@ -72,7 +73,7 @@ def _to_and_fro(kinds: list[str]) -> list[str]:
 
 
 def _lasting_kinds(kinds: list[str]) -> list[tuple[int, str]]:
-    """Return the start and name of each lasting kind that differs from the previous one."""
+    """Index of the first window and name of each lasting kind of motion."""
     lasting: list[tuple[int, str]] = []
     last = None
     at = 0

@@ -45,7 +45,7 @@ class MotionSpeed:
         self.half = max(1, round(0.5 * window_s / step))
 
     def blocks(self, segment: int) -> Iterator[tuple[int, Array, Array]]:
-        """Yield the first row, times and speeds of each block of a segment."""
+        """Yield index of the first row, times and speeds of each block of a segment."""
         first, end = self.stream.segments[segment]
         for begin, inside, rows in self.stream.overlapping(first, end, self.half):
             times, values = rows[:, 0], _filled(rows[:, self._column])
@@ -54,7 +54,7 @@ class MotionSpeed:
             yield begin, times[inside : inside + size], speed[inside : inside + size]
 
     def smoothed(self, segment: int) -> Iterator[tuple[int, Array, Array]]:
-        """Yield the first row, times and mean absolute speed over the window of each block."""
+        """Yield index of the first row, times and smoothed absolute speed of each block."""
         first, end = self.stream.segments[segment]
         for begin, inside, rows in self.stream.overlapping(first, end, 2 * self.half):
             times, values = rows[:, 0], _filled(rows[:, self._column])
@@ -64,7 +64,7 @@ class MotionSpeed:
             yield begin, times[inside : inside + size], mean[inside : inside + size]
 
     def top(self) -> float:
-        """Return the largest smoothed absolute speed."""
+        """Largest smoothed absolute speed of the recording."""
         sizes = [
             float(np.max(speed, initial=0.0))
             for segment in range(len(self.stream.segments))
@@ -73,7 +73,7 @@ class MotionSpeed:
         return max(sizes, default=0.0)
 
     def noise(self) -> float:
-        """Return the white noise of a recorded speed, by second differences; median of blocks."""
+        """White noise of a recorded speed, from second differences (median over blocks)."""
         if not self.recorded:
             return 0.0
         sizes = []
@@ -87,13 +87,13 @@ class MotionSpeed:
 
 
 def _block(end: int, begin: int, rows: int, inside: int, margin: int) -> int:
-    """Return the number of rows of a block without its margin."""
+    """Number of rows of a block without its margins."""
     after = rows - inside
     return after if begin + after >= end else after - margin
 
 
 def _filled(values: Array) -> Array:
-    """Fill each gap with the value before it."""
+    """Fill each gap in an array with the value before it."""
     bad = np.isnan(values)
     if not bad.any():
         return values
@@ -106,7 +106,7 @@ def _filled(values: Array) -> Array:
 
 
 def _change(times: Array, values: Array, half: int) -> Array:
-    """Return the mean speed from `half` rows before each row to `half` rows after it."""
+    """Mean rate of change of a position from `half` rows before to `half` rows after each row."""
     rows = np.arange(len(times))
     low, high = np.maximum(rows - half, 0), np.minimum(rows + half, len(times) - 1)
     elapsed = times[high] - times[low]
@@ -116,6 +116,7 @@ def _change(times: Array, values: Array, half: int) -> Array:
 
 
 def _mean(values: Array, half: int) -> Array:
+    """Moving mean over `half` rows on either side."""
     if half == 0:
         return values
     total = np.concatenate(([0.0], np.cumsum(values)))

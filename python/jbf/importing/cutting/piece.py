@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Cut:
-    """One cut; the span between its two instants is left out.
+    """One cut of a recording; the span between its two instants is omitted.
 
     Attributes
     ----------
@@ -15,6 +15,9 @@ class Cut:
         Index of the segment of increasing time that contains the cut.
     last_s, first_s
         Last instant before the cut and first instant after it, s.
+
+    why
+        Reason for the cut.
     """
 
     segment: int
@@ -25,7 +28,7 @@ class Cut:
 
 @dataclass(frozen=True)
 class Piece:
-    """Span of a recording that becomes a run or is left out.
+    """Span of a recording that becomes a run or is omitted.
 
     Attributes
     ----------
@@ -33,8 +36,12 @@ class Piece:
         Name of the run.
     file
         File name of the recording.
+    segment
+        Index of the segment of increasing time.
     from_s, to_s
         First and last instant, both included, s.
+    keep
+        Whether the piece becomes a run.
     why
         Reason, if the piece is not kept.
     """

@@ -1,4 +1,4 @@
-"""Cut at rests: each motion becomes a run, with a short part of the rests before and after it."""
+"""Cuts at rests: each motion becomes a run, with a short part of the adjacent rests."""
 
 from __future__ import annotations
 
@@ -16,11 +16,14 @@ WINDOW = 0.05
 REST_SPEED_SHARE = 5e-3
 """Largest speed of a rest, as a share of the top speed."""
 REST_SPEED_SIGMAS = 2.0
-"""Largest speed of a rest, in standard deviations of the speed's white noise, if that is more."""
+"""Largest speed of a rest, in standard deviations of the speed's white noise.
+
+The larger of this and `REST_SPEED_SHARE` applies.
+"""
 
 
 def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
-    """Return a cut at each rest of sufficient duration, without the parts to be kept."""
+    """Cuts at each rest of sufficient duration, without the parts of the rest that are kept."""
     motion = MotionSpeed(recording, WINDOW * settings.rest_s)
     top = motion.top()
     share = REST_SPEED_SHARE if settings.still is None else settings.still
@@ -48,7 +51,7 @@ def cut_at_rests(recording: Recording, settings: CutSettings) -> list[Cut]:
 
 
 def _rests(motion: MotionSpeed, segment: int, threshold: float) -> Iterator[tuple[int, int]]:
-    """Yield the first row and the end of each rest."""
+    """Yield first row and end row (exclusive) of each rest of a segment."""
     began: int | None = None
     row = motion.stream.segments[segment][0]
     for first, _, speed in motion.smoothed(segment):

@@ -32,7 +32,7 @@ METHODS = ("rests", "cycles", "set_point", "load_step", "motion", "run", "parts"
 
 @dataclass(frozen=True)
 class Condition:
-    """Comparison of two expressions over the columns of the file.
+    """Condition on the rows of a file: comparison of two expressions over its columns.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Condition:
 
     @classmethod
     def of(cls, text: object) -> Condition:
-        """Parse a condition.
+        """Parse a condition such as ``powered == 1``.
 
         Raises
         ------
@@ -66,7 +66,7 @@ class Condition:
         return cls(difference, relation, str(text))
 
     def holds(self, values: Array) -> Array:
-        """Return 1 where the condition holds, 0 where it does not, and NaN for a missing value."""
+        """Return 1 where values of `difference` fulfil the condition, 0 elsewhere, NaN for NaN."""
         satisfied = RELATIONS[self.relation](np.asarray(values, dtype=np.float64), 0.0)
         return np.where(np.isfinite(values), satisfied, np.nan)
 
@@ -111,7 +111,7 @@ class CutSettings:
 
     @classmethod
     def from_mapping(cls, section: Mapping[str, Any], folder: Path) -> CutSettings:
-        """Create settings from their section; paths are relative to the folder of the map.
+        """Create settings from the section `[cut]`; paths are relative to the folder of the map.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Trims in an editable file, `cut.toml`, with one line for each piece of each recording."""
+"""Editable list of the pieces of each recording (`cut.toml`), one line per piece."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _HEAD = """\
 
 
 def trims_text(pieces: Sequence[Piece]) -> str:
-    """Return the text of `cut.toml`."""
+    """Text of `cut.toml` for the pieces of recordings."""
     lines = [_HEAD + "pieces = ["]
     for piece in pieces:
         words = [
@@ -41,12 +41,13 @@ def trims_text(pieces: Sequence[Piece]) -> str:
 
 
 def _text(word: str) -> str:
+    """Quote a string for TOML."""
     quoted = word.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{quoted}"'
 
 
 def trimmed(path: Path, recordings: Sequence[Recording]) -> list[Piece]:
-    """Read the pieces from a file of trims.
+    """Read the pieces of recordings from an edited `cut.toml`.
 
     Raises
     ------
@@ -74,6 +75,7 @@ def trimmed(path: Path, recordings: Sequence[Recording]) -> list[Piece]:
 
 
 def _piece(row: object, at: int, recordings: Sequence[Recording]) -> Piece:
+    """Convert line number `at` of the file to a piece."""
     key = f"pieces, {at}"
     content: Mapping[str, Any] = table(row, key)
     refuse_unknown(content, _KEYS, f"{key}, ")

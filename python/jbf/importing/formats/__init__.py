@@ -1,1 +1,1 @@
-"""File formats, one module each, that open a file as tables of columns; see `table`, `registry`."""
+"""File formats, one module each, that open a file as tables of columns (`table`, `registry`)."""

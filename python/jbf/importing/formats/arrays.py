@@ -1,4 +1,4 @@
-"""Tables of arrays that can be sliced, for NumPy, MAT and HDF5 files."""
+"""Source of tables whose columns are arrays that can be sliced (NumPy, MAT, HDF5)."""
 
 from __future__ import annotations
 
@@ -23,21 +23,23 @@ from jbf.importing.formats.table import (
 )
 
 Slice = Callable[[int, int], Any]
-"""Function that returns the values of the rows from a first row to an end, exclusive."""
+"""Function that returns the values of a column between two rows (end exclusive)."""
 _WIDEST = 64
 """Largest number of columns of a matrix of channels; wider matrices are ignored."""
 _NAMED = 3
-"""Largest number of columns that the name of a table lists."""
+"""Largest number of columns that are listed in the generated name of a table."""
 CLOCK = "time"
 """Name of the time column of signals with separate times."""
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One channel with separate times.
+    """One channel with its own times.
 
     Attributes
     ----------
+    name
+        Name of the channel.
     times
         Times of the samples, in `time_unit`.
     read
@@ -54,7 +56,7 @@ class Signal:
 
 
 class ArraySource(Source):
-    """Source whose tables consist of columns that are read by slices."""
+    """Open file whose tables have columns that are read by slices."""
 
     def __init__(self, path: Path, close: Callable[[], None] | None = None) -> None:
         self.path = path
@@ -73,7 +75,7 @@ class ArraySource(Source):
         start: str | None = None,
         rate_hz: float | None = None,
     ) -> None:
-        """Add a table from a mapping of column names to slices and units."""
+        """Add a table to the source, from column names with their slices and units."""
         if rows == 0 or not columns:
             return
         kept_columns = []
@@ -89,7 +91,7 @@ class ArraySource(Source):
         self.tables = (*self.tables, Table(name, tuple(kept_columns), clock, rows, rate_hz, start))
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Yield the columns in slices."""
+        """Yield the named columns of a table in blocks of rows."""
         readers = {name: self._columns[table.name][table.column(name).name] for name in names}
         kinds = {name: table.column(name).kind for name in names}
         assert table.rows is not None
@@ -106,7 +108,7 @@ class ArraySource(Source):
             yield block
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
-        """Return the rows or records that the format skipped."""
+        """Number, reason and first row of the rows or records that the format skipped."""
         return self.passed_over
 
     def close(self) -> None:
@@ -116,14 +118,14 @@ class ArraySource(Source):
 
 
 def first_instant(instants: Any) -> np.datetime64 | None:
-    """Return the first valid date, or None."""
+    """First valid date of an array of dates, or None."""
     fine = np.asarray(instants).astype("datetime64[ns]")
     valid = fine[~np.isnat(fine)]
     return valid[0] if valid.size else None
 
 
 def seconds(instants: Any, origin: np.datetime64 | None) -> Values:
-    """Convert dates to seconds since an origin; NaN for a missing date."""
+    """Convert dates to seconds since `origin`; NaN for a missing date."""
     fine = np.asarray(instants).astype("datetime64[ns]")
     if origin is None:
         return np.full(len(fine), np.nan)
@@ -133,14 +135,14 @@ def seconds(instants: Any, origin: np.datetime64 | None) -> Values:
 
 
 def slices(values: Any) -> Slice:
-    """Return the slices of a vector."""
+    """Function that reads rows from a vector in memory, `first` to `end` exclusive."""
     return lambda first, end: values[first:end]
 
 
 def add_by_length(
     source: ArraySource, vectors: Mapping[str, tuple[Any, str]], options: Options
 ) -> None:
-    """Add a table for each length of vectors; vectors of one length share their rows."""
+    """Group vectors of equal length into tables and add these to the source."""
     lengths = dict.fromkeys(len(values) for values, _ in vectors.values())
     for length in lengths:
         if length < 2:
@@ -154,13 +156,13 @@ def add_by_length(
 
 
 def add_by_clock(source: ArraySource, signals: Iterable[Signal], only_table: bool = True) -> None:
-    """Add signals by their times: signals with equal times share a table.
+    """Group signals with equal times into tables and add these to the source.
 
     Times in seconds become the clock of the table.
 
     Parameters
     ----------
-    alone
+    only_table
         Whether the file has no other tables, so that a single table needs no name.
     """
     sampled = [signal for signal in signals if len(signal.times)]
@@ -180,18 +182,19 @@ def add_by_clock(source: ArraySource, signals: Iterable[Signal], only_table: boo
 
 
 def table_name(columns: Sequence[str]) -> str:
-    """Return a name for an unnamed table: its columns, or the first of many."""
+    """Name for an unnamed table: its column names, or the first and the number of others."""
     if len(columns) <= _NAMED:
         return ", ".join(columns)
     return f"{columns[0]} and {len(columns) - 1} more"
 
 
 def _several(lengths: Mapping[int, None]) -> bool:
+    """Whether more than one length is longer than one sample."""
     return sum(length > 1 for length in lengths) > 1
 
 
 def vectors_of(name: str, values: Any) -> dict[str, Any]:
-    """Return the columns of an array by name.
+    """Split an array into numeric columns with names.
 
     A vector is one column; a matrix or an array of records has several. The result is empty for any
     other array and for a matrix that is too wide.

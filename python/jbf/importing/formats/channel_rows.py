@@ -1,4 +1,4 @@
-"""Exports of TwinCAT Scope: rows that describe the channels, each with a key in the first cell.
+"""Layout of TwinCAT Scope exports, in which header rows describe the channels by keys.
 
 The key is repeated above each time column. `Name;POS;VEL;Name;TRQ` thus has two tables next to each
 other: POS and VEL with the times of the first column, TRQ with those of the fourth. Without time
@@ -17,13 +17,13 @@ NAME, UNIT, PERIOD = "name", "unit", "sampletime[ms]"
 KEYS = ("data-type", "symbolname", "netid", "port", "symbolbased", "symbolcomment", UNIT, PERIOD)
 """Keys of the rows that describe channels, in lower case."""
 FEWEST = 2
-"""Number of rows with such keys from which a file is an export of channels."""
+"""Minimum number of rows with such keys in an export of channels."""
 TIME, TIME_UNIT = "time", "ms"
 _STARTS = ("starttime of export", "startrecord")
 
 
 def lay_out_channels(rows: Sequence[Row]) -> Layout | None:
-    """Return the layout of an export of channels, or None for any other file.
+    """Determine the layout of a TwinCAT Scope export; None for any other file.
 
     Parameters
     ----------
@@ -54,13 +54,14 @@ def lay_out_channels(rows: Sequence[Row]) -> Layout | None:
 
 
 def _repeats_its_key(named: Sequence[str]) -> bool:
-    """Return whether the row of names repeats its key above each time column."""
+    """Whether the row of channel names repeats its key above each time column."""
     return len(named) > 2 and sum(cell.strip().lower() == NAME for cell in named) > 1
 
 
 def _layout(
     named: Sequence[str], described: dict[str, list[str]], samples: Sequence[Row], start: str | None
 ) -> Layout:
+    """Create the layout from the channel names, described keys and first samples."""
     key = named[0]
     clocks = [at for at, cell in enumerate(named[:-1]) if cell in (key, "") and named[at + 1]]
     channels = [at for at, cell in enumerate(named) if at not in clocks and cell]
@@ -89,21 +90,21 @@ def _layout(
 
 
 def _widest(samples: Sequence[Sequence[str]]) -> int:
-    """Return the number of cells of the longest row, without empty cells at its end."""
+    """Number of cells of the longest row, without empty cells at its end."""
     return max(max((at for at, cell in enumerate(row, 1) if cell), default=0) for row in samples)
 
 
 def _cells(
     described: dict[str, list[str]], key: str, named: Sequence[str], clocks: Sequence[int]
 ) -> list[str]:
-    """Return the cells of a key's row; empty if it is not aligned with the row of names."""
+    """Cells of a key's row by column; empty if the row is not aligned with the channel names."""
     cells = described.get(key, [])
     aligned = all(at < len(cells) and cells[at].lower() in (key, "") for at in clocks)
     return [*cells, *[""] * len(named)][: len(named)] if aligned else [""] * len(named)
 
 
 def _unit(cell: str) -> str:
-    """Return the unit of a cell such as `mm/s (Velocity)`; empty for `(None)`."""
+    """Unit in a cell such as `mm/s (Velocity)`; empty for `(None)`."""
     return cell.partition("(")[0].strip()
 
 

@@ -1,4 +1,4 @@
-"""Text files: CSV of loggers, oscilloscopes, spreadsheets and drives, plain or gzipped.
+"""Text files of loggers, oscilloscopes, spreadsheets and drives (CSV), plain or gzipped.
 
 Files are read in blocks of lines. A block is converted to numbers as a whole. If this conversion
 fails, the block is converted cell by cell, so that errors state the row and column.
@@ -48,7 +48,7 @@ _COMMENTS = ("#", "%", "//")
 
 
 class TextSource(Source):
-    """Text file of one table, or of several tables in adjacent columns."""
+    """Open text file with one table, or with several tables in adjacent columns."""
 
     def __init__(self, path: Path, options: Options) -> None:
         self.path = path
@@ -73,7 +73,7 @@ class TextSource(Source):
         self.tables = tuple(self._tables())
 
     def _lines(self) -> Iterator[tuple[int, str]]:
-        """Yield every line with its number."""
+        """Yield every line of the file with its number."""
         with opened(self.path) as raw:
             self._handle = raw
             try:
@@ -93,6 +93,7 @@ class TextSource(Source):
                 raise InputError(file=self.path, problem=problem, remedy="save it again") from None
 
     def _laid_out(self, lines: list[str]) -> Layout:
+        """Determine the layout from the first lines of the file."""
         rows = [
             (number, self.dialect.cells(line.rstrip("\n")))
             for number, line in enumerate(lines, 1)
@@ -125,6 +126,7 @@ class TextSource(Source):
         return layout
 
     def _tables(self) -> Iterator[Table]:
+        """Yield the tables of the file."""
         first = list(islice(self._rows(self._samples()), 500))
         columns: list[Column] = []
         questions, start = list[str](), self.layout.start
@@ -176,7 +178,7 @@ class TextSource(Source):
             )
 
     def _clock_of(self, table: Table) -> int | None:
-        """Return the index of the time column if there are several tables, else None.
+        """Index of the time column of a table if the file has several tables, otherwise None.
 
         Rows without a time do not belong to the table.
         """
@@ -187,7 +189,7 @@ class TextSource(Source):
         return next((at for at in places if at in clocks), None)
 
     def _is_kept(self, column: Column, rows: Sequence[tuple[int, list[str]]]) -> bool:
-        """Return whether a column is kept.
+        """Whether a column has a name or values.
 
         A column without name and values results from a delimiter at the end of each line.
         """
@@ -242,16 +244,17 @@ class TextSource(Source):
             yield number, cells if len(cells) == width else cells[:width]
 
     def _counts(self, cell: str) -> bool:
+        """Whether a cell is a number, a date or empty."""
         cell = cell.strip()
         return self.dialect.is_number(cell) or is_instant(cell)
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
-        """Return the text rows among the samples, and the damaged rows."""
+        """Number, reason and first row of text rows among the samples, and of damaged rows."""
         words = [(len(self._words), "only words", self._words[0])] if self._words else []
         return [*words, *self._damage.skipped_rows()]
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Yield the columns in blocks of lines."""
+        """Yield the named columns of a table in blocks of rows."""
         places = [self.layout.names.index(table.column(name).name) for name in names]
         kinds = [table.column(name).kind for name in names]
         readers = {
@@ -315,7 +318,7 @@ class TextSource(Source):
         rows: Sequence[int],
         wrong: dict[int, InputError],
     ) -> Values:
-        """Convert cells to numbers; errors are added to `wrong` by their index in the block."""
+        """Convert the cells of a column to numbers; collect errors in `wrong` by their index."""
         dialect = self.dialect
         is_plain = dialect.decimal == "." and not dialect.thousands
         try:
@@ -345,6 +348,7 @@ class TextSource(Source):
     def _instants(
         self, name: str, cells: Sequence[str], rows: Sequence[int], reader: Instants
     ) -> Values:
+        """Convert the cells of a column of dates to seconds from the first instant."""
         empty = [is_empty(cell, self.empty) for cell in cells]
         try:
             instants = reader.parse(cells, empty)
@@ -359,7 +363,7 @@ class TextSource(Source):
         return seconds_since(instants, self._origins[name][0])
 
     def row_of(self, table: Table, sample: int) -> int | None:
-        """Return the line number of a sample."""
+        """Line number in the file of a sample, counted from 0."""
         bad, clock = self._damage.lines, self._clock_of(table)
         valid_rows = (
             number
@@ -369,7 +373,7 @@ class TextSource(Source):
         return next(islice(valid_rows, sample, None), None)
 
     def read_bytes(self) -> tuple[int, int]:
-        """Return the number of bytes read, and the size of the file."""
+        """Number of bytes read so far, and the size of the file."""
         size = self.path.stat().st_size
         handle = self._handle
         if handle is None or handle.closed:
@@ -379,7 +383,7 @@ class TextSource(Source):
 
 
 def open_text(path: Path, options: Options) -> Source:
-    """Open a text file: a table, or a trace of a controller with one block per variable."""
+    """Open a text file: a table, or a trace export with one block per variable."""
     with opened(path) as file:
         begin = file.read(_TRACE_BYTES)
     encoding = options.encoding or decode(begin)

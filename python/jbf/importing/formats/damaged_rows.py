@@ -1,4 +1,4 @@
-"""Damaged rows among the samples of a text file, which are counted and skipped, or an error."""
+"""Counter of damaged rows in a text file: a few are skipped, many raise an InputError."""
 
 from __future__ import annotations
 
@@ -9,19 +9,24 @@ from jbf.errors import InputError
 from jbf.importing.formats.table import MAX_DAMAGED_SHARE
 
 STOP_SHARE, STOP_ROWS = 1e-2, 20
-"""Reading stops when the number of damaged rows exceeds STOP_SHARE * rows + STOP_ROWS."""
+"""Limits of damaged rows: reading stops above ``STOP_SHARE * rows + STOP_ROWS``."""
 
 
 @dataclass
 class DamagedRows:
-    """Damaged rows of a file; a small number is skipped, a larger number is an error.
+    """Damaged rows of a text file that were skipped.
 
     Attributes
     ----------
+    path
+        The file.
     rows
         Number of rows that were read.
     lines
         Line numbers of the damaged rows.
+
+    first
+        Error of the first damaged row.
     """
 
     path: Path
@@ -30,7 +35,7 @@ class DamagedRows:
     first: InputError | None = None
 
     def add(self, error: InputError) -> None:
-        """Count a damaged row; raise an error if there are too many."""
+        """Count a damaged row by its error; raise an InputError if there are too many."""
         assert error.row is not None
         self.lines.add(error.row)
         self.first = self.first or error
@@ -38,12 +43,12 @@ class DamagedRows:
             raise self._refused()
 
     def check(self) -> None:
-        """Raise an error if more than `MAX_DAMAGED_SHARE` of the rows are damaged."""
+        """Raise an InputError if more than `MAX_DAMAGED_SHARE` of all rows are damaged."""
         if len(self.lines) > max(MAX_DAMAGED_SHARE * self.rows, 1.0):
             raise self._refused()
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
-        """Return the number of damaged rows, the reason and the first of them."""
+        """Number of damaged rows, the reason, and the first of them; empty without damaged rows."""
         if self.first is None:
             return []
         where = "" if self.first.column is None else f" in column {self.first.column}"
@@ -51,6 +56,7 @@ class DamagedRows:
         return [(len(self.lines), why, self.first.row)]
 
     def _refused(self) -> InputError:
+        """Error for a file with too many damaged rows."""
         assert self.first is not None
         extent = ""
         if len(self.lines) > 1:

@@ -49,12 +49,12 @@ _FIRST_YEAR, _LAST_YEAR = 1678, 2261
 
 
 def is_file_time(cell: str) -> bool:
-    """Return whether a cell is a file time of Windows of the years 1981 to 2041."""
+    """Whether a cell is a Windows file time of the years 1981 to 2041."""
     return _FILE_TIME.fullmatch(cell.strip()) is not None
 
 
 def is_instant(cell: str) -> bool:
-    """Return whether a cell is written as a date, a time of day or both."""
+    """Whether a cell is written as a date, a time of day or both."""
     return _matched(cell) is not None
 
 
@@ -67,13 +67,13 @@ def _matched(cell: str) -> re.Match[str] | None:
 
 
 def _month(name: str) -> int | None:
-    """Return the number of a month from the first letters of its name."""
+    """Number of a month from the first letters of its name, or None."""
     word = name.lower()
     return _MONTH.get(word[:4]) or _MONTH.get(word[:3])
 
 
 def day_or_month_first(cells: Sequence[str]) -> str | None:
-    """Return the order of day and month in dates, or None if these cells do not determine it.
+    """Order of day and month in dates; None if these cells do not determine it.
 
     The order of ISO dates and of dates with full stops is known.
     """
@@ -91,7 +91,7 @@ def day_or_month_first(cells: Sequence[str]) -> str | None:
 
 
 class Instants:
-    """Parser of blocks of cells that counts the days if only times of day are written."""
+    """Parser of columns of dates, block by block; times of day continue after midnight."""
 
     def __init__(self, order: str = DAY_FIRST) -> None:
         self.order = order
@@ -99,7 +99,7 @@ class Instants:
         self._days = 0
 
     def parse(self, cells: Sequence[str], is_empty: Sequence[bool]) -> Nanoseconds:
-        """Return nanoseconds since 1970 or since midnight; `NO_INSTANT` for an empty cell.
+        """Convert cells to ns since 1970 or since midnight; `NO_INSTANT` for an empty cell.
 
         Raises
         ------
@@ -142,7 +142,7 @@ class Instants:
     def _decoded(
         self, match: re.Match[str], digits: Nanoseconds
     ) -> tuple[Nanoseconds, npt.NDArray[np.bool_]]:
-        """Return the values of cells of one shape, and whether each is a valid calendar date."""
+        """Instants of cells of one shape, and whether each is a valid calendar date."""
 
         def number(group: str, longest: int = 9) -> Nanoseconds:
             begin, end = match.span(group)
@@ -177,7 +177,7 @@ class Instants:
         return date.astype(np.int64) * _DAY_NS + of_day, valid
 
     def _continued(self, of_day: Nanoseconds) -> Nanoseconds:
-        """Continue times of day, in the order of the file, on the next day after midnight."""
+        """Add whole days to times of day so that they continue after midnight."""
         if not of_day.size:
             return of_day
         last = of_day[0] if self._last is None else self._last
@@ -187,14 +187,14 @@ class Instants:
 
 
 def seconds_since(instants: Nanoseconds, origin: int) -> npt.NDArray[np.float64]:
-    """Convert instants to seconds since an origin; NaN for a missing instant."""
+    """Convert instants (ns) to seconds since an origin; NaN for a missing instant."""
     elapsed_s = (instants - origin) / 1e9
     elapsed_s[instants == NO_INSTANT] = np.nan
     return elapsed_s
 
 
 def as_date(instant: int) -> str | None:
-    """Return an instant in ISO 8601, or None for a time of day."""
+    """ISO 8601 text of an instant (ns since 1970), or None for a time of day."""
     if 0 <= instant < 400 * _DAY_NS:
         return None
     return str(np.datetime64(instant, "ns"))

@@ -51,7 +51,7 @@ _PARTS = re.compile(r"[+-]?(\d+)([.,])(\d+)")
 
 @dataclass(frozen=True)
 class Dialect:
-    """Delimiter of cells and notation of numbers.
+    """Delimiter of cells, and notation of numbers, in a text file.
 
     Attributes
     ----------
@@ -69,11 +69,11 @@ class Dialect:
     question: str | None = None
 
     def cells(self, line: str) -> list[str]:
-        """Return the cells of a line, without surrounding blanks."""
+        """Split a line into cells without surrounding blanks."""
         return [cell.strip() for cell in self.split(line)]
 
     def split(self, line: str) -> list[str]:
-        """Return the cells of a line unchanged."""
+        """Split a line into unchanged cells."""
         if self.delimiter == " ":
             return line.split()
         if '"' not in line:
@@ -81,11 +81,11 @@ class Dialect:
         return next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
 
     def is_number(self, cell: str) -> bool:
-        """Return whether a cell holds a number."""
+        """Whether a cell holds a number."""
         return _is_number(cell, self.decimal)
 
     def plain(self, text: str) -> str:
-        """Return a number with a decimal point and without marks of thousands."""
+        """Rewrite a number with a decimal point and without thousands separators."""
         if self.thousands:
             for mark in " \u00a0\u202f" if self.thousands == " " else self.thousands:
                 text = text.replace(mark, "")
@@ -93,15 +93,15 @@ class Dialect:
 
 
 def is_empty(cell: str, words: frozenset[str] = frozenset()) -> bool:
-    """Return whether a cell denotes a missing sample."""
+    """Whether a cell denotes a missing sample (empty, or one of `words`)."""
     low = cell.strip().lower()
     return not low or low in _EMPTY_WORDS or low in words
 
 
 def decode(data: bytes) -> str:
-    """Return the encoding of a text: by its byte order mark, else UTF-8 if valid, else cp1252.
+    """Determine the encoding of a text file from its first bytes.
 
-    Latin-1 applies if the text is not valid cp1252 either.
+    A byte order mark comes first, then UTF-8 if the bytes are valid, cp1252 if valid, and Latin-1.
     """
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "utf-16"
@@ -151,7 +151,7 @@ def sniff(
 
 
 def _score(dialect: Dialect, lines: list[str]) -> tuple[float, float]:
-    """Return the score of a dialect: share of regular numeric cells, and width (at most 2).
+    """Score of a dialect for given lines: share of regular numeric cells, and width (at most 2).
 
     The first value is the share of lines of the most common length, times the share of numbers in
     their non-empty cells.
@@ -175,6 +175,7 @@ def _is_number(cell: str, decimal: str) -> bool:
 
 
 def _thousands(cells: list[str], decimal: str) -> str:
+    """Thousands separator of numbers with this decimal mark; empty if they have none."""
     for cell in cells:
         if _GROUPED[decimal].fullmatch(cell) and not _PLAIN[decimal].fullmatch(cell):
             mark = next(c for c in cell if not c.isdigit() and c not in "+-")
@@ -183,7 +184,7 @@ def _thousands(cells: list[str], decimal: str) -> str:
 
 
 def _ambiguity(cells: list[str]) -> str | None:
-    """Return a question if each single comma precedes three digits: thousands or decimals."""
+    """Question to the user if each comma precedes three digits (thousands or decimals), or None."""
     matches = [m for cell in cells if (m := _PARTS.fullmatch(cell)) is not None]
     commas = [m for m in matches if m[2] == ","]
     if not commas or any(m[2] == "." for m in matches) or len(commas) < len(matches):
@@ -197,7 +198,7 @@ def _ambiguity(cells: list[str]) -> str | None:
 
 
 def opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
-    """Open a file, gzipped or not, as bytes."""
+    """Open a plain or gzipped file as a stream of bytes."""
     try:
         file = path.open("rb")
         if file.read(2) == b"\x1f\x8b":
@@ -212,7 +213,7 @@ def opened(path: Path) -> io.BufferedReader | gzip.GzipFile:
 
 
 def known_encoding(encoding: str) -> str:
-    """Return the encoding, or Latin-1 in place of an unknown encoding."""
+    """Name of an encoding if Python knows it, otherwise Latin-1."""
     try:
         return codecs.lookup(encoding).name
     except LookupError:

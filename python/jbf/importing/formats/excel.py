@@ -21,7 +21,7 @@ _EPOCH = datetime(1970, 1, 1)
 
 
 class ExcelSource(Source):
-    """A workbook; each sheet with samples is a table."""
+    """Open Excel workbook; each sheet with samples is a table."""
 
     def __init__(self, path: Path, options: Options) -> None:
         self.path = path
@@ -71,7 +71,7 @@ class ExcelSource(Source):
         yield from enumerate(self._book[name].iter_rows(values_only=True), 1)
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Yield the columns in blocks of rows."""
+        """Yield the named columns of a sheet in blocks of rows."""
         layout, dialect = self._layouts[table.name]
         places = {name: layout.names.index(name) for name in names}
         rows = (
@@ -118,7 +118,7 @@ class ExcelSource(Source):
         )
 
     def row_of(self, table: Table, sample: int) -> int | None:
-        """Return the row of a sample, without regard to empty rows."""
+        """Row number of a sample in its sheet, without regard to empty rows."""
         return self._layouts[table.name][0].first + sample
 
     def close(self) -> None:
@@ -155,5 +155,5 @@ def _is_number(cell: str) -> bool:
 
 
 def open_excel(path: Path, options: Options) -> Source:
-    """Open a workbook."""
+    """Open an Excel workbook as a source of tables."""
     return ExcelSource(path, options)

@@ -18,7 +18,7 @@ _WIDEST = 64
 
 
 def open_hdf5(path: Path, options: Options) -> Source:
-    """Open an HDF5 file."""
+    """Open an HDF5 file as a source of tables."""
     file = h5py.File(path, "r")
     source = ArraySource(path, file.close)
     groups: dict[tuple[str, int], dict[str, tuple[Slice, str]]] = {}

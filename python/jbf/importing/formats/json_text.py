@@ -31,7 +31,7 @@ Columns = dict[str, npt.NDArray[Any]]
 
 
 def open_json(path: Path, options: Options) -> Source:
-    """Open a file of JSON or of JSON lines."""
+    """Open a file of JSON or of JSON lines as a source of tables."""
     content, torn = _content(path)
     source = ArraySource(path)
     entries = list(_tables(content, "", options.rate_hz))
@@ -49,7 +49,7 @@ def open_json(path: Path, options: Options) -> Source:
 
 
 def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
-    """Return the content (a list for JSON lines), and the skipped invalid lines with the reason."""
+    """Content of a JSON file (a list for JSON lines), and the invalid lines that were skipped."""
     text = read_text(path)
     try:
         return json.loads(text), []
@@ -77,7 +77,7 @@ def _content(path: Path) -> tuple[Any, list[tuple[int, str, int | None]]]:
 def _tables(
     content: Any, name: str, rate_hz: float | None
 ) -> Iterator[tuple[str, Columns, float | None]]:
-    """Yield every table in a value: its name, columns and rate."""
+    """Yield name, columns and sampling rate (Hz) of each table in a JSON value."""
     if isinstance(content, Mapping):
         for holder in (*(content.get(key) for key in SETTINGS), content):
             rates = [holder.get(k) for k in RATES] if isinstance(holder, Mapping) else []
@@ -102,7 +102,7 @@ def _tables(
 
 
 def _columns(content: Mapping[str, Any]) -> Columns:
-    """Return the numeric arrays of the most common length; matrices are split into columns."""
+    """Numeric arrays of the most common length, by name; matrices are split into columns."""
     arrays: Columns = {}
     for key, value in content.items():
         if not isinstance(value, list) or len(value) < FEWEST:
@@ -118,13 +118,14 @@ def _columns(content: Mapping[str, Any]) -> Columns:
 
 
 def _is_row(record: Mapping[str, Any]) -> bool:
-    """Return whether a record is one sample: it has scalar numbers, and any arrays are short."""
+    """Whether a record is one sample: it has scalar numbers, and its arrays are short."""
     arrays = [value for value in record.values() if isinstance(value, list)]
     scalars = {k: v for k, v in record.items() if not isinstance(v, list) and k not in RATES}
     return max(map(len, arrays), default=0) <= LONGEST and any(True for _ in leaves_of(scalars))
 
 
 def _concatenated(recordings: Sequence[Columns]) -> Columns:
+    """Concatenate recordings with equal columns, and number them in the column `run`."""
     joined: Columns = {
         key: np.concatenate([columns[key] for columns in recordings]) for key in recordings[0]
     }
@@ -137,7 +138,7 @@ def _concatenated(recordings: Sequence[Columns]) -> Columns:
 
 
 def _columns_of_records(records: Sequence[Any]) -> Columns:
-    """Return the columns of records; NaN where a record lacks a value."""
+    """Columns of a list of records; NaN where a record lacks a value."""
     rows = [dict(leaves_of(record)) for record in records]
     keys = dict.fromkeys(key for row in rows for key in row)
     return {key: _numbers([row.get(key) for row in rows]) for key in keys}

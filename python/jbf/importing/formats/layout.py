@@ -1,4 +1,4 @@
-"""Find the rows of names and units in a table of cells, and the first row of samples.
+"""Layout of a table of cells: rows of names and units, and the first row of samples.
 
 The functions work on rows of text, so that the same rules apply to workbook sheets and text files.
 """
@@ -27,15 +27,15 @@ _RATE = re.compile(
 _VALUE = re.compile(r"(?P<value>\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[a-zµμA-Z/]*)")
 _NUMERAL = re.compile(r"[+-]?\d+(?:[.,]\d*)?(?:[eE][+-]?\d+)?")
 _EXACT = 16
-"""Number of characters from which a numeral may exceed the precision of a float."""
+"""Number of digits from which a numeral may exceed the precision of a float."""
 LABEL = "label of"
-"""Prefix of columns that hold the name of the next column in each row."""
+"""Name prefix of a column that holds, in each row, the name of the next column."""
 _HZ = {"hz": 1.0, "khz": 1e3, "s/s": 1.0, "sps": 1.0}
 
 
 @dataclass(frozen=True)
 class Part:
-    """One of several tables next to each other.
+    """One of several tables in adjacent columns of a file.
 
     Attributes
     ----------
@@ -54,12 +54,18 @@ class Part:
 
 @dataclass(frozen=True)
 class Layout:
-    """Names and units of the columns, and the number of the first row of samples.
+    """Names and units of the columns of a table, and its first row of samples.
 
     Attributes
     ----------
+    names, units
+        Names and units of the columns; empty texts where there are none.
+    first
+        Number of the first row of samples, counted from 1.
     rate_hz
         Sampling rate, if the lines before the header state it, Hz.
+    headless
+        Whether the file has no row of names.
     parts
         Tables next to each other; empty if all columns share their rows.
     start
@@ -147,7 +153,7 @@ def lay_out(
 
 
 def _side_by_side(names: Sequence[str]) -> tuple[Part, ...]:
-    """Return tables next to each other, each with a first column named as the first one."""
+    """Tables in adjacent columns, each of which begins with the same column name."""
     clocks = [at for at, name in enumerate(names) if name == names[0]]
     ends = [*clocks[1:], len(names)]
     separated = all(end - at > 1 for at, end in zip(clocks, ends, strict=True))
@@ -157,7 +163,7 @@ def _side_by_side(names: Sequence[str]) -> tuple[Part, ...]:
 
 
 def merged(parts: tuple[Part, ...], rows: Iterable[Sequence[str]]) -> tuple[Part, ...]:
-    """Merge tables next to each other that have the same times throughout.
+    """Merge tables in adjacent columns that have the same times in all rows.
 
     Parameters
     ----------
@@ -186,13 +192,13 @@ def merged(parts: tuple[Part, ...], rows: Iterable[Sequence[str]]) -> tuple[Part
 
 
 def _instant(cell: str) -> float | str:
-    """Return a time in a form for comparison, in which `0` equals `0.0`."""
+    """Normalise a time for a comparison in which `0` equals `0.0`."""
     cell = cell.strip()
     return float(cell.replace(",", ".")) if len(cell) < _EXACT and _is_numeral(cell) else cell
 
 
 def _labels(rows: Sequence[list[str]]) -> tuple[str, ...] | None:
-    """Return the column names of rows in which each value follows its name, `x 1.5 y 2.5`."""
+    """Column names of rows in which each value follows its name, as in `x 1.5 y 2.5`."""
     words = {tuple(cells[::2]) for cells in rows}
     values = [cell for cells in rows for cell in cells[1::2]]
     if len(words) != 1 or any(len(cells) % 2 for cells in rows) or not any(words):
@@ -214,7 +220,7 @@ def _first_sample(
     numeric: Callable[[list[str]], int],
     counts: Callable[[str], bool],
 ) -> int | None:
-    """Return the index of the first row of samples that is followed by rows of samples."""
+    """Index of the first row of samples that is followed by further rows of samples."""
 
     def sample(cells: list[str]) -> bool:
         cells = _trimmed(cells)
@@ -235,11 +241,12 @@ def _first_sample(
 
 
 def _may_be_head(cells: list[str], width: int) -> bool:
-    """Return whether a row can name columns: it is as wide as the samples, or nearly."""
+    """Whether a row may contain the column names: it is about as wide as the samples."""
     return len(cells) >= min(width, 2) and sum(map(bool, cells)) >= max(1, width // 2)
 
 
 def _is_units(cells: list[str]) -> bool:
+    """Whether a row of cells contains units."""
     full = [_bare_unit(cell) for cell in cells if cell]
     unit_count = sum(parse_unit(cell) is not None for cell in full)
     # `s` is a unit and a name; whole words that name a quantity do not occur in a row of units.
@@ -248,6 +255,7 @@ def _is_units(cells: list[str]) -> bool:
 
 
 def _bare_unit(cell: str) -> str:
+    """Text of a unit cell without brackets."""
     cell = cell.strip()
     if len(cell) > 2 and cell[0] + cell[-1] in ("[]", "()", "{}", "<>"):
         return cell[1:-1].strip()
@@ -255,6 +263,7 @@ def _bare_unit(cell: str) -> str:
 
 
 def _row(rows: Sequence[Row], number: int) -> list[str]:
+    """Cells of the row with this number."""
     for n, cells in rows:
         if n == number:
             return cells
@@ -264,7 +273,7 @@ def _row(rows: Sequence[Row], number: int) -> list[str]:
 
 
 def _trimmed(cells: Sequence[str]) -> list[str]:
-    """Return the cells without empty cells at the end."""
+    """Cells of a row without empty cells at its end."""
     end = len(cells)
     while end and not cells[end - 1]:
         end -= 1
@@ -272,11 +281,12 @@ def _trimmed(cells: Sequence[str]) -> list[str]:
 
 
 def _padded(cells: Sequence[str], width: int) -> tuple[str, ...]:
+    """Cells of a row, extended by empty cells to a width."""
     return tuple([*cells, *[""] * width][:width])
 
 
 def _repeat_group_names(cells: Sequence[str], width: int) -> list[str]:
-    """Repeat the name of a group, which is written only above its first column."""
+    """Repeat a group name, which is written above its first column only, for all its columns."""
     repeated: list[str] = []
     for cell in _padded(cells, width):
         repeated.append(cell or (repeated[-1] if repeated else ""))
@@ -284,7 +294,7 @@ def _repeat_group_names(cells: Sequence[str], width: int) -> list[str]:
 
 
 def _rate(rows: Sequence[Row]) -> float | None:
-    """Return the sampling rate that a line before the header states, Hz."""
+    """Sampling rate stated in a line before the header, Hz, or None."""
     for _, cells in rows:
         line = " ".join(cells)
         word = _RATE.search(line)

@@ -1,4 +1,4 @@
-"""MAT files up to version 7, by SciPy; tables and timetables in them by mat-io, if installed."""
+"""MAT files up to version 7, read by SciPy; tables in them by mat-io, if installed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jbf.importing.formats.table import Options, Source
 
 
 def open_mat(path: Path, options: Options) -> Source:
-    """Open a MAT file: vectors, columns of matrices, signals and fields of structures."""
+    """Open a MAT file up to version 7 as a source of tables."""
     from scipy.io import loadmat
     from scipy.io.matlab import MatlabOpaque
 
@@ -34,6 +34,7 @@ def open_mat(path: Path, options: Options) -> Source:
 
 
 def _tree(value: Any) -> Tree:
+    """Convert a variable of SciPy to structures, lists, text and numbers."""
     fields = getattr(value, "_fieldnames", None)
     if fields is not None:
         return {field: _tree(getattr(value, field)) for field in fields}

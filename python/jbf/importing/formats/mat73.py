@@ -21,7 +21,7 @@ _DEEPEST = 32
 
 
 def open_mat73(path: Path, options: Options) -> Source:
-    """Open a MAT file: vectors, columns of matrices, signals and fields of structures."""
+    """Open a MAT file of version 7.3 as a source of tables."""
     file = h5py.File(path, "r")
     source = ArraySource(path, file.close)
     variables = {name: item for name, item in file.items() if not name.startswith("#")}
@@ -36,13 +36,14 @@ def open_mat73(path: Path, options: Options) -> Source:
 
 
 def _is_opaque(item: Any) -> bool:
-    """Return whether a variable contains opaque objects of MATLAB."""
+    """Whether a variable contains opaque MATLAB objects (such as tables)."""
     if isinstance(item, h5py.Group):
         return any(map(_is_opaque, item.values()))
     return "MATLAB_object_decode" in item.attrs
 
 
 def _tree(file: Any, item: Any, depth: int) -> Tree:
+    """Convert a variable of the file to structures, lists, text and numbers."""
     if depth > _DEEPEST or _is_opaque(item):
         return None
     if isinstance(item, h5py.Group):
@@ -66,7 +67,7 @@ def _tree(file: Any, item: Any, depth: int) -> Tree:
 
 
 def _is_array_of_structures(group: Any) -> bool:
-    """Return whether each field of a group refers to its values in successive structures."""
+    """Whether an HDF5 group is an array of structures, stored field by field."""
     fields = list(group.values())
     return bool(fields) and all(
         isinstance(field, h5py.Dataset)
@@ -77,7 +78,7 @@ def _is_array_of_structures(group: Any) -> bool:
 
 
 def _samples(item: Any) -> Samples | None:
-    """Return the columns of a dataset; columns of MATLAB are rows of HDF5."""
+    """Columns of a numeric dataset (MATLAB stores matrices transposed in HDF5)."""
     if item.ndim == 3:
         # The samples of a signal with several elements lie along MATLAB's last dimension.
         width = item.shape[1] * item.shape[2]

@@ -1,4 +1,4 @@
-"""Signals in structures of MAT files, with their names and clocks.
+"""Signals in the structures of MAT files, with their names and times.
 
 A signal is a structure that holds samples (`values`, `Data`) and their label. Examples are
 Simulink's "Structure with time", a timeseries as a structure, and recordings of dSPACE. Its
@@ -26,7 +26,7 @@ SECONDS = ("s", "sec", "seconds")
 
 @dataclass(frozen=True)
 class Samples:
-    """Columns of one array."""
+    """Columns of one array: number of rows, and a function per column that reads its rows."""
 
     rows: int
     columns: tuple[Slice, ...]
@@ -38,12 +38,16 @@ Tree: TypeAlias = "Mapping[str, Tree] | list[Tree] | str | Samples | None"
 
 @dataclass(frozen=True)
 class _Clock:
+    """Times of signals: samples of one column, and their unit."""
+
     samples: Samples
     unit: str
 
 
 @dataclass(frozen=True)
 class _Variable:
+    """Vector or matrix of a file, with its name, unit and times, if known."""
+
     name: str
     samples: Samples
     unit: str = ""
@@ -57,7 +61,7 @@ class _Variable:
 
 
 def add_structures(source: ArraySource, content: Mapping[str, Tree]) -> None:
-    """Add the variables of a file: signals by their clocks, all other vectors by their length."""
+    """Add the variables of a MAT file to a source: signals by their times, others by length."""
     variables = [entry for name, node in content.items() for entry in _walk(node, name, None)]
     by_length: dict[int, dict[str, tuple[Slice, str]]] = {}
     signals = []
@@ -77,7 +81,7 @@ def add_structures(source: ArraySource, content: Mapping[str, Tree]) -> None:
 
 
 def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Variable]:
-    """Yield the signals and vectors of a variable.
+    """Yield the signals and vectors in a variable of a MAT file, at any depth.
 
     Parameters
     ----------
@@ -95,6 +99,7 @@ def _walk(node: Tree, name: str, clock: _Clock | None) -> Iterator[_Variable]:
 
 
 def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> Iterator[_Variable]:
+    """Yield the signals and vectors in the fields of a structure."""
     fields = {key.lower(): key for key in node}
     own_clock = _clock(node, fields)
     time = own_clock or clock
@@ -124,7 +129,7 @@ def _of_structure(node: Mapping[str, Tree], name: str, clock: _Clock | None) -> 
 
 
 def _clock(node: Mapping[str, Tree], fields: Mapping[str, str]) -> _Clock | None:
-    """Return the time that a structure holds, or None."""
+    """Times stored in a structure, or None."""
     time = node.get(fields.get("time", ""))
     if not isinstance(time, Samples) or time.rows < 2 or len(time.columns) != 1:
         return None
@@ -138,7 +143,7 @@ def _clock(node: Mapping[str, Tree], fields: Mapping[str, str]) -> _Clock | None
 def _signal(
     node: Mapping[str, Tree], fields: Mapping[str, str], name: str, clock: _Clock | None
 ) -> _Variable | None:
-    """Return the signal of a structure; None without samples, or without both label and clock."""
+    """Signal stored in a structure; None without samples, or without both label and times."""
     candidates = [node[fields[key]] for key in SAMPLES if key in fields]
     samples = next(
         (item for item in candidates if isinstance(item, Samples) and item.rows > 1), None
@@ -155,7 +160,7 @@ def _signal(
 
 
 def _text(node: Mapping[str, Any], keys: tuple[str, ...]) -> str:
-    """Return the first non-empty text among fields."""
+    """First non-empty text among the fields `keys` of a structure."""
     fields = {key.lower(): value for key, value in node.items()}
     texts = (fields.get(key) for key in keys)
     return next((text.strip() for text in texts if isinstance(text, str) and text.strip()), "")

@@ -1,4 +1,4 @@
-"""MATLAB tables and timetables, which SciPy and HDF5 present as opaque objects, by mat-io."""
+"""MATLAB tables and timetables, read by mat-io since SciPy and HDF5 cannot."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jbf.importing.formats.table import library_errors
 
 
 def add_tables(source: ArraySource, path: Path) -> None:
-    """Add every table of a file.
+    """Add every MATLAB table of a file to a source.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def add_tables(source: ArraySource, path: Path) -> None:
 
 
 def _add_frame(source: ArraySource, name: str, frame: Any) -> None:
-    """Add a table, given as a pandas frame; the index of a timetable is its time."""
+    """Add a MATLAB table, given as a pandas frame; the index of a timetable is its time."""
     columns: dict[str, tuple[Any, str]] = {}
     clock = None
     index = frame.index.to_numpy()

@@ -24,7 +24,7 @@ class _JsonDecoder(DecoderFactory):
 
 
 class McapSource(MessageSource):
-    """A log; each topic is a table."""
+    """Open MCAP log; each topic is a table."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
@@ -44,7 +44,7 @@ class McapSource(MessageSource):
             raise InputError(file=path, problem=problem, remedy="write its messages as JSON or CSV")
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
-        """Yield the messages of a topic."""
+        """Yield log time, ns, and decoded message of each message of a topic."""
         self._file.seek(0)
         reader = make_reader(self._file, decoder_factories=[Ros2Decoder(), _JsonDecoder()])
         for _, _, message, decoded in reader.iter_decoded_messages(topics=[topic]):
@@ -56,5 +56,5 @@ class McapSource(MessageSource):
 
 
 def open_mcap(path: Path, options: Options) -> Source:
-    """Open a log."""
+    """Open an MCAP log as a source of tables."""
     return McapSource(path)

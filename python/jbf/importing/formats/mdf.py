@@ -1,4 +1,4 @@
-"""MDF3 and MDF4 files, by asammdf; each channel group has a clock and is read in blocks."""
+"""MDF3 and MDF4 files, read by asammdf; each channel group has its own times."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CLOCK = "time"
 
 
 class MdfSource(Source):
-    """A measurement file; each channel group is a table."""
+    """Open MDF file; each channel group is a table."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -76,7 +76,7 @@ class MdfSource(Source):
         return np.asarray(signal[0])
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Yield the columns in blocks of records."""
+        """Yield the named columns of a channel group in blocks of records."""
         group, places = self._places[table.name]
         assert table.rows is not None
         for first in range(0, table.rows, BLOCK):
@@ -102,5 +102,5 @@ def _name(at: int, group: Any) -> str:
 
 
 def open_mdf(path: Path, options: Options) -> Source:
-    """Open a measurement file."""
+    """Open an MDF file as a source of tables."""
     return MdfSource(path)

@@ -23,12 +23,12 @@ LONGEST = 32
 """Largest number of list elements that become columns."""
 SECONDS = ("sec", "secs", "seconds")
 NANOSECONDS = ("nanosec", "nanosecs", "nsec", "nsecs", "nanos", "nanoseconds")
-"""Names of the two parts of a stamp."""
+"""Names of the nanosecond part of a time stamp."""
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 
 class MessageSource(Source):
-    """A log of messages, grouped by topic."""
+    """Open log of messages; each topic with numbers is a table."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -38,7 +38,7 @@ class MessageSource(Source):
 
     @abstractmethod
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
-        """Yield log time, ns, and message, in the order of the log."""
+        """Yield log time, ns, and message of a topic, in the order of the log."""
 
     def add_topic(self, topic: str, count: int | None) -> None:
         """Inspect the first message of a topic, and add the topic if it holds numbers."""
@@ -62,7 +62,7 @@ class MessageSource(Source):
         self.tables = (*self.tables, Table(topic, tuple(columns), clock, count, start=start))
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Yield the columns in blocks of messages; NaN where a message lacks a field."""
+        """Yield the named fields of a topic in blocks of messages; NaN where one is absent."""
         paths = [None if name == LOG_TIME else path_of(name) for name in names]
         rows: list[list[float]] = []
         # Do not store messages, which may be much larger than the requested numbers.
@@ -87,7 +87,7 @@ def _columns(names: Sequence[str], rows: list[list[float]]) -> dict[str, Values]
 
 
 def leaves_of(message: Any, lead: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield every number and every stamp of a message, with its path."""
+    """Yield every number and every time stamp of a message, with its path."""
     for name, value in _parts(message):
         path = f"{lead}{name}"
         if isinstance(value, bool | np.bool_ | str | bytes) or value is None:
@@ -119,19 +119,19 @@ def _is_stamp(value: Any) -> bool:
 
 
 def nanoseconds(stamp: Any) -> int:
-    """Convert a stamp of seconds and nanoseconds to nanoseconds."""
+    """Convert a time stamp of seconds and nanoseconds to nanoseconds."""
     parts = dict(_parts(stamp))
     seconds = next(int(parts[n]) for n in SECONDS if n in parts)
     return seconds * 10**9 + next(int(parts[n]) for n in NANOSECONDS if n in parts)
 
 
 def path_of(name: str) -> list[str | int]:
-    """Split a path such as `a.b[2]` into steps."""
+    """Split the path of a field, such as `a.b[2]`, into its names and indices."""
     return [m[1] if m[1] is not None else int(m[2]) for m in _STEP.finditer(name)]
 
 
 def value_at(message: Any, path: Sequence[str | int], origin: int) -> float:
-    """Return the number at a path, or a stamp in seconds since the origin; NaN if absent."""
+    """Number at a path in a message; a stamp in seconds since `origin`; NaN if absent."""
     value = message
     try:
         for step in path:

@@ -12,7 +12,7 @@ from jbf.importing.formats.table import Options, Source
 
 
 def open_arrays(path: Path, options: Options) -> Source:
-    """Open a file of arrays; pickles are not loaded, so that no code is run."""
+    """Open a NumPy file as a source of tables; pickles are not loaded, so that no code is run."""
     with path.open("rb") as file:
         single_array = file.read(6) == b"\x93NUMPY"
     # A single array remains on the disk until it is read.

@@ -15,7 +15,7 @@ from jbf.importing.formats.table import BLOCK, Column, Options, Source, Table, V
 
 
 class ParquetSource(Source):
-    """A Parquet file of one table."""
+    """Open Parquet file with one table."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -27,7 +27,7 @@ class ParquetSource(Source):
         self.tables = (Table("", tuple(columns), rows=self._file.metadata.num_rows),)
 
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Yield the columns in batches."""
+        """Yield the named columns in batches of rows."""
         kinds = {name: table.column(name).kind for name in names}
         for batch in self._file.iter_batches(BLOCK, columns=list(dict.fromkeys(names))):
             block: dict[str, Values] = {}
@@ -70,5 +70,5 @@ def _column(field: Any) -> Column | None:
 
 
 def open_parquet(path: Path, options: Options) -> Source:
-    """Open a Parquet file."""
+    """Open a Parquet file as a source of one table."""
     return ParquetSource(path)

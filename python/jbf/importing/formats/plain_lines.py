@@ -1,8 +1,8 @@
-"""Fast conversion of regular blocks of text lines by the parser of NumPy.
+"""Fast conversion of regular blocks of text lines by `numpy.loadtxt`.
 
 `numpy.loadtxt` is several times faster than a loop over cells, and returns the same bits as
-`float`. It cannot report the row and column of an invalid cell, nor keep the other rows. If it does
-not accept a block, the caller must convert it.
+`float`. It cannot report the row and column of an invalid cell, nor keep the other rows. The caller
+must convert a block that is not accepted.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _LONG = re.compile(r"[+-]?\d{16,19}")
 
 
 def is_long_integer(cell: str) -> bool:
-    """Return whether a cell is an integer that float64 may round, as of nanoseconds since 1970."""
+    """Whether a cell is an integer too long for float64, such as nanoseconds since 1970."""
     return _LONG.fullmatch(cell.strip()) is not None
 
 
@@ -34,7 +34,7 @@ def exact_integers(cells: Sequence[str]) -> npt.NDArray[np.int64] | None:
 def plain_columns(
     lines: Sequence[str], dialect: Dialect, width: int, numeric: Sequence[int], text: Sequence[int]
 ) -> tuple[npt.NDArray[np.float64], list[list[str]]] | None:
-    """Convert a block of lines to columns.
+    """Convert a block of regular lines to columns of numbers and of text.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Determine the format of a file: by its first bytes if possible, else by its suffix.
+"""Registry of file formats: a file is recognised by its first bytes, otherwise by suffix.
 
 A format is one module with a function `open_...(path, options) -> Source`, and one line here.
 """
@@ -58,7 +58,7 @@ class Format:
             raise self.absent(path) from None
 
     def absent(self, path: Path) -> InputError:
-        """Return the error that names the package to install."""
+        """Error for a missing library, which names the package to install."""
         return InputError(
             file=path,
             problem=f"is {self.name}, which requires {self.library}; it is not installed",
@@ -94,7 +94,7 @@ FORMATS = (
 
 @dataclass(frozen=True)
 class Unread:
-    """Format that is recognised but not supported.
+    """File format that is recognised but not supported.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ UNREAD = (
 
 
 def format_of(path: Path) -> Format:
-    """Return the format of a file; text by default.
+    """Determine the format of a file; text if no other format matches.
 
     Raises
     ------
@@ -171,13 +171,13 @@ def format_of(path: Path) -> Format:
 
 
 def _is_text(begin: bytes) -> bool:
-    """Return whether a file begins with printable characters only, and is not XML."""
+    """Whether the first bytes of a file are printable characters only, and not XML."""
     xml = begin.lstrip().startswith(b"<")
     return bool(begin) and not xml and all(byte >= 32 or byte in b"\t\r\n" for byte in begin)
 
 
 def open_source(path: str | os.PathLike[str], options: Options | None = None) -> Source:
-    """Open a file of any known format.
+    """Open a file of any supported format as a source of tables.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""ROS bags, by rosbags, without an installation of ROS: files of ROS 1, folders of ROS 2."""
+"""ROS bags (ROS 1 files, ROS 2 folders), read by rosbags without an installation of ROS."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jbf.importing.formats.table import Options, Source
 
 
 class BagSource(MessageSource):
-    """A bag; each topic is a table."""
+    """Open ROS bag; each topic is a table."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
@@ -34,7 +34,7 @@ class BagSource(MessageSource):
             )
 
     def messages(self, topic: str) -> Iterable[tuple[int, Any]]:
-        """Yield the messages of a topic."""
+        """Yield log time, ns, and decoded message of each message of a topic."""
         connections = [c for c in self._reader.connections if c.topic == topic]
         for connection, stamp, raw in self._reader.messages(connections=connections):
             yield stamp, self._reader.deserialize(raw, connection.msgtype)
@@ -45,5 +45,5 @@ class BagSource(MessageSource):
 
 
 def open_bag(path: Path, options: Options) -> Source:
-    """Open a bag."""
+    """Open a ROS bag as a source of tables."""
     return BagSource(path)

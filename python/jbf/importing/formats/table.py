@@ -1,4 +1,4 @@
-"""Common interface of all formats: tables of columns that share their rows, read in blocks.
+"""Common interface of all file formats: tables of columns, read in blocks of rows.
 
 A recording with several clocks has several tables. Values are those of the file: other modules
 interpret units and meaning.
@@ -54,7 +54,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns that share their rows.
+    """Table of a file: columns that share their rows and their clock.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Table:
     questions: tuple[str, ...] = ()
 
     def column(self, name: str) -> Column:
-        """Return the column of a given name; an InputError suggests a similar name."""
+        """Column with a given name; an unknown name raises an InputError with a suggestion."""
         for column in self.columns:
             if column.name == name:
                 return column
@@ -127,14 +127,22 @@ class Options:
 
 
 class Source(ABC):
-    """An open file."""
+    """Open file with its tables.
+
+    Attributes
+    ----------
+    path
+        The file.
+    tables
+        Tables of the file.
+    """
 
     path: Path
     tables: tuple[Table, ...]
 
     @abstractmethod
     def read_blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
-        """Yield blocks as `blocks` does; errors of the format's library may propagate."""
+        """Yield blocks as `blocks` does; errors of the format's library may be raised."""
 
     def blocks(self, table: Table, names: Sequence[str]) -> Iterator[dict[str, Values]]:
         """Yield the named columns in blocks of rows, in the order of the file.
@@ -148,7 +156,7 @@ class Source(ABC):
             yield from self.read_blocks(table, names)
 
     def head(self, table: Table, rows: int = 20_000) -> dict[str, Values]:
-        """Return the first rows of every column."""
+        """First rows of every column of a table."""
         names = [column.name for column in table.columns]
         parts: list[Mapping[str, Values]] = []
         row_count = 0
@@ -162,18 +170,18 @@ class Source(ABC):
         return {name: np.concatenate([p[name] for p in parts])[:rows] for name in names}
 
     def row_of(self, table: Table, sample: int) -> int | None:
-        """Return the row in the file, counted from 1, of a sample, counted from 0.
+        """Row number in the file, counted from 1, of a sample, counted from 0.
 
-        None if the rows of the file have no numbers that a user could look up.
+        Returns None if the rows of the file have no numbers that a user could look up.
         """
         return None
 
     def skipped_rows(self) -> list[tuple[int, str, int | None]]:
-        """Return number, reason and first row of the rows that the last reading skipped."""
+        """Number, reason and first row of the rows that the last reading skipped."""
         return []
 
     def read_bytes(self) -> tuple[int, int]:
-        """Return the number of bytes read and the size of the file; zeros if unknown."""
+        """Number of bytes read and size of the file; zeros if unknown."""
         return 0, 0
 
     def close(self) -> None:  # noqa: B027 (most have nothing to close)
@@ -188,7 +196,7 @@ class Source(ABC):
 
 @contextmanager
 def library_errors(path: Path, problem: str) -> Iterator[None]:
-    """Convert any error that a library raises for a broken file to an InputError of one line."""
+    """Context in which any error of a format's library becomes an InputError of one line."""
     try:
         yield
     except (InputError, ModuleNotFoundError, MemoryError):
@@ -210,7 +218,7 @@ def unique(names: Sequence[str]) -> list[str]:
 
 
 def in_blocks(columns: Mapping[str, Values], size: int = BLOCK) -> Iterator[dict[str, Values]]:
-    """Yield arrays that are already in memory in blocks."""
+    """Yield arrays in memory as blocks of rows."""
     rows = max((len(values) for values in columns.values()), default=0)
     for first in range(0, rows, size):
         yield {name: values[first : first + size] for name, values in columns.items()}

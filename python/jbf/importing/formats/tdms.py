@@ -1,4 +1,4 @@
-"""TDMS files, by npTDMS; channels with a waveform increment have a separate clock."""
+"""TDMS files, read by npTDMS; channels with a waveform increment have their own times."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Group = tuple[str, int, float | None, float, str]
 
 
 def open_tdms(path: Path, options: Options) -> Source:
-    """Open a TDMS file."""
+    """Open a TDMS file as a source of tables."""
     file = TdmsFile.open(path)
     source = ArraySource(path, file.close)
     groups: dict[Group, dict[str, tuple[Slice, str]]] = {}

@@ -1,4 +1,4 @@
-"""Trace exports of controllers: for each variable in turn, a block of times and values.
+"""CODESYS trace exports: for each variable in turn, a block of times and values.
 
 CODESYS and systems based on it (Machine Expert, ctrlX, e!COCKPIT) write `0.Variable; NAME`, more
 lines about the variable, and then its samples, `; time; value`.
@@ -21,12 +21,12 @@ _SAMPLE = re.compile(r"^\s*[;,\t]\s*(?P<time>[^;\t]+?)\s*[;\t,]\s*(?P<value>[^;\
 
 
 def is_trace(lines: Iterable[str]) -> bool:
-    """Return whether the first lines of a file are those of such an export."""
+    """Whether the first lines of a file are those of a trace export."""
     return any(VARIABLE.match(line) for line in lines)
 
 
 def open_trace(path: Path, lines: Iterable[str]) -> Source:
-    """Open a trace export; variables with equal times share a table."""
+    """Open a trace export as a source; variables with equal times share a table."""
     source = ArraySource(path)
     add_by_clock(source, _blocks(path, lines))
     if not source.tables:
@@ -35,7 +35,7 @@ def open_trace(path: Path, lines: Iterable[str]) -> Source:
 
 
 def _blocks(path: Path, lines: Iterable[str]) -> Iterator[Signal]:
-    """Yield each variable with its times."""
+    """Yield each variable of a trace export with its times."""
     name, rows = "", list[list[float]]()
     for number, line in enumerate(lines, 1):
         if (variable := VARIABLE.match(line)) is not None:

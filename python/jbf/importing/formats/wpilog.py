@@ -24,19 +24,19 @@ _TYPES = {"double": "<f8", "float": "<f4", "int64": "<i8", "boolean": "?"}
 _UNITS = ("unit", "units")
 """Keys of an entry's metadata that state its unit."""
 _START, _FINISH, _METADATA = 0, 1, 2
-"""Kinds of control records, which are the records of entry 0."""
+"""Kinds of control records, which are the records with entry number 0."""
 _US = 1e6
 _HEADER = 12
 _LARGEST = 2**63 - 1
 
 
 class _TornError(Exception):
-    """The log ends within a record."""
+    """Error: the log ends within a record."""
 
 
 @dataclass
 class _Entry:
-    """Samples of one entry: instants, and the position and size of each sample in the log."""
+    """Samples of one log entry: times, and position and size of each sample in the file."""
 
     name: str
     kind: str
@@ -46,7 +46,7 @@ class _Entry:
     sizes: array[int] = field(default_factory=lambda: array("q"))
 
     def signals(self, data: bytes, origin_us: int) -> Iterator[Signal]:
-        """Yield one signal for each array element; times are in seconds since the origin."""
+        """Yield one signal per array element of an entry; times are in seconds since the origin."""
         dtype = np.dtype(_TYPES[self.kind.removesuffix("[]")])
         lengths = np.array(self.sizes) // dtype.itemsize
         width = min(int(lengths.max(initial=0)), LONGEST if self.kind.endswith("[]") else 1)
@@ -63,7 +63,7 @@ class _Entry:
 
 
 def open_wpilog(path: Path, options: Options) -> Source:
-    """Open a data log; a truncated record at its end is skipped."""
+    """Open a WPILib data log as a source; a truncated record at its end is skipped."""
     data = path.read_bytes()
     if len(data) < _HEADER:
         raise InputError(
@@ -85,7 +85,7 @@ def open_wpilog(path: Path, options: Options) -> Source:
 
 
 def _entries(data: bytes) -> tuple[list[_Entry], int | None]:
-    """Return the numeric entries, and the position of a truncated record or None.
+    """Numeric entries of a log, and the position of a truncated record, or None.
 
     Entries of equal name and type, as after a restart, are merged.
     """
@@ -117,7 +117,7 @@ def _entries(data: bytes) -> tuple[list[_Entry], int | None]:
 def _control(
     content: bytes, entries: dict[tuple[str, str], _Entry], by_number: dict[int, _Entry]
 ) -> None:
-    """Start or finish an entry, or change its metadata."""
+    """Process a control record: start or finish of an entry, or a change of its metadata."""
     if len(content) < 5:
         raise _TornError
     number = int.from_bytes(content[1:5], "little")
@@ -136,7 +136,7 @@ def _control(
 
 
 def _text(content: bytes, at: int) -> tuple[str, int]:
-    """Return a text with a length prefix, and the position of its end."""
+    """Text with a length prefix at a position, and the position of its end."""
     end = at + 4 + int.from_bytes(content[at : at + 4], "little")
     if end > len(content):
         raise _TornError
@@ -144,7 +144,7 @@ def _text(content: bytes, at: int) -> tuple[str, int]:
 
 
 def _unit(metadata: str) -> str:
-    """Return the unit in the metadata of an entry, which is JSON."""
+    """Unit in the JSON metadata of an entry; empty if not stated."""
     try:
         content = json.loads(metadata)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Axes along which a residual is examined: each function assigns a bin to each sample.
+"""Axes along which a residual is examined: each function assigns the samples to bins.
 
 An axis shows where the model fails. It sorts samples into few bins; the model fails along an axis
 if the mean residual differs between its bins.
@@ -24,25 +24,28 @@ TIME_BINS = 12
 SPEED_BINS = 12
 FORCE_BINS = 16
 BOUNDARY_SHARE = 0.2
-"""Fraction of U_tr below which the asperities carry most of the load."""
+"""Fraction of the transition speed U_tr below which asperities carry most of the load."""
 
 
 def _both_directions(bins: Sequence[Bin], *, with_rest: bool = False) -> tuple[Bin, ...]:
-    """Return the bins for backward motion, followed by the bins for forward motion."""
+    """Bins for backward motion, followed by equal bins for forward motion."""
     backward = [replace(b, direction=-1, with_rest=with_rest) for b in bins]
     return (*backward, *(replace(b, direction=1) for b in bins))
 
 
 def _signs(v: Array) -> Places:
+    """Direction of motion of each sample: 1 forward, 0 backward, -1 at rest."""
     return np.where(v > 0, 1, np.where(v < 0, 0, -1)).astype(np.intp)
 
 
 def _direction(campaign: Campaign, u_tr: float | None) -> Binned:
+    """Bin samples by the direction of motion."""
     places = [_signs(p.motion.velocity) for p in campaign.prepared]
     return Binned("direction", _both_directions([Bin()]), places)
 
 
 def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
+    """Bin samples by signed speed."""
     speeds = np.concatenate([np.abs(p.motion.velocity) for p in campaign.prepared])
     moving = speeds[speeds > 0.0]
     edges = np.quantile(moving, np.linspace(0, 1, SPEED_BINS + 1)[1:-1])
@@ -63,7 +66,7 @@ def _velocity(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
-    """Bin by lubrication regime for a law with a film, else by thirds of the recorded speeds."""
+    """Bin samples by lubrication regime (law with a film), otherwise by thirds of the speeds."""
     speeds = [np.abs(p.motion.velocity) for p in campaign.prepared]
     axis: Axis = "regime"
     if u_tr is not None:
@@ -86,6 +89,7 @@ def _regime(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def _acceleration(campaign: Campaign, u_tr: float | None) -> Binned:
+    """Bin samples by the acceleration along the motion."""
     places = []
     for p in campaign.prepared:
         v, a = p.motion.velocity, p.motion.acceleration
@@ -96,6 +100,7 @@ def _acceleration(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
+    """Bin samples by the angle of the shaft."""
     width = 2.0 * np.pi / ANGLE_BINS
     middles = [float(np.degrees((i + 0.5) * width)) for i in range(ANGLE_BINS)]
     places = []
@@ -110,6 +115,7 @@ def _angle(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def _time(campaign: Campaign, u_tr: float | None) -> Binned:
+    """Bin samples by the time in the run."""
     longest = max(p.run.duration_s for p in campaign.prepared)
     edges = longest * np.linspace(0, 1, TIME_BINS + 1)
     spans = [Bin(span=pair, unit="s") for pair in pairwise(edges.tolist())]
@@ -121,6 +127,7 @@ def _time(campaign: Campaign, u_tr: float | None) -> Binned:
 
 
 def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array]) -> Binned:
+    """Bin samples by the increase of a measure since the last event."""
     values = [measure(p) for p in campaign.prepared]
     positive = np.concatenate([v[np.isfinite(v) & (v > 0)] for v in values])
     unit = "s" if axis == "time since a rest" else campaign.rig.quantities.length
@@ -139,7 +146,7 @@ def _since(campaign: Campaign, axis: Axis, measure: Callable[[Prepared], Array])
 
 
 def _after_events(p: Prepared, event: npt.NDArray[np.bool_], measure: Array) -> Array:
-    """Return the increase of `measure` since the last event; NaN before the first event."""
+    """Increase of `measure` since the last event at each sample; NaN before the first event."""
     index = np.where(event, np.arange(len(event)), -1)
     last = np.maximum.accumulate(index)
     since = measure - measure[np.maximum(last, 0)]
@@ -147,10 +154,12 @@ def _after_events(p: Prepared, event: npt.NDArray[np.bool_], measure: Array) -> 
 
 
 def _time_since_rest(p: Prepared) -> Array:
+    """Time since the last rest, s; NaN before the first rest."""
     return _after_events(p, p.motion.resting, p.run.time_s)
 
 
 def _distance_since_reversal(p: Prepared) -> Array:
+    """Distance since the last reversal, m; NaN before the first reversal."""
     v = p.motion.velocity
     travelled = np.concatenate(
         ([0.0], np.cumsum(0.5 * (np.abs(v[1:]) + np.abs(v[:-1])) * np.diff(p.run.time_s)))
@@ -161,16 +170,19 @@ def _distance_since_reversal(p: Prepared) -> Array:
 
 
 def _run(campaign: Campaign, u_tr: float | None) -> Binned:
+    """Bin samples by run."""
     bins = tuple(Bin(p.run.name) for p in campaign.prepared)
     places = [np.full(len(p.run), i, dtype=np.intp) for i, p in enumerate(campaign.prepared)]
     return Binned("run", bins, places)
 
 
 def force_axis(forces: Sequence[Array], error: float = 0.0, unit: str = "N") -> Binned:
-    """Bin samples by a force; this axis reveals the nonlinearity of a load cell.
+    """Bin samples by a force, which reveals a nonlinear load cell.
 
     Parameters
     ----------
+    forces
+        Force of each sample, one array per run.
     error
         Standard error of these forces. Edges are removed until few samples are close to each edge.
         At most half as many samples as in the smaller neighbouring bin may lie within two standard
@@ -194,7 +206,7 @@ def force_axis(forces: Sequence[Array], error: float = 0.0, unit: str = "N") -> 
 
 
 def _distinct(values: Array, edges: Array, reach: float) -> Array:
-    """Remove edges with more samples within reach than half of the smaller adjacent bin."""
+    """Remove bin edges that have too many samples within the error of the values."""
     while len(edges):
         below = np.searchsorted(values, edges)
         counts = np.diff(np.concatenate(([0], below, [len(values)])))
@@ -211,7 +223,7 @@ def _distinct(values: Array, edges: Array, reach: float) -> Array:
 
 
 def all_axes(campaign: Campaign, u_tr: float | None) -> list[Binned]:
-    """Return every axis that the records of the campaign permit.
+    """Assign the samples of a campaign to bins along every axis that its records permit.
 
     Parameters
     ----------

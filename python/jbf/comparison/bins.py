@@ -1,7 +1,7 @@
-"""Bins along an axis as data: their position, direction of motion, and text.
+"""Bins along an axis: position, direction of motion, and text.
 
-The text of a bin is generated only here, and is not parsed anywhere: numbers are taken from the
-bin.
+Only this module generates the text of a bin. Numbers are taken from the bin and never parsed from
+its text.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _AFTER = {"time since a rest": "a rest", "distance since a reversal": "a reversa
 
 @dataclass(frozen=True)
 class Bin:
-    """One bin.
+    """One bin along an axis of the residual.
 
     Attributes
     ----------
@@ -49,6 +49,8 @@ class Bin:
         Position of its samples along the axis, in `unit`.
     span
         Lower and upper end, in `unit`; an end may be infinite.
+    unit
+        Unit of the position; empty for a bin without a numeric position.
     direction
         Direction of motion of its samples.
     with_rest
@@ -72,10 +74,16 @@ class Bin:
 
 @dataclass(frozen=True)
 class Binned:
-    """Samples of every run sorted into bins.
+    """Samples of every run assigned to the bins of one axis.
 
-    `places` holds the bin index of each sample, one array per run; -1 means no bin. `force_unit` is
-    the unit of the residuals.
+    Attributes
+    ----------
+    axis, bins
+        The axis, and its bins.
+    places
+        Bin index of each sample, one array per run; -1 for a sample without a bin.
+    force_unit
+        Unit of the residuals.
     """
 
     axis: Axis
@@ -85,12 +93,12 @@ class Binned:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Text of the bins."""
+        """Texts of all bins."""
         return labels(self.axis, self.bins)
 
 
 def span_words(b: Bin) -> str:
-    """Return `up to 0.1 s`, `0.1 to 0.2 s` or `over 0.2 s`; empty for a bin without a span."""
+    """Text of a bin's interval, `up to 0.1 s`, `0.1 to 0.2 s` or `over 0.2 s`; or empty."""
     if b.span is None:
         return ""
     low, high = b.span
@@ -102,7 +110,7 @@ def span_words(b: Bin) -> str:
 
 
 def direction_words(b: Bin) -> str:
-    """Return `v < 0` or `v > 0`; empty for a bin with both directions."""
+    """Text of a bin's direction of motion: `v < 0` or `v > 0`; empty for both directions."""
     if b.direction == 0:
         return ""
     if b.direction == 1:
@@ -111,7 +119,7 @@ def direction_words(b: Bin) -> str:
 
 
 def label(axis: Axis, b: Bin) -> str:
-    """Text of a bin: its position, then the direction of its motion."""
+    """Text of a bin: its position along the axis, then its direction of motion."""
     if axis in _CENTRES and b.centre is not None:
         place = f"{_CENTRES[axis].format(b.centre)} {b.unit}"
     elif axis in _AFTER:
@@ -126,5 +134,5 @@ def label(axis: Axis, b: Bin) -> str:
 
 
 def labels(axis: Axis, bins: tuple[Bin, ...]) -> tuple[str, ...]:
-    """Text of all bins."""
+    """Texts of all bins of an axis."""
     return tuple(label(axis, b) for b in bins)

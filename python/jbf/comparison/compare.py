@@ -29,8 +29,8 @@ def compare(
 ) -> Comparison | ModelComparison:
     """Compare a model with recorded runs, or several models with each other.
 
-    Samples at rest do not count, nor do samples at which the sign of the motion is unknown (within
-    a few samples of a reversal).
+    Samples at rest, and samples at which the sign of the motion is unknown (within a few samples of
+    a reversal), are excluded.
 
     Parameters
     ----------
@@ -85,6 +85,7 @@ def compare(
 
 
 def _compared(model: Model, runs: Sequence[Run]) -> Comparison:
+    """Compare one model with runs."""
     for run in runs:
         model.require_columns(run)
     return compare_prepared(model, Campaign.prepare(model.rig, runs))

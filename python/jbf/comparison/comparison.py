@@ -1,4 +1,4 @@
-"""Comparison of a model with measurements: size and location of its errors."""
+"""Comparison of a model with recorded runs: size and location of its errors."""
 
 from __future__ import annotations
 
@@ -25,7 +25,17 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RunComparison:
-    """Comparison of one run: RMS over the samples that count; 0 N if none counts."""
+    """Error of a model in one run.
+
+    Attributes
+    ----------
+    name
+        Name of the run.
+    rms
+        Root mean square of record minus prediction over the included samples, N; 0 without samples.
+    samples
+        Number of included samples.
+    """
 
     name: str
     rms: float
@@ -34,16 +44,20 @@ class RunComparison:
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Result):
-    """Comparison of a model with runs.
+    """Comparison of one model with recorded runs.
 
     Attributes
     ----------
+    model, campaign
+        The model, and the prepared runs.
     samples
-        The samples that count: those in motion with a known sign.
+        The included samples: those in motion with a known sign.
     rms
-        Root mean square of record minus prediction over the samples that count, N.
+        Root mean square of record minus prediction over the included samples, N.
     noise_rms
         Noise floor of the record, from the data only, N; zero if unknown.
+    runs
+        Error of the model in each run.
     failures
         Axes along which the residual has a pattern, strongest first.
     predictions, residuals
@@ -78,7 +92,7 @@ class Comparison(Result):
         return self.campaign.findings
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the comparison as a dictionary for JSON."""
+        """Return the comparison as a JSON-serialisable dict."""
         return {
             **self.model.units_for_json(),
             "rms": self.rms,
@@ -89,12 +103,12 @@ class Comparison(Result):
         }
 
     def report(self, path: PathLike) -> None:
-        """Write the HTML report, as `save_html`."""
+        """Write the comparison as an HTML report; equivalent to `save_html`."""
         self.save_html(path)
 
 
 def predicted(model: Model, campaign: Campaign) -> list[Array]:
-    """Return the predictions of a model for prepared runs, N, one array per run."""
+    """Predictions of a model for prepared runs, N, one array per run."""
     motions = campaign.motions
     core = chain(model.rig, model.law, model.clock, model.effects)
     warn_of_fast_film(core, model.values, motions)
@@ -104,7 +118,7 @@ def predicted(model: Model, campaign: Campaign) -> list[Array]:
 
 
 def compare_prepared(model: Model, campaign: Campaign) -> Comparison:
-    """Compare a model with prepared runs; see `compare`."""
+    """Compare a model with prepared runs; see `jbf.compare`."""
     predictions = predicted(model, campaign)
     pages = parameters_of(model.law, tuple(model.effects))
     effects = active_effects(model.effects, pages, model.values)

@@ -21,7 +21,7 @@ Unit = Literal["run", "stroke"]
 
 @dataclass(frozen=True)
 class ModelError:
-    """Error of one model, relative to the best one.
+    """Error of one model in a comparison of several.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class ModelError:
     stderr: float
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the row for JSON."""
+        """Return the errors as a JSON-serialisable dict."""
         stderr = self.stderr if np.isfinite(self.stderr) else None
         return {
             "model": self.name,
@@ -63,7 +63,7 @@ class ModelComparison(Result):
     comparisons
         Comparison of each model with the runs, by name, in the same order.
     nobs
-        Number of samples that count for all models.
+        Number of samples that are included for all models.
     unit, units
         Kind of the independent units ("run" or "stroke") and their number.
 
@@ -109,7 +109,7 @@ class ModelComparison(Result):
         return next(iter(self.comparisons.values())).model.rig.quantities.force
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the comparison as a dictionary for JSON."""
+        """Return the comparison as a JSON-serialisable dict."""
         return {
             **next(iter(self.comparisons.values())).model.units_for_json(),
             "models": [m.to_dict() for m in self.models],
@@ -120,12 +120,12 @@ class ModelComparison(Result):
 
 
 def compare_models(comparisons: Mapping[str, Comparison]) -> ModelComparison:
-    """Compare models on the samples that count for all of them; see `jbf.compare`.
+    """Compare models on the samples that all of them include; see `jbf.compare`.
 
     Raises
     ------
     InputError
-        No sample counts for all models.
+        No sample is included for all models.
     """
     several = list(comparisons.values())
     by_run = zip(*(c.samples.counted for c in several), strict=True)
@@ -168,7 +168,7 @@ def compare_models(comparisons: Mapping[str, Comparison]) -> ModelComparison:
 
 
 def difference_error(a: Array, b: Array, sizes: npt.NDArray[np.int_]) -> float:
-    """Compute the jackknife standard error of the difference of two RMS values over common units.
+    """Jackknife standard error of the difference of two models' RMS values over common units.
 
     Parameters
     ----------

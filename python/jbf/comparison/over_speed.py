@@ -1,4 +1,4 @@
-"""Stribeck curve: mean friction over speed of all runs, for record and model."""
+"""Stribeck curve of all runs: mean friction over speed, for record and model."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ FEWEST = 5
 
 @dataclass(frozen=True)
 class OverSpeed:
-    """Means for one direction of motion, in bins with equal numbers of samples, slowest first.
+    """Mean friction by speed for one direction of motion.
+
+    The bins have equal numbers of samples, the slowest first.
 
     Attributes
     ----------
@@ -44,7 +46,7 @@ class OverSpeed:
 
 
 def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
-    """Compute the mean friction by speed over all counted samples, for each direction of motion."""
+    """Compute the mean friction by speed over all included samples, for each direction."""
     rest = added_by(comparison, non_friction_effects(comparison))
     prepared, samples = comparison.campaign.prepared, comparison.samples
     speed = samples.flat([p.motion.velocity for p in prepared])
@@ -67,6 +69,6 @@ def friction_over_speed(comparison: Comparison) -> tuple[OverSpeed, ...]:
 
 
 def regimes(model: Model) -> list[tuple[float, str]]:
-    """Speeds, m/s, at which a regime begins, with its name; empty for a law without a film."""
+    """Speeds, m/s, at which lubrication regimes begin, with their names; empty without a film."""
     u_tr = transition_speed(model.law, model.values.tolist())
     return [] if u_tr is None else [(BOUNDARY_SHARE * u_tr, "mixed"), (u_tr, "full film")]

@@ -1,4 +1,4 @@
-"""Contributions of single effects to a model's friction: the model minus the model without them.
+"""Contributions of single effects to the friction of a model, by prediction without them.
 
 Both predictions are computed by the core; this module contains no formula of an effect.
 """
@@ -31,16 +31,16 @@ NO_FRICTION = (
 
 
 def without(model: Model, effects: Collection[str]) -> Model:
-    """Return the model without some of its effects, with all other parameters unchanged."""
+    """Model without some of its effects, with all other parameters unchanged."""
     remaining = tuple(name for name in model.effects if name not in effects)
     values = {n: p for n, p in model.parameters.items() if n.rpartition(".")[0] not in effects}
     return Model(model.rig, model.law, remaining, values, model.clock)
 
 
 def added_by(comparison: Comparison, effects: Collection[str]) -> list[Array]:
-    """Return the contribution of effects to the model's friction in each run, N.
+    """Contribution of effects to the predicted friction, N, one array per run.
 
-    It is zero for effects that the model does not have.
+    The contribution is zero for effects that the model does not have.
     """
     model = comparison.model
     if not set(effects) & set(model.effects):
@@ -53,15 +53,15 @@ def added_by(comparison: Comparison, effects: Collection[str]) -> list[Array]:
 
 
 def non_friction_effects(comparison: Comparison) -> tuple[str, ...]:
-    """Effects of the model that are not friction: inertia, weight, zero, cogging."""
+    """Effects of a model that are not friction, such as inertia, weight, offset and cogging."""
     return tuple(name for name in NO_FRICTION if name in comparison.model.effects)
 
 
 def explained_residual(before: Comparison, after: Comparison) -> dict[str, list[Array]]:
-    """Part of a model's residual explained by each new effect of a larger model, N.
+    """Part of a model's residual, N, that each new effect of a larger model explains.
 
-    There is one array per run. The part is the contribution that the parameters of the first model
-    cannot compensate: the contribution minus its projection on the derivatives of that model.
+    There is one array per run and effect: the contribution of the effect minus its projection on
+    the column space of the first model's Jacobian.
     """
     model, campaign = before.model, before.campaign
     core = chain(model.rig, model.law, model.clock, model.effects)

@@ -1,4 +1,4 @@
-"""Patterns of a residual: bins of an axis whose means differ significantly from zero."""
+"""Patterns of a residual: axes along which bin means differ significantly from zero."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ Counts = npt.NDArray[np.intp]
 LEAST_SHARE = 0.01
 """Fraction of the residual's mean square below which a pattern is not reported."""
 SIGNIFICANCE = 6.0
-"""Required excess of the explained part over chance, in standard deviations."""
+"""Required excess of the explained sum of squares over chance, in standard deviations."""
 STRONG_SHARE = 0.02
-"""Fraction of the explained part below which a bin is not mentioned in the text of a pattern."""
+"""Fraction of the explained sum of squares below which a bin is omitted from the text."""
 WHOLE_AXIS_SHARE = 0.8
 """Fraction of the bins above which a pattern covers the whole axis."""
 
 
 @dataclass(frozen=True)
 class Failure:
-    """One axis along which the residual has a pattern.
+    """Residual pattern along one axis.
 
     Attributes
     ----------
@@ -54,11 +54,11 @@ class Failure:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Text of the bins."""
+        """Texts of all bins."""
         return labels(self.axis, self.bins)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the pattern as a dictionary for JSON."""
+        """Return the pattern as a JSON-serialisable dict."""
         return {"axis": self.axis, "where": self.where, "share": round(self.share, 4)}
 
 
@@ -69,14 +69,17 @@ def find_failures(
     u_tr: float | None,
     noise_rms: float,
 ) -> tuple[Failure, ...]:
-    """Find the axes along which record minus prediction has a pattern, strongest first."""
+    """Find the axes along which the residual (record minus prediction) has a pattern.
+
+    The pattern with the largest share is first.
+    """
     axes = all_axes(campaign, u_tr)
     patterns = (pattern_along(axis, samples, residuals, noise_rms) for axis in axes)
     return tuple(sorted((f for f in patterns if f is not None), key=lambda f: -f.share))
 
 
 def bin_means(axis: Binned, samples: Samples, residuals: Sequence[Array]) -> tuple[Array, Counts]:
-    """Return the mean residual in each bin, N, and the number of samples."""
+    """Mean residual in each bin, N, and number of included samples."""
     r, places = samples.flat(residuals), samples.flat(axis.places)
     in_bins = places >= 0
     counts = np.bincount(places[in_bins], minlength=len(axis.bins))
@@ -93,7 +96,7 @@ def pattern_along(
     significance: float = SIGNIFICANCE,
     told_of: Sequence[Array] | None = None,
 ) -> Failure | None:
-    """Return the pattern of residuals (N) along an axis; None if it is not significant.
+    """Test the residuals (N) for a pattern along an axis; None if it is not significant.
 
     Parameters
     ----------
@@ -126,7 +129,7 @@ def pattern_along(
 def pattern_words(
     axis: Binned, means: Array, counts: Counts, significant_means: Array | None = None
 ) -> str:
-    """Return the text that describes a pattern of the means.
+    """Describe the pattern of bin means along an axis.
 
     `significant_means` holds the means that select the bins, if they differ.
     """

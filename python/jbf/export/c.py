@@ -20,16 +20,16 @@ C = Language(
 
 
 def c(model: Model, source: str = "a model") -> str:
-    """Return a C header for `jbf.h`.
+    """C header of a model for `jbf.h`, the C interface of `jbf-core`.
 
-    It contains constants, `model_f32_init`, `model_f64_init` and their steps.
+    The header contains constants, `model_f32_init`, `model_f64_init` and their steps.
 
     Parameters
     ----------
     model
         The model.
     source
-        Origin of the model, for the first line.
+        Origin of the model, for the comment in the first line.
     """
     n = Numbers.of(model)
     out = [
@@ -50,7 +50,10 @@ def c(model: Model, source: str = "a model") -> str:
 
 
 def _calls(n: Numbers, kind: str) -> list[str]:
-    """Return the names of the model in one floating-point type, and the function that builds it."""
+    """C declarations of a model in one floating-point type: type names, and `model_KIND_init`.
+
+    `kind` is `f32` or `f64`.
+    """
     prefix = f"jbf_{n.law.name}_{kind}"
     bearing = "&MODEL_BEARING" if n.bearing else "NULL"
     effects = [

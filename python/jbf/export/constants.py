@@ -1,4 +1,4 @@
-"""Constants of a model, in the syntax of a programming language."""
+"""Constants of an exported model, in the syntax of a programming language."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Block:
     closing: str
 
     def lines(self, rows: list[dict[str, str]], **words: str) -> list[str]:
-        """Format the lines, one per row."""
+        """Format the constant with one repeated line per row."""
         body = [self.line.format(**row) for row in rows]
         if self.closing == ";":
             *body, last = body
@@ -59,18 +59,18 @@ class Language:
     check: Callable[[Group, str], list[str]]
 
     def number(self, value: float) -> str:
-        """Return the shortest text that is parsed as the same value."""
+        """Shortest text of a number that is parsed as the same value."""
         if math.isinf(value):
             return self.infinity if value > 0 else f"-{self.infinity}"
         return repr(float(value))
 
     def name(self, group: Group) -> str:
-        """Return the constant's name for the values of a law or an effect."""
+        """Name of the constant with the values of a law or an effect."""
         return self.prefix + group.name.upper()
 
 
 def _held_words(why: str | None) -> str:
-    """Return the comment for a held value, including the note of the parameter.
+    """Comment for a value that was held fixed, with the note of the parameter.
 
     Firmware needs the number, but readers must know that it was not estimated. The note may come
     from a user, so comment delimiters are removed.
@@ -82,7 +82,7 @@ def _held_words(why: str | None) -> str:
 
 
 def constants(numbers: Numbers, language: Language) -> list[str]:
-    """Return the source lines of all constants of a model."""
+    """Source lines of all constants of a model in a language."""
     out = []
     if numbers.bearing is not None:
         sizes = {name: language.number(numbers.bearing[name]) for name in BEARING_FIELDS}  # type: ignore[literal-required]

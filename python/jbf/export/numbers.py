@@ -1,4 +1,4 @@
-"""Language-independent data of a model: names, values, and types of the core."""
+"""Data of a model for export, independent of the programming language."""
 
 from __future__ import annotations
 
@@ -16,9 +16,16 @@ from jbf.models.user_laws import UserLaw
 
 @dataclass(frozen=True)
 class Group:
-    """Law or effect: its catalogue entry, and its values in the order of the entry.
+    """Law or effect of an exported model, with its values.
 
-    `held` contains the reason why each value is held, or None if it was estimated.
+    Attributes
+    ----------
+    page
+        Catalogue entry.
+    values
+        Parameter values in the order of the entry.
+    held
+        Reason why each value was held fixed, or None if it was estimated.
     """
 
     page: Law | Effect
@@ -27,18 +34,30 @@ class Group:
 
     @property
     def name(self) -> str:
-        """Fixed name of the law or effect."""
+        """Name of the law or effect."""
         return self.page.name
 
     @property
     def room(self) -> str:
-        """Module of the core: `law` or `effect`."""
+        """Name of the core's module that contains it: `law` or `effect`."""
         return "law" if isinstance(self.page, Law) else "effect"
 
 
 @dataclass(frozen=True)
 class Numbers:
-    """Data of a model, with the effects in the order of the signal chain."""
+    """Data of a model for export.
+
+    Attributes
+    ----------
+    law, effects
+        Law, and effects in the order of the signal chain.
+    clock
+        Definition of the film's time constant.
+    bearing, load_n
+        Dimensions of the bearing (None without one), and load on it, N.
+    units
+        Note on units that differ from the suffixes of names; empty without such units.
+    """
 
     law: Group
     effects: tuple[Group, ...]
@@ -84,17 +103,21 @@ class Numbers:
 
     @property
     def groups(self) -> tuple[Group, ...]:
-        """The law, followed by the effects."""
+        """Law of the model, followed by its effects."""
         return (self.law, *self.effects)
 
     def title(self) -> str:
-        """Return law and effects as text."""
+        """Law and effects of the model as text."""
         effects = ", ".join(group.name for group in self.effects)
         return f"law {self.law.name}; effects: {effects or 'none'}{self.units}"
 
 
 def _units_note(model: Model) -> str:
-    """Describe the units of names with unit suffixes; empty if the suffixes are correct."""
+    """Note that names such as `load_n` hold N m and rad for a rotary drive; otherwise empty.
+
+    Names in the exported source have the suffixes of N, m and m/s. The note states the actual units
+    of a rig with other quantities.
+    """
     quantities = model.rig.quantities
     if quantities.force == "N" and quantities.motion != "rotary":
         return ""
@@ -109,7 +132,7 @@ def _group(page: Law | Effect, model: Model, prefix: str = "") -> Group:
 
 
 def _vanishes(page: Parameter, value: float) -> bool:
-    """Return whether a parameter has its infinite null value.
+    """Whether a parameter has its infinite null value, at which the effect has no influence.
 
     The core omits such an effect, and so does the exported source.
     """

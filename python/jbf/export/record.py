@@ -1,4 +1,4 @@
-"""Imposed motion of a run, as an exported model receives it."""
+"""Motion of a run in the form in which an exported model receives it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Record:
-    """Columns of `jbf_core::run::Record` and of `jbf_record`, shape (m,).
+    """Motion of a run as columns of `jbf_core::run::Record` and of `jbf_record`, shape (m,).
 
     The instants are the n samples of a run, and those at which the motion starts or stops between
     two samples.
@@ -43,7 +43,7 @@ class Record:
 
 
 def record(model: Model, run: Run) -> Record:
-    """Return the motion along which `model.predict` evaluates the signal chain.
+    """Compute the motion along which `model.predict` evaluates the signal chain of a model.
 
     The exported model computes the same bits along this motion. Models with `time_delay` are an
     exception: `predict` averages the force near a jump over its uncertain instant.

@@ -36,14 +36,16 @@ RUST = Language(
 
 
 def rust(model: Model, source: str = "a model") -> str:
-    """Return a Rust module with constants checked at compile time, and `model::<f32 or f64>()`.
+    """Rust module of a model, with constants checked at compile time and a constructor.
+
+    The constructor is `model::<f32>()` or `model::<f64>()`.
 
     Parameters
     ----------
     model
         The model.
     source
-        Origin of the model, for the first line.
+        Origin of the model, for the comment in the first line.
     """
     n = Numbers.of(model)
     imports = ["Chain", "Clock", "ParameterError", "Real"]
@@ -92,7 +94,7 @@ def rust(model: Model, source: str = "a model") -> str:
 
 
 def _path(group: Group) -> str:
-    """Return the Rust type of a law, or of an effect at its stage."""
+    """Rust type of a law, or of an effect at its stage."""
     if isinstance(group.page, Law):
         return f"jbf_core::law::{group.name}::{group.page.rust_type}<T>"
     effect = f"jbf_core::effect::{group.name}::{group.page.rust_type}<T>"
@@ -100,7 +102,7 @@ def _path(group: Group) -> str:
 
 
 def _nested(items: list[str], indent: str = "") -> str:
-    """Return nested pairs, one item per line, which form a typed set of effects."""
+    """Nested Rust pairs, one item per line, which form a typed set of effects."""
     if not items:
         return "()"
     first, *more = items

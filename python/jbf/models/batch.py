@@ -37,7 +37,7 @@ def _column(value: npt.ArrayLike, key: str) -> npt.NDArray[np.float64]:
 
 
 def _sets(columns: dict[str, npt.ArrayLike]) -> npt.NDArray[np.float64]:
-    """Return the parameters as an array with one row per set; scalars are broadcast."""
+    """Parameter sets as an array with one row per set; scalars are broadcast."""
     arrays = {key: _column(value, key) for key, value in columns.items()}
     count = max((a.size for a in arrays.values() if a.ndim), default=1)
     for key, a in arrays.items():
@@ -92,7 +92,8 @@ def batch(
     f_m, U_tr_m_s, K0, gamma, load_n : float or array of shape (sets,)
         Parameters of the law, and load on one bearing, N (by default that of the rig).
     clock : str
-        ``"journal"`` or ``"thesis"``.
+        Definition of the time constant of the film: ``"journal"`` (tbar = t U_tr/R) or ``"thesis"``
+        (tbar = t/1 s).
     method : str
         ``"euler"`` or ``"rk4"``.
     data : array, shape (n,), optional

@@ -18,7 +18,7 @@ from jbf.records.arguments import one_of
 from jbf.renamed import current_effect, current_parameter
 
 Stage = Literal["drive", "lubricant", "film", "contact", "other friction", "instrument"]
-"""Position of an effect in the signal chain."""
+"""Position of an effect in the signal chain from drive to instrument."""
 
 
 class _Summed(Protocol):
@@ -33,7 +33,7 @@ The effects add to the force of the law, or act on the sum. Effects of the other
 internal terms of a law, which are unknown for a user-defined law.
 """
 CARRIER = "coulomb"
-"""Built-in law with nearly zero force, to which the effects of a user-defined law are attached."""
+"""Built-in law with negligible force that carries the effects of a user-defined law."""
 
 Page = TypeVar("Page", bound=_Summed)
 
@@ -100,7 +100,7 @@ class Pages(dict[str, Page]):
 
 @dataclass(frozen=True, repr=False)
 class Effect:
-    """Catalogue entry of an effect.
+    """Catalogue entry of an effect: its texts, its properties and its parameters.
 
     Attributes
     ----------
@@ -114,11 +114,13 @@ class Effect:
         True if the effect distributes the reading of a jump over time.
     peaks
         Parameter in which the likelihood is multimodal; None for most effects.
+    longest_step_s
+        Longest integration step, s.
     further_of
         Effect of which this one is an additional instance; None for most effects.
     unknown_start
-        True if the initial state is not determined by the first sample of a run, and the influence
-        of that state does not decay.
+        True if the first sample does not determine the initial state, whose influence does not
+        decay.
     rust_place, rust_type
         Rust types of the stage and of the effect in the core; empty for a user-defined effect.
     columns
@@ -150,10 +152,11 @@ class Effect:
 
 @dataclass(frozen=True, repr=False)
 class Law:
-    """Catalogue entry of a base law.
+    """Catalogue entry of a base law: its texts, its state and its parameters.
 
-    A law that does not need a bearing returns a force, N, and does not need a load. `rust_type` is
-    the Rust type of the law in the core.
+    A law that does not need a bearing returns a force, N, and does not need a load. `has_memory` is
+    true for a law with any state, that of a film or of a bristle included. `rust_type` is the Rust
+    type of the law in the core.
     """
 
     name: str
@@ -180,7 +183,7 @@ def _parameter(page: _core.ParameterPage) -> Parameter:
 
 @cache
 def built_in() -> dict[str, Effect]:
-    """Return the built-in effects by name, in the order of the signal chain."""
+    """Built-in effects by name, in the order of the signal chain."""
     pages = {}
     for page in _core.effects():
         fields = dict(page)
@@ -194,7 +197,7 @@ _user_effects: dict[str, Effect] = {}
 
 
 def user_effects() -> dict[str, Effect]:
-    """Return the currently registered user-defined effects."""
+    """Currently registered user-defined effects, by name."""
     return _user_effects
 
 
@@ -228,7 +231,7 @@ def effects() -> Pages[Effect]:
 
 @cache
 def built_in_laws() -> Pages[Law]:
-    """Return the built-in laws by name."""
+    """Built-in laws by name."""
     pages = Pages[Law]()
     for page in _core.laws():
         fields = dict(page)
@@ -241,7 +244,7 @@ _user_laws: dict[str, Law] = {}
 
 
 def user_laws() -> dict[str, Law]:
-    """Return the currently registered user-defined laws."""
+    """Currently registered user-defined laws, by name."""
     return _user_laws
 
 
@@ -274,7 +277,7 @@ def laws() -> Pages[Law]:
 
 
 def find_effect(name: str) -> Effect:
-    """Return the effect of the given name.
+    """Return the catalogue entry of an effect.
 
     Raises
     ------
@@ -293,18 +296,18 @@ def find_effect(name: str) -> Effect:
 
 
 def find_law(name: str) -> Law:
-    """Return the law of the given name; raise an InputError if it is unknown."""
+    """Return the catalogue entry of a law; raise an InputError if the name is unknown."""
     catalogue = laws()
     return catalogue[one_of(name, catalogue, "law")]
 
 
 def find_clock(name: str) -> Clock:
-    """Return the clock of the given name; raise an InputError if it is unknown."""
+    """Check the name of a film's time scale and return it; raise an InputError if unknown."""
     return one_of(name, CLOCKS, "clock")
 
 
 def reason_not_applicable(effect: Effect, law: str) -> str | None:
-    """Return why an effect cannot be combined with a law ("the law ..."), or None if it can."""
+    """Reason why an effect cannot be combined with a law ("the law ..."), or None if it can."""
     if law not in _user_laws:
         return effect.refused.get(law)
     if effect.stage not in COMBINABLE_STAGES:
@@ -328,13 +331,13 @@ def check_applies(law: str, names: Iterable[str]) -> None:
 
 
 def transition_speed(law: str, values: Sequence[float]) -> float | None:
-    """Return the speed, m/s, above which the film carries the full load; None without a film."""
+    """Speed, m/s, above which the film carries the full load; None for a law without a film."""
     pages = zip(find_law(law).parameters, values, strict=False)
     return next((float(v) for p, v in pages if p.bound == "transition_speed"), None)
 
 
 def can_be_added(name: str, present: Collection[str]) -> bool:
-    """Return True if an effect can be added to the effects in `present`.
+    """Whether an effect can be added to the effects in `present`.
 
     An additional instance of an effect requires the first instance.
     """
@@ -343,13 +346,13 @@ def can_be_added(name: str, present: Collection[str]) -> bool:
 
 
 def can_be_removed(name: str, present: Collection[str]) -> bool:
-    """Return True if `present` contains no additional instance of the effect."""
+    """Whether an effect can be removed: `present` contains no further instance of it."""
     pages = effects()
     return not any(e in pages and pages[e].further_of == name for e in present)
 
 
 def in_chain_order(names: Iterable[str]) -> tuple[str, ...]:
-    """Return the effects in the order of the signal chain, without duplicates."""
+    """Names of the effects in the order of the signal chain, without duplicates."""
     chosen = {find_effect(name).name for name in checked_names(names, "effects")}
     return tuple(name for name in effects() if name in chosen)
 
@@ -363,7 +366,7 @@ def parameters_of(law: str, chosen: tuple[str, ...]) -> dict[str, Parameter]:
 
 
 def find_parameter(name: str, names: Collection[str]) -> str:
-    """Return the full dotted name of a parameter given with or without its unit.
+    """Full dotted name of a parameter that is given with or without its unit.
 
     For example, `warm_up.tau` yields `warm_up.tau_s`. An old name yields the current one. An
     InputError is raised for an unknown name.
@@ -379,7 +382,7 @@ def find_parameter(name: str, names: Collection[str]) -> str:
 
 @cache
 def vocabulary() -> Vocabulary:
-    """Return the names and bounds that are valid in a model file."""
+    """Names and bounds that are valid in a model file."""
 
     def bounds(parameters: tuple[Parameter, ...]) -> dict[str, tuple[float, float]]:
         return {p.name: (min(p.lower, _null(p)), max(p.upper, _null(p))) for p in parameters}
@@ -392,4 +395,5 @@ def vocabulary() -> Vocabulary:
 
 
 def _null(parameter: Parameter) -> float:
+    """Null of a parameter; its lower bound if it has no null."""
     return parameter.lower if parameter.null is None else parameter.null

@@ -1,4 +1,4 @@
-"""Construction of the signal chain of a rig, and of its input motion, as objects of the core."""
+"""Construction of the core's signal chain for a rig, and of its input motion."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ The core ends a step at every reversal, and reduces the step if the law or an ef
 
 @contextmanager
 def core_refusals(remedy: str | Callable[[str], str] = "correct the value") -> Iterator[None]:
-    """Convert exceptions of the core to an InputError.
+    """Context in which exceptions of the core become an InputError.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def check_rig(rig: Rig, law: str) -> None:
 
 
 def core_bearing(rig: Rig) -> _core.BearingSizes | None:
-    """Return the dimensions of the bearing as an object of the core; None without a bearing."""
+    """Dimensions of the bearing in the form of the core; None for a rig without a bearing."""
     b = rig.bearing
     if b is None:
         return None
@@ -105,12 +105,12 @@ def core_bearing(rig: Rig) -> _core.BearingSizes | None:
 
 
 def core_load_n(rig: Rig) -> float | None:
-    """Return the load on one bearing, N; None without a load."""
+    """Load on one bearing of a rig, N; None for a rig without a load."""
     return None if rig.load is None else rig.load.normal_n
 
 
 def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain:
-    """Build the signal chain of the core for a rig.
+    """Build the core's signal chain for a rig, a law and effects.
 
     Raises
     ------
@@ -157,7 +157,7 @@ def chain(rig: Rig, law: str, clock: str, effects: Sequence[str]) -> DrivenChain
 
 
 def estimated_motion(rig: Rig, run: Run) -> EstimatedMotion:
-    """Estimate the motion of the journal or slider of the rig in a run."""
+    """Estimate the motion of a run with the journal radius of its rig."""
     instants, motion = sampled_motion(rig, run)
     return motion if len(instants) == len(run) else motion.at(instants, run.time_s)
 
@@ -165,7 +165,7 @@ def estimated_motion(rig: Rig, run: Run) -> EstimatedMotion:
 def sampled_motion(
     rig: Rig, run: Run, starts: Sequence[ReadingErrors] = ()
 ) -> tuple[Array, EstimatedMotion]:
-    """Estimate the motion, and return the instants at which it was sampled, s.
+    """Estimate the motion of a run; return its sampling instants, s, and the motion.
 
     If the motion was recorded with a separate clock, the instants are those of that clock. `starts`
     is as in :func:`jbf.records.motion.estimated_motion.estimate_motion`.
@@ -181,7 +181,7 @@ def sampled_motion(
 def core_motion(
     rig: Rig, run: Run, motion: EstimatedMotion, before: tuple[float, float] | None = None
 ) -> Driven:
-    """Convert the motion and load of a run to an object of the core.
+    """Convert motion and load of a run to an input of the core.
 
     A law in newtons does not use the load.
 
@@ -231,7 +231,7 @@ def core_motion(
 
 
 def _from_rest(run: Run, velocity: Array) -> Array:
-    """Return the speed, m/s, starting with zero if the run begins with noise at standstill."""
+    """Speed, m/s, set to zero at the start if the run begins with noise at standstill."""
     if not begins_with_oscillation(run.time_s, velocity):
         return velocity
     return np.concatenate(([0.0], velocity[1:]))

@@ -1,4 +1,4 @@
-"""Readings of a force with a time delay, by evaluation of the chain at earlier instants.
+"""Readings of a force with a time delay, from the signal chain at earlier instants.
 
 The motion is smooth, but the force has jumps. The delay is therefore applied to the instants at
 which the chain is evaluated, which is exact; interpolation of the force is not. Due to the errors
@@ -49,7 +49,7 @@ class DelayedReading:
 
     @property
     def mean_n(self) -> Array:
-        """Expected value, N."""
+        """Expected value of the reading, N, shape (n,)."""
         return self.over * self.after_n + (1.0 - self.over) * self.before_n
 
 
@@ -78,7 +78,7 @@ class DelayedChain:
     def read(
         self, values: Array, run: Run, instants_s: Array, motion: EstimatedMotion, sd_s: float
     ) -> DelayedReading:
-        """Compute the readings of a run.
+        """Compute the delayed readings of a run.
 
         Parameters
         ----------
@@ -120,6 +120,6 @@ class DelayedChain:
 
 
 def _nearest(places: Array, instants: Array) -> npt.NDArray[np.intp]:
-    """Return the index of the nearest of the sorted `places` for each of the `instants`."""
+    """Index of the nearest of the sorted `places` for each of the `instants`."""
     middles = 0.5 * (places[1:] + places[:-1])
     return np.searchsorted(middles, instants)

@@ -1,4 +1,4 @@
-"""Evaluation of a signal chain for the motion of runs.
+"""Evaluation of a signal chain along the motions of runs.
 
 The core may receive more instants than a run has samples, such as those of a hypothetical motion
 before it. Readings are returned at the samples only.
@@ -20,13 +20,13 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Driven:
-    """Motion as an object of the core; `kept` holds the indices of the samples of the run."""
+    """Motion in the form of the core; `kept` has the indices of a run's samples in it."""
 
     motion: _core.Motion
     kept: npt.NDArray[np.intp] | None = None
 
     def at_samples(self, values: Array) -> Array:
-        """Select the values at the samples from those at the instants of the core."""
+        """Select the values at the samples of the run from those at all instants of the core."""
         return values if self.kept is None else np.ascontiguousarray(values[self.kept])
 
 
@@ -42,21 +42,21 @@ class DrivenChain:
         return self.core.parameter_names
 
     def predict(self, parameters: Array, driven: Sequence[Driven]) -> list[Array]:
-        """Return the friction readings, N, one array per run."""
+        """Friction readings, N, one array per run."""
         readings = self.core.predict(parameters, [d.motion for d in driven])
         return [d.at_samples(f) for d, f in zip(driven, readings, strict=True)]
 
     def jacobian(
         self, parameters: Array, driven: Sequence[Driven], which: Sequence[int]
     ) -> list[tuple[Array, Array]]:
-        """Return the readings and their derivatives with respect to the parameters `which`."""
+        """Friction readings, and their derivatives with respect to the parameters `which`."""
         rows = self.core.jacobian(parameters, [d.motion for d in driven], which)
         return [(d.at_samples(f), d.at_samples(j)) for d, (f, j) in zip(driven, rows, strict=True)]
 
     def inner_steps(self, parameters: Array, driven: Sequence[Driven]) -> float:
-        """Return the number of inner steps of a prediction."""
+        """Number of integration steps of a prediction along these motions."""
         return self.core.inner_steps(parameters, [d.motion for d in driven])
 
     def film_rate_1_s(self, parameters: Array, driven: Sequence[Driven]) -> float:
-        """Return the largest rate of the film of the law, 1/s."""
+        """Largest relaxation rate of the film along these motions, 1/s."""
         return self.core.film_rate_1_s(parameters, [d.motion for d in driven])

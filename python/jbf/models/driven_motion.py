@@ -1,4 +1,4 @@
-"""Motion of a run as an object of the core, with additional instants at jumps of the friction.
+"""Conversion of a run's motion to the form of the core, with instants at friction jumps.
 
 A motion starts and stops between two samples. The instant is computed from the acceleration, and an
 integration step of the core ends at that instant.
@@ -49,7 +49,7 @@ class Reversals:
 
 
 def driven_motion(rig: Rig, run: Run, motion: EstimatedMotion) -> Driven:
-    """Convert the motion of a run to the form of the core."""
+    """Convert the motion of a run to the form of the core (`with_instants`)."""
     return with_instants(rig, run, motion, np.zeros(0))[1]
 
 
@@ -58,7 +58,7 @@ def with_instants(
 ) -> tuple[Array, Driven]:
     """Convert the motion of a run to the form of the core, with additional instants.
 
-    All instants of the core, s, are returned too.
+    Returns all instants of the core, s, and the converted motion.
 
     Parameters
     ----------

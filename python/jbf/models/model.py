@@ -68,7 +68,8 @@ class Model(Shown):
         catalogue. Those of effects take their null value, or the starting value if they have no
         null.
     clock
-        `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s).
+        Definition of the time constant of the film: `journal` (tbar = t U_tr/R) or `thesis` (tbar =
+        t/1 s, of Cohn (1998)).
 
     Raises
     ------
@@ -154,7 +155,7 @@ class Model(Shown):
         return self.predict_many([one_run(run)])[0]
 
     def predict_many(self, runs: Iterable[Run]) -> list[Array]:
-        """Predict several runs as `predict` does, on all cores."""
+        """Predict the friction readings of several runs as `predict` does, on all cores."""
         runs = list_of_runs(runs)
         for run in runs:
             self.require_columns(run)
@@ -173,7 +174,7 @@ class Model(Shown):
         return None if tau is None or tau.value <= 0.0 else tau
 
     def predict_late(self, read: Iterable[tuple[Run, Array, EstimatedMotion]]) -> list[Array]:
-        """Predict the readings of a delayed force, N, one array per run.
+        """Predict the readings of a force with time delay, N, one array per run.
 
         Parameters
         ----------
@@ -210,13 +211,13 @@ class Model(Shown):
             )
 
     def units_for_json(self) -> dict[str, dict[str, str]]:
-        """Units of the quantities of the rig, for JSON."""
+        """Units of the rig's quantities, JSON-serialisable."""
         return {"units": self.rig.quantities.to_dict()}
 
     def parameters_for_json(
         self, parameters: Mapping[str, ParameterValue]
     ) -> dict[str, dict[str, float | str | bool | None]]:
-        """Parameters for JSON, with their `unit`; empty if dimensionless."""
+        """Parameters with their `unit` (absent if dimensionless), JSON-serialisable."""
         units = units_of(self.law, self.effects, self.rig.quantities)
         return {name: p.to_dict() | {"unit": units[name]} for name, p in parameters.items()}
 
@@ -231,7 +232,7 @@ class Model(Shown):
         )
 
     def to_toml(self) -> str:
-        """Return the text that `save` writes."""
+        """Text of the model file that `save` writes."""
         units = units_of(self.law, self.effects, self.rig.quantities)
         return model_file_text(self._file(), units)
 
@@ -257,7 +258,7 @@ class Model(Shown):
 
 
 def the_model(given: object) -> Model:
-    """Return the value if it is a model; otherwise raise an InputError with a remedy."""
+    """Check that a value is a model and return it; raise an InputError otherwise."""
     remedy = "give a jbf.Model"
     if isinstance(given, str | os.PathLike):
         remedy = f"read it: jbf.Model.load({quoted(os.fspath(given))})"

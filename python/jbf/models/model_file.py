@@ -1,4 +1,4 @@
-"""A fitted model as a TOML file: law, effects, parameters, rig."""
+"""Model files: a fitted model as TOML with law, effects, parameters and rig."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def _parameters_table(model: ModelFile, units: Mapping[str, str]) -> Table:
 
 
 def model_file_text(model: ModelFile, units: Mapping[str, str]) -> str:
-    """Return a model as the text of its file; reading the text gives an equal model.
+    """Text of the model file of a model; reading the text gives an equal model.
 
     The unit of each parameter is written as a comment.
     """

@@ -1,4 +1,4 @@
-"""Formatting of numbers and of model steps as text.
+"""Formatting of numbers and of the differences between models as text.
 
 Numbers have a few significant digits; a value and its error end at the same decimal.
 """
@@ -40,21 +40,21 @@ def measured(value: float, stderr: float | None) -> tuple[str, str]:
 
 
 def value_and_error(p: ParameterValue) -> tuple[str, str]:
-    """Format the value and error of a parameter; held parameters are marked and have no error."""
+    """Format value and standard error of a parameter; a held parameter is marked, without error."""
     if p.held:
         return f"held at {number(p.value, 5)}", ""
     return measured(p.value, p.stderr)
 
 
 def percent(value: ParameterValue) -> str:
-    """Format the error as a share of the value, `0.46 %`; empty if undefined."""
+    """Format the standard error as a percentage of the value, `0.46 %`; empty if undefined."""
     if value.stderr is None or value.value == 0.0 or not math.isfinite(value.value):
         return ""
     return f"{number(100.0 * abs(value.stderr / value.value), 2)} %"
 
 
 def step_words(models: Sequence[Sequence[str]], index: int) -> str:
-    """Describe model `index` by the effects that it adds or removes, or as the base law."""
+    """Describe model `index` of a sequence: effects that it adds or removes, or the base law."""
     effects = models[index]
     if index == 0:
         return f"{BASE_LAW} + {', '.join(effects)}" if effects else BASE_LAW

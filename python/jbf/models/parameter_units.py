@@ -1,4 +1,4 @@
-"""Units of parameters in the quantities of a rig."""
+"""Units of parameters in the units of a rig."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PER_LOAD = ("dry_load_dependence.mu", "zero_load_dependence.k", "viscous_load_de
 
 
 def unit_of(name: str, page: Parameter, law: str, quantities: Quantities) -> str:
-    """Unit of a parameter (dotted name) in combination with a law; `-` if dimensionless."""
+    """Unit of a parameter (dotted name) in a model with a law; `-` if dimensionless."""
     if find_law(law).needs_bearing:
         return page.unit
     if quantities.motion == "linear" and name in DISPLACEMENTS:
@@ -25,7 +25,7 @@ def unit_of(name: str, page: Parameter, law: str, quantities: Quantities) -> str
 
 
 def units_of(law: str, effects: tuple[str, ...], quantities: Quantities) -> dict[str, str]:
-    """Map the full name of each parameter to its unit; empty if dimensionless."""
+    """Unit of each parameter of a model by its full name; empty if dimensionless."""
     units = {
         name: unit_of(name, page, law, quantities)
         for name, page in parameters_of(law, effects).items()

@@ -51,11 +51,11 @@ class Registration:
         name: str | None,
         parameters: Sequence[Parameter],
     ) -> Registration:
-        """Return a registration; the default name is that of the function."""
+        """Create a registration; the default name is that of the function."""
         return cls(kind, function.__name__ if name is None else name, function, tuple(parameters))
 
     def refused(self, problem: str, remedy: str) -> InputError:
-        """Return the error that names the entry, the problem and the remedy."""
+        """Error that names the entry, the problem and the remedy."""
         return InputError(problem=f"the {self.kind} {quoted(self.name)} {problem}", remedy=remedy)
 
     def check_name(self, built_in: Container[str], reserved: str | None = None) -> None:
@@ -80,7 +80,7 @@ class Registration:
                 raise self.refused(f"has a parameter {quoted(p.name)} {problem}", mend)
 
     def columns(self) -> tuple[str, ...]:
-        """Return the arguments of the function that are columns.
+        """Arguments of the function that are columns of a run.
 
         Raises
         ------
@@ -107,7 +107,7 @@ class Registration:
         return tuple(columns)
 
     def texts(self, summary: str, equation: str, source: str, limits: str) -> Texts:
-        """Return the texts of the entry, with defaults for empty ones."""
+        """Texts of the catalogue entry, with defaults for empty ones."""
         first = (inspect.getdoc(self.function) or f"a user-defined {self.kind}").splitlines()[0]
         return Texts(
             summary=summary or first,
@@ -118,7 +118,7 @@ class Registration:
 
 
 def _fault(p: Parameter) -> tuple[str, str] | None:
-    """Return the first problem of a parameter and its remedy; None if there is none."""
+    """First problem of a parameter's definition, and its remedy; None if there is none."""
     if not p.name.isidentifier():
         return "that is not a valid name", "use letters, digits and _"
     if not (np.isfinite(p.lower) and np.isfinite(p.upper) and p.lower < p.upper):

@@ -13,17 +13,17 @@ from jbf.records.run_requirements import require
 
 
 def has_angle(rig: Rig, run: Run) -> bool:
-    """Return True if the run has a shaft angle; always False for a linear axis."""
+    """Whether a run has a shaft angle; always False for a linear axis."""
     return run.angle_rad is not None and (rig.bearing is not None or run.position_m is None)
 
 
 def has_path(rig: Rig, run: Run) -> bool:
-    """Return True if the run has the displacement of the drive, in the units of its speed."""
+    """Whether a run has the displacement of the drive, in the units of its speed."""
     return run.position_m is not None or (run.angle_rad is not None and rig.radius_m is not None)
 
 
 def has_position(run: Run) -> bool:
-    """Return True if the run has the angle or the linear position of the drive."""
+    """Whether a run has the angle or the linear position of the drive."""
     return run.position_m is not None or run.angle_rad is not None
 
 

@@ -1,4 +1,4 @@
-"""Trajectories of the base law, reduced or with the journal mass, integrated to a tolerance.
+"""Trajectories of the journal law, with or without the journal mass, to a given tolerance.
 
 For the prediction of a complete rig with its effects use :class:`jbf.Model`. This module is for the
 analysis of the law alone, with a specified error.
@@ -29,7 +29,7 @@ _NAMES = {"f_m": "f_m", "U_tr_m_s": "u_tr_m_s", "K0": "k0", "gamma": "gamma"}
 
 @dataclass(frozen=True)
 class Trajectory:
-    """State of the film and friction coefficient at each sample.
+    """State of the film and friction coefficient along one motion.
 
     Attributes
     ----------
@@ -66,12 +66,12 @@ class Trajectory:
 
     @property
     def eps(self) -> Array:
-        """Eccentricity ratio."""
+        """Eccentricity ratio of the journal, shape (n,)."""
         return np.hypot(self.x, self.y)
 
     @property
     def phi_rad(self) -> Array:
-        """Attitude angle, rad."""
+        """Attitude angle of the journal, rad, shape (n,)."""
         return np.arctan2(self.y, self.x)
 
 
@@ -89,7 +89,7 @@ def trajectory(
     phi_rad: float | None = None,
     derivatives: bool = False,
 ) -> Trajectory:
-    """Integrate the law along one motion.
+    """Integrate the journal law along one motion.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def trajectories(
     phi_rad: float | None = None,
     derivatives: bool = False,
 ) -> list[Trajectory]:
-    """Integrate the law along many motions, on all cores.
+    """Integrate the journal law along many motions, on all cores.
 
     The other arguments are those of `trajectory`.
 
@@ -251,14 +251,14 @@ def trajectories(
 
 
 def is_record(motion: npt.ArrayLike | tuple[float, float, float]) -> bool:
-    """Return True for an array of speeds, False for the three numbers of a sine."""
+    """Whether a motion is an array of speeds, not the three numbers of a sine."""
     return not (isinstance(motion, tuple) and len(motion) == 3)
 
 
 def motions_of(
     runs: object,
 ) -> list[tuple[Array, npt.ArrayLike | tuple[float, float, float]]]:
-    """Return pairs of times and motion, converted to arrays and numbers; errors name the run."""
+    """Times and motion of each run, converted to arrays and numbers; errors name the run."""
     if isinstance(runs, str) or not isinstance(runs, Iterable):
         raise InputError(
             problem=f"runs is {described(runs)}", remedy="give a list of pairs (times, motion)"
@@ -267,7 +267,7 @@ def motions_of(
 
 
 def _pair(place: int, run: object) -> tuple[Array, npt.ArrayLike | tuple[float, float, float]]:
-    """Return times and motion of one run, the times as an array."""
+    """Times (as an array) and motion of one run."""
     if not (isinstance(run, tuple | list) and len(run) == 2):
         raise InputError(
             problem=f"run {place} is {described(run)}", remedy="give a pair (times, motion)"
@@ -280,7 +280,7 @@ def _pair(place: int, run: object) -> tuple[Array, npt.ArrayLike | tuple[float, 
 
 
 def _sine(given: object) -> tuple[float, float, float]:
-    """Return amplitude, angular frequency and bias."""
+    """Amplitude, angular frequency and bias of a sine, as numbers."""
     if not (isinstance(given, tuple | list) and len(given) in (2, 3)):
         raise InputError(
             problem=f"sine is {described(given)}",

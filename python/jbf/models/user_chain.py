@@ -1,4 +1,4 @@
-"""Signal chain of the core with user-defined effects, or with a user-defined law.
+"""Signal chain of the core, extended by user-defined effects or a user-defined law.
 
 The instrument measures the sum of the bearing force and a user-defined force. If the effects of the
 instrument are linear in the force, the responses to both forces are added. If an effect is
@@ -26,7 +26,7 @@ DIFFERENCE_STEP = 1e-6
 
 
 Read = tuple[Array, Array]
-"""Reading, and its derivatives with respect to the instrument parameters, shape (n, parameters)."""
+"""Reading of the instrument, and its derivatives by the instrument parameters, (n, parameters)."""
 
 
 class UserChain:
@@ -83,7 +83,7 @@ class UserChain:
         return [*first, *self.core.parameter_names[len(self.carrier_values) :], *theirs]
 
     def predict(self, parameters: Array, motions: Sequence[_core.Motion]) -> list[Array]:
-        """Return the friction readings, N, one array per run."""
+        """Friction readings, N, one array per run."""
         inner = self.core.predict(self._inner(parameters), motions)
         return [
             f + self._user_contribution(parameters, m)[0]
@@ -91,17 +91,17 @@ class UserChain:
         ]
 
     def film_rate_1_s(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
-        """Return the largest rate of the film of the law, 1/s."""
+        """Largest relaxation rate of the film along these motions, 1/s."""
         return self.core.film_rate_1_s(self._inner(parameters), motions)
 
     def inner_steps(self, parameters: Array, motions: Sequence[_core.Motion]) -> float:
-        """Return the number of inner steps of a prediction."""
+        """Number of integration steps of a prediction along these motions."""
         return self.core.inner_steps(self._inner(parameters), motions)
 
     def jacobian(
         self, parameters: Array, motions: Sequence[_core.Motion], which: Sequence[int]
     ) -> list[tuple[Array, Array]]:
-        """Return the readings and their derivatives with respect to the parameters `which`."""
+        """Friction readings, and their derivatives with respect to the parameters `which`."""
         of_core = [w for w in which if w in self.of_core]
         shift = len(self.carrier_values) - self.of_core.start
         inner = [w + shift for w in of_core]
@@ -131,7 +131,7 @@ class UserChain:
     def _user_contribution(
         self, parameters: Array, motion: _core.Motion
     ) -> tuple[Array, dict[int, Array]]:
-        """Return the contribution of user-defined effects to the reading.
+        """Contribution of the user-defined effects to the reading of the instrument.
 
         Its derivatives with respect to the instrument parameters are returned too, by index.
         """
@@ -145,7 +145,7 @@ class UserChain:
         return loaded[0] - empty[0] + after, by_place
 
     def _user_forces(self, parameters: Array, motion: _core.Motion) -> tuple[Array, Array]:
-        """Return the forces of the user-defined effects before and after the instrument, N."""
+        """Forces of the user-defined effects before and after the instrument, N."""
         n = len(motion.columns["time_s"])
         before, after = np.zeros(n), np.zeros(n)
         for i, effect in enumerate(self.user_forces):
@@ -175,7 +175,7 @@ class UserChain:
         )
 
     def _read(self, parameters: Array, motion: _core.Motion, force: Array) -> tuple[Read, Read]:
-        """Return the instrument readings of the bearing force with and without an additional force.
+        """Instrument readings of the bearing force with and without an additional force.
 
         The bearing force is set to zero if the instrument is linear.
         """
@@ -186,20 +186,20 @@ class UserChain:
         )
 
     def _instrument_reading(self, parameters: Array, motion: _core.Motion, force: Array) -> Read:
-        """Return the reading of a force, and its derivatives by the instrument parameters."""
+        """Instrument reading of a force, and its derivatives by the instrument parameters."""
         effects = [(name, parameters[list(places)].tolist()) for name, places in self.instrument]
         time = np.ascontiguousarray(motion.columns["time_s"])
         return _core.read_force(effects, time, np.ascontiguousarray(force))
 
     def _bearing_force(self, parameters: Array, motion: _core.Motion) -> Array:
-        """Return the force of the bearing, N, if the instrument is nonlinear; otherwise zeros."""
+        """Force of the bearing, N, if the instrument is nonlinear; otherwise zeros."""
         if self.bare is None:
             return np.zeros(len(motion.columns["time_s"]))
         force: Array = self.bare.predict(self._before_instrument(parameters), [motion])[0]
         return force
 
     def _before_instrument(self, parameters: Array) -> Array:
-        """Return the parameters of the chain of the core, without those of the instrument."""
+        """Parameters of the core's chain without those of the instrument."""
         instrument = {place for _, places in self.instrument for place in places}
         before = [place for place in self.of_core if place not in instrument]
         return np.ascontiguousarray(np.concatenate((self.carrier_values, parameters[before])))
@@ -207,7 +207,7 @@ class UserChain:
     def _directional_derivative(
         self, parameters: Array, motion: _core.Motion, force: Array, slope: Array
     ) -> Array:
-        """Return the directional derivative of the reading for a change of force along `slope`."""
+        """Derivative of the reading for a change of the force along `slope`."""
         largest = float(np.max(np.abs(slope)))
         if largest == 0.0:
             return slope
@@ -222,7 +222,7 @@ class UserChain:
     def _derivative_changes(
         self, parameters: Array, motion: _core.Motion, which: Sequence[int]
     ) -> dict[int, Array]:
-        """Return the change of derivatives by core parameters due to user-defined forces.
+        """Changes of the derivatives by core parameters due to the user-defined forces.
 
         The result is empty for a linear instrument.
         """

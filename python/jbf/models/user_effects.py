@@ -45,7 +45,17 @@ If the difference is larger, the complex step is not used.
 
 @dataclass(frozen=True, repr=False)
 class UserEffect(Effect):
-    """User-defined effect: its catalogue entry and its function."""
+    """User-defined effect: its catalogue entry and its function.
+
+    Attributes
+    ----------
+    function
+        Function of columns and parameters that returns the force, N.
+    analytic
+        Whether complex-step derivatives are accurate, by parameter name.
+    called
+        Word for the function in messages: `effect` or `law`.
+    """
 
     function: Callable[..., Any] = field(default=lambda: 0.0, compare=False)
     analytic: dict[str, bool] = field(default_factory=dict, compare=False)
@@ -53,7 +63,7 @@ class UserEffect(Effect):
 
     @classmethod
     def registered(cls, given: Registration, stage: Stage, texts: Texts) -> UserEffect:
-        """Return the entry of a function whose name and parameters have been checked.
+        """Create the entry of a function whose name and parameters have been checked.
 
         Raises
         ------
@@ -77,7 +87,7 @@ class UserEffect(Effect):
         )
 
     def force(self, columns: Mapping[str, Array], values: Sequence[float]) -> Array:
-        """Return the force at every sample, N, shape (n,).
+        """Force of the effect at every sample, N, shape (n,).
 
         Raises
         ------
@@ -87,10 +97,10 @@ class UserEffect(Effect):
         return self._checked(self._call(columns, values), len(columns["time_s"]), values)
 
     def slope(self, columns: Mapping[str, Array], values: Sequence[float], which: int) -> Array:
-        """Return the derivative of the force with respect to parameter number `which`, shape (n,).
+        """Derivative of the force with respect to parameter number `which`, shape (n,).
 
-        Computed with a complex step if the function accepts complex numbers, otherwise with
-        fourth-order finite differences within the bounds.
+        The derivative is computed with a complex step if the function accepts complex numbers,
+        otherwise with fourth-order finite differences within the bounds.
         """
         page = self.parameters[which]
         if self.analytic.get(page.name) is None:
@@ -110,6 +120,7 @@ class UserEffect(Effect):
     def _complex_step(
         self, columns: Mapping[str, Array], values: Sequence[float], which: int
     ) -> Array | None:
+        """Derivative by a complex step; None if the function does not accept complex numbers."""
         moved: list[complex] = [complex(v) for v in values]
         size = 1e-30 * max(abs(values[which]), 1.0)
         moved[which] += 1j * size
@@ -126,6 +137,7 @@ class UserEffect(Effect):
     def _difference(
         self, columns: Mapping[str, Array], values: Sequence[float], which: int
     ) -> Array:
+        """Derivative by fourth-order finite differences within the bounds."""
         page, x = self.parameters[which], values[which]
         h = 1e-3 * max(abs(x), 1e-3 * (page.upper - page.lower))
         h = min(h, 0.1 * (page.upper - page.lower))

@@ -42,7 +42,7 @@ class UserLaw(Law):
     force: UserEffect | None = None
 
     def steady_n(self, velocity: Array, values: Sequence[float], load_n: float | None) -> Array:
-        """Return the force at steady speeds, N, for laws of speed, load and time only."""
+        """Force of the law at steady speeds, N, for a function of speed, load and time only."""
         assert self.force is not None
         zero = np.zeros_like(velocity)
         columns = {"time_s": zero, "velocity": velocity, "acceleration": zero}

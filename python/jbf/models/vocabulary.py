@@ -1,4 +1,4 @@
-"""Content of a model file, and the names and bounds that are valid in the file."""
+"""Content of a model file, and the names and bounds that are valid in it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from jbf.records.rig import Rig
 from jbf.records.toml_file import number, refuse_unknown
 
 Clock = Literal["journal", "thesis"]
-"""Time scale of a film: `journal` (tbar = t U_tr/R) or `thesis` (tbar = t/1 s)."""
+"""Definition of a film's time constant: `journal` (tbar = t U_tr/R), `thesis` (tbar = t/1 s).
+
+The latter is that of Cohn (1998).
+"""
 
 AUTO = "auto"
 """Placeholder for the name of a law that is selected from the data."""
@@ -37,7 +40,7 @@ class ModelFile:
     Attributes
     ----------
     law, clock : str
-        Names of the friction law and of its clock.
+        Names of the friction law, and of the definition of its film's time constant (`Clock`).
     effects : tuple of str
         Names of the effects, in the order in which they were added.
     parameters : dict of str to ParameterValue
@@ -81,7 +84,12 @@ Bounds = tuple[float, float]
 class Vocabulary:
     """Names that are valid in a model file, with the bounds of each parameter.
 
-    The bounds are (lower, upper), both inclusive.
+    Attributes
+    ----------
+    laws, clocks
+        Names of the laws, and of the definitions of a film's time constant.
+    effects, law_parameters
+        Bounds (lower, upper), both inclusive, by effect or law and by parameter name.
     """
 
     laws: Collection[str]

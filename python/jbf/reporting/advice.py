@@ -13,7 +13,7 @@ from jbf.estimation.campaign import Campaign
 
 @dataclass(frozen=True)
 class Advice:
-    """Usual causes of a residual pattern, and the recommended action."""
+    """Usual causes of one kind of residual structure, and the recommended action."""
 
     causes: str
     to_do: str
@@ -108,7 +108,7 @@ CHANNELS = {"record a temperature": "temperature"}
 
 
 def advice_on(axis: str, campaign: Campaign | None = None) -> Advice:
-    """Return the advice for residual structure along an axis, or of the kind of that name.
+    """Advice for residual structure along an axis, or of another kind (name in `axis`).
 
     Parameters
     ----------
@@ -125,5 +125,5 @@ def advice_on(axis: str, campaign: Campaign | None = None) -> Advice:
 
 
 def _in_all(quantity: str, columns: Iterable[Iterable[str]]) -> bool:
-    """Whether each run has a column of a quantity."""
+    """Whether every run has a column whose name contains a quantity."""
     return all(any(quantity in name for name in names) for names in columns)

@@ -21,7 +21,7 @@ REQUIREMENTS = {
 
 
 def refused_words(effect: Effect) -> str:
-    """Format the laws with which an effect cannot be combined, and the reason."""
+    """List the laws with which an effect cannot be combined, with the reasons."""
     reasons = dict.fromkeys(effect.refused.values())
     return "; ".join(
         f"{', '.join(law for law, r in effect.refused.items() if r == reason)} ({reason})"
@@ -96,5 +96,5 @@ def _parameter_row(p: Parameter) -> tuple[str, str, str, str, str, str]:
 
 
 def meaning_of(p: Parameter) -> str:
-    """Return the description of a parameter, marked if its value is provided by the user."""
+    """Description of a parameter, marked if the user provides its value."""
     return f"{p.meaning} (specified, not fitted)" if p.stated else p.meaning

@@ -8,7 +8,7 @@ from jbf.reporting.words import law_and_effects
 
 
 def check_report(check: Check) -> str:
-    """Format one rate per line, with its 95 % interval."""
+    """Format the simulated success rates of a diagnosis, one per line with its 95 % interval."""
     rows = [("simulated campaigns", "count", "share", "95 % interval")]
     for rate in check.rates:
         share = 100.0 * rate.count / rate.campaigns
@@ -26,6 +26,6 @@ def check_report(check: Check) -> str:
 
 
 def short_check(check: Check) -> str:
-    """Summarize the check in one line."""
+    """Summarize the simulated success rates of a diagnosis in one line."""
     right = sum(a.right for a in check.answers)
     return f"Check: {right} of {len(check.answers)} campaigns diagnosed correctly"

@@ -13,7 +13,7 @@ from jbf.reporting.words import comparison_sentence, law_and_effects, listed
 
 
 def comparison_page(comparison: Comparison, command: str = "") -> str:
-    """Return the HTML text of a comparison's report."""
+    """HTML report of a comparison; `command` is printed in its footer."""
     model = comparison.model
     return page(
         "comparison.html.j2",

@@ -71,7 +71,7 @@ def plot_run(
 def plot_model_comparison(
     compared: ModelComparison, axes: Sequence[Axes] | None = None
 ) -> list[Axes]:
-    """Plot the difference of each model to the best with its standard error, on one axes."""
+    """Plot the RMS of each model minus that of the best one, with standard errors, on one axes."""
     models = compared.models
     (ax,) = axes_or_new(axes, 1, 1, (7.0, 1.2 + 0.5 * len(models)))
     for row, m in enumerate(models):

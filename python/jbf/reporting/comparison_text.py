@@ -18,7 +18,7 @@ def _run_lines(comparison: Comparison) -> list[str]:
 
 
 def comparison_report(comparison: Comparison) -> str:
-    """Format the overall error, the axes with residual structure, and the error of each run."""
+    """Report the overall error of a model, its residual patterns, and its error in each run."""
     lines = [comparison_sentence(comparison)]
     if comparison.failures:
         lines += [
@@ -36,12 +36,12 @@ MODEL_HEAD = ("model", "RMS ({unit})", "difference", "standard error")
 
 
 def model_head(compared: ModelComparison) -> list[str]:
-    """Return the header of the table of models, with the unit of the errors."""
+    """Header of the table of compared models, with the unit of the errors."""
     return [cell.format(unit=compared.force_unit) for cell in MODEL_HEAD]
 
 
 def model_comparison_sentence(compared: ModelComparison) -> str:
-    """State the number of samples and of independent units."""
+    """State the numbers of samples and of independent units of a comparison of models."""
     return (
         f"{count_of(len(compared.models), 'model')} on {count_of(compared.nobs, 'sample')}; "
         f"standard errors over {count_of(compared.units, compared.unit)}"
@@ -49,6 +49,6 @@ def model_comparison_sentence(compared: ModelComparison) -> str:
 
 
 def model_comparison_report(compared: ModelComparison) -> str:
-    """Format one row per model, the best first, and the basis of the standard errors."""
+    """Report a comparison of models: one row per model, the best first."""
     rows = [model_head(compared), *model_rows(compared)]
     return "\n".join([model_comparison_sentence(compared), "", *columns(rows, "<>>>", 0)])

@@ -1,4 +1,4 @@
-"""JSON-serializable data of the thesis's tables and of a compensator's robustness."""
+"""JSON data of the tables of Cohn (1998), and of the robustness of a compensator."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jbf.control.thesis_tables import Tables
 
 
 def tables_dict(tables: Tables, alternatives: Sequence[tuple[str, Tables]]) -> dict[str, Any]:
-    """Return the content of `jbf control tables --json`."""
+    """Data of `jbf control tables --json`."""
     values = {n: p.value for n, p in tables.model.parameters.items()}
     return {
         "friction": {"volts_per_n": tables.bench.volts_per_n, **values},
@@ -32,5 +32,5 @@ def tables_dict(tables: Tables, alternatives: Sequence[tuple[str, Tables]]) -> d
 
 
 def robustness_dict(outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """Return the content of `jbf control robustness --json`."""
+    """Data of `jbf control robustness --json`."""
     return {"cases": [{**asdict(o), "worst": o.worst, "verdict": o.verdict} for o in outcomes]}

@@ -1,4 +1,4 @@
-"""Figures of the thesis's tables and of a compensator's robustness."""
+"""Figures of the tables of Cohn (1998), and of the robustness of a compensator."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from jbf.plot.style import BEFORE, MEASURED, MODEL, NOISE, dress
 
 
 def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
-    """Plot the simulated RMS errors and those of the thesis for every cell of the tables.
+    """Plot the simulated RMS errors and those of Cohn (1998) for every cell of the tables.
 
-    Columns that the thesis does not have, such as the observed compensator, show the true error.
+    Columns without values in the thesis, such as the observed compensator, show the true error.
     """
     drawing = Figure(figsize=(10.0, 4.6), layout="constrained") if figure is None else figure
     ax = drawing.subplots()
@@ -47,7 +47,7 @@ def plot_tables(tables: Tables, figure: Figure | None = None) -> Figure:
 
 
 def plot_robustness(outcomes: Sequence[Outcome], figure: Figure | None = None) -> Figure:
-    """Plot the ratio of the errors with and without compensation, one dot per row of the tables.
+    """Plot the error with compensation relative to that without it, one dot per row of the tables.
 
     The worst row of each case is marked.
     """

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def plot_runs(results: Sequence[Result], figure: Figure | None = None) -> Figure:
-    """Plot several runs, one column per scheme.
+    """Plot several control-loop runs, one column per scheme.
 
     The rows are response, error, friction against speed, friction in time, and learned quantities.
     """
@@ -31,7 +31,7 @@ def plot_runs(results: Sequence[Result], figure: Figure | None = None) -> Figure
 
 
 def plot_run_of_loop(run: Result, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Plot one run on five axes.
+    """Plot one control-loop run on five axes.
 
     The axes are response, error, friction against speed, friction in time, and learned quantities.
     """

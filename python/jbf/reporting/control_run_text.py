@@ -21,7 +21,7 @@ _FLAGS = {
 
 
 def status_words(result: Result) -> str:
-    """Format the status flags of a run, each with the share of samples in which it is set."""
+    """Describe the status flags of a control-loop run, each with the share of samples with it."""
     flags = []
     for flag, word in _FLAGS.items():
         share = float(((result.status & flag) > 0).mean())
@@ -31,7 +31,7 @@ def status_words(result: Result) -> str:
 
 
 def runs_text(results: Sequence[Result]) -> str:
-    """Format RMS and peak error of several schemes on one task."""
+    """Tabulate RMS and peak error of several compensation schemes on one task."""
     task = results[0].task
     head = f"{task.control} control, {task.wave} {task.low:.3g} to {task.high:.3g} {task.unit}"
     if task.wave != RECORDED:
@@ -48,7 +48,7 @@ def runs_text(results: Sequence[Result]) -> str:
 
 
 def robustness_text(outcomes: Sequence[Outcome]) -> str:
-    """Format the ratios of the errors with and without compensation, one line per case."""
+    """Tabulate the errors with compensation relative to those without it, one line per case."""
     names = list(outcomes[0].ratios)
     abbreviated = [
         "".join(word[0] if i == 0 else f" {word}" for i, word in enumerate(n.split()))

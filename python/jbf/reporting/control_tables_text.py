@@ -1,4 +1,4 @@
-"""Fitted and predicted tables of the thesis as plain text."""
+"""Fitted and predicted tables of Cohn (1998) as plain text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _ratio(cell: Cell) -> str:
 
 
 def friction_lines(model: Model, volts_per_n: float, load_n: float) -> list[str]:
-    """Format the four fitted friction parameters."""
+    """Format the four friction parameters that were fitted to the tables."""
     values = {n: p.value for n, p in model.parameters.items()}
     return columns(
         [
@@ -37,7 +37,7 @@ def friction_lines(model: Model, volts_per_n: float, load_n: float) -> list[str]
 
 
 def tables_text(tables: Tables) -> str:
-    """Format the errors of bench and thesis and their RMS ratio for each row and column."""
+    """Tabulate the RMS errors of simulated bench and thesis, and their ratio, for each cell."""
     extra = [c for c in {key[1]: None for key in tables.cells} if c not in COLUMNS]
     rows: list[tuple[str, ...]] = []
     head = ("", *(f"{_TITLES[c]}" for c in COLUMNS), *extra)
@@ -63,9 +63,9 @@ def tables_text(tables: Tables) -> str:
 
 
 def score_text(tables: Tables) -> str:
-    """Report how many predicted cells agree within a factor of 2 and 1.5, and list the others.
+    """Report how many predicted cells agree with the thesis within factors of 2 and 1.5.
 
-    The worst deviation of the fitted cells comes first.
+    The worst deviation of the fitted cells comes first, and the other cells are listed.
     """
     worst = max(abs(c.ratio - 1.0) for c in tables.column("none") if c.ratio is not None)
     outlying = [
@@ -84,7 +84,7 @@ def score_text(tables: Tables) -> str:
 
 
 def assumptions_text(alternatives: Sequence[tuple[str, Tables]]) -> str:
-    """Format the ratios to the thesis under alternative assumptions, one line each."""
+    """Tabulate the ratios to the thesis under alternative assumptions, one line each."""
     rows: list[tuple[str, ...]] = [("", "dynamic model, learned", "Coulomb", "in 2", "in 1.5")]
     for name, tables in alternatives:
         learning = " ".join(_ratio(c) for c in tables.column("learning"))
@@ -120,7 +120,7 @@ def better_text(tables: Tables) -> str:
 
 
 def tables_report(tables: Tables, alternatives: Sequence[tuple[str, Tables]]) -> str:
-    """Return the complete output of `jbf control tables`."""
+    """Complete output of `jbf control tables`."""
     load = tables.model.rig.load
     load_n = 0.0 if load is None else load.normal_n
     return "\n".join(

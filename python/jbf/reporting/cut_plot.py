@@ -17,7 +17,7 @@ _MOST_NAMED = 40
 
 
 def plot_cut(campaign: Import, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
-    """Plot each channel of each recording in time.
+    """Plot each channel of each imported recording in time, with the pieces.
 
     Runs are shaded in alternating colours. Excluded pieces are hatched.
     """
@@ -56,7 +56,7 @@ def _shade(ax: Axes, campaign: Import, view: Overview) -> None:
 
 
 def save_cut(campaign: Import, path: str | os.PathLike[str]) -> None:
-    """Save the figure of recordings and pieces.
+    """Save the figure of imported recordings and their pieces.
 
     Raises
     ------
@@ -67,6 +67,6 @@ def save_cut(campaign: Import, path: str | os.PathLike[str]) -> None:
 
 
 def import_page(campaign: Import) -> str:
-    """Return the HTML text of an import's page."""
+    """HTML page of an import."""
     picture = svg(plot_cut(campaign), "Each recording in time, and how it was cut")
     return page("text.html.j2", "Import", words=campaign.summary(), picture=picture)

@@ -55,7 +55,7 @@ WIDTH = 10.0
 
 
 def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
-    """Return the HTML text of a diagnosis's report.
+    """HTML report of a diagnosis.
 
     Parameters
     ----------
@@ -120,14 +120,14 @@ def diagnosis_page(diagnosis: Diagnosis, command: str = "") -> str:
 
 
 def _effect(diagnosis: Diagnosis, name: str) -> Effect:
-    """Return the catalogue entry of an effect, worded for the kind of rig."""
+    """Catalogue entry of an effect, worded for the kind of rig."""
     page, quantities = find_effect(name), diagnosis.model.rig.quantities
     summary = summary_of(page, quantities) + known_mass(diagnosis.model, name)
     return replace(page, summary=summary, limits=limits_of(page, quantities))
 
 
 def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[str, ...]]]:
-    """Return header and rows of the errors per run, before and after effects were added."""
+    """Header and rows of a table of errors per run, before and after effects were added."""
     before, after = diagnosis.before, diagnosis.after
     unit = diagnosis.model.rig.quantities.force
     if not diagnosis.effects:
@@ -147,7 +147,7 @@ def _run_table(diagnosis: Diagnosis) -> tuple[tuple[str, ...], Sequence[tuple[st
 
 @dataclass(frozen=True)
 class Round:
-    """Candidates tested in one step of the selection.
+    """Candidates tested in one step of the selection, for a section of the page.
 
     Attributes
     ----------
@@ -187,7 +187,7 @@ def _rounds(diagnosis: Diagnosis) -> list[Round]:
 
 
 def _full_width_axes(height: float) -> Axes:
-    """Create axes of a full-width figure."""
+    """Create axes of a figure with the width of the page."""
     return one_axes(None, (WIDTH, height))
 
 
@@ -197,10 +197,10 @@ def _ledger(diagnosis: Diagnosis) -> Markup:
 
 
 def _plot_before_and_after(diagnosis: Diagnosis) -> Markup | str:
-    """Plot the base law and the final model.
+    """Plot the friction and the residual of base law and final model; empty if they are equal.
 
-    Left: the run in which they differ most. Right: the residual along the axis of the worst
-    failure. Without added effects the result is an empty string.
+    The left axes shows the run in which both differ most, the right one the residual along the axis
+    of the worst failure.
     """
     before, after = diagnosis.before, diagnosis.after
     if not diagnosis.model.effects:
@@ -233,7 +233,7 @@ def _plot_final_residual(diagnosis: Diagnosis) -> Markup:
 def _friction(diagnosis: Diagnosis) -> Markup:
     """Plot the friction loops of one run, and the mean friction of all runs.
 
-    The run is the one in which the base law and the final model differ most.
+    The selected run is that in which the base law and the final model differ most.
     """
     left, right = axes_or_new(None, 1, 2, (WIDTH, 4.0))
     index = largest_error_run(diagnosis.before, diagnosis.after)

@@ -23,7 +23,7 @@ MOST_FINDINGS = 3
 
 
 def verdict_line(diagnosis: Diagnosis) -> str:
-    """Return the verdict with the effects on which it is based."""
+    """Verdict of a diagnosis with the effects on which it is based, in one line."""
     names = []
     for effect in diagnosis.effects:
         alternatives = diagnosis.alternatives.get(effect, ())
@@ -32,7 +32,7 @@ def verdict_line(diagnosis: Diagnosis) -> str:
 
 
 def diagnosis_summary(diagnosis: Diagnosis, most_lines: int = MOST_LINES) -> str:
-    """Format verdict, error by step, parameters, data quality and the recommended next action.
+    """Summarize verdict, error by step, parameters, data quality and recommended next action.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def _steps(diagnosis: Diagnosis) -> list[str]:
 
 
 def _parameters(diagnosis: Diagnosis, room: int) -> list[str]:
-    """Tabulate the best determined parameters, and name those that are not determined."""
+    """Tabulate the best determined parameters in `room` lines, and name undetermined ones."""
     fit, model = diagnosis.fit, diagnosis.model
     free = {name: p for name, p in fit.parameters.items() if not p.held}
     precise = sorted(free, key=lambda name: -_precision(free[name]))[:room]
@@ -89,7 +89,7 @@ def _parameters(diagnosis: Diagnosis, room: int) -> list[str]:
 
 
 def _precision(value: ParameterValue) -> float:
-    """Return the ratio of the value to its standard error; 0 if the error is unknown."""
+    """Ratio of a parameter's value to its standard error; 0 if the error is unknown."""
     return abs(value.value / value.stderr) if value.stderr else 0.0
 
 

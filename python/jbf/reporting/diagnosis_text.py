@@ -70,14 +70,14 @@ def _power_lines(diagnosis: Diagnosis) -> list[str]:
 
 
 def diagnosis_text(diagnosis: Diagnosis, full: bool = False) -> str:
-    """Return the summary or the complete report of a diagnosis."""
+    """Summary of a diagnosis as plain text, or its complete report (`full`)."""
     return diagnosis_report(diagnosis) if full else diagnosis_summary(diagnosis)
 
 
 def diagnosis_report(diagnosis: Diagnosis) -> str:
-    """Format the complete report of a diagnosis.
+    """Complete report of a diagnosis as plain text.
 
-    The order is verdict, measurement, misfit of the base law, candidates, error per step, and
+    The sections are verdict, measurement, misfit of the base law, candidates, error per step, and
     parameters.
     """
     campaign, base_step = diagnosis.before.campaign, diagnosis.steps[0]

@@ -66,9 +66,9 @@ def effect_lines(model: Model) -> list[str]:
 
 
 def known_mass(model: Model, effect: str) -> str:
-    """Compare the estimated mass or inertia with the value in the rig file.
+    """Compare the estimated mass or inertia with the value in the rig file, in one clause.
 
-    Empty if the effect is not `inertia`, or the rig file contains no such value.
+    The text is empty if the effect is not `inertia`, or the rig file contains no such value.
     """
     drive = model.rig.drive
     if effect != "inertia" or drive is None or drive.friction == "voltage":

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def plot_fit(fit: Fit, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Plot the parameters with their intervals, and the residuals.
+    """Plot the fitted parameters with their confidence intervals, and the residuals.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def plot_fit(fit: Fit, axes: Sequence[Axes] | None = None) -> list[Axes]:
 
 
 def plot_bootstrap(bootstrap: Bootstrap, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Plot the parameters with their intervals and the bootstrap estimates, on one axes."""
+    """Plot the parameters with bootstrap intervals and all bootstrap estimates, on one axes."""
     (ax,) = axes_or_new(axes, 1, 1, (7.0, height(bootstrap.values)))
     parameters(bootstrap.fit, answers=bootstrap.values, ax=ax)
     ax.set_title("Parameters with estimates from repeated fits", loc="left", fontsize="medium")
@@ -42,7 +42,7 @@ def plot_bootstrap(bootstrap: Bootstrap, axes: Sequence[Axes] | None = None) -> 
 
 
 def plot_trajectory_fit(fit: TrajectoryFit, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Plot the parameters with their intervals, on one axes."""
+    """Plot the parameters of a trajectory fit with their intervals, on one axes."""
     (ax,) = axes_or_new(axes, 1, 1, (7.0, height(fit.parameters)))
     intervals(fit.parameters, ax=ax)
     return [ax]

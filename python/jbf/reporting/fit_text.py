@@ -14,26 +14,26 @@ from jbf.reporting.words import law_words, number
 
 MOST_CORRELATIONS = 10
 NOTE_ABOVE = 1.25
-"""Ratio of residual to noise of the records above which the report adds a note."""
+"""Ratio of residual RMS to noise floor above which the report adds a note."""
 NOTE_BELOW = 0.95
-"""Ratio below which the report adds a note."""
+"""Ratio of residual RMS to noise floor below which the report adds a note."""
 
 
 def noise_words(noise: Noise) -> str:
-    """Return `white`, or the share and the correlation time of the coloured noise."""
+    """Describe a noise model: `white`, or the share and correlation time of its coloured part."""
     if noise.colour <= 0.0:
         return "white"
     return f"coloured, share {number(noise.colour, 2)}, memory {number(noise.memory_s, 2)} s"
 
 
 def lines_of_parameters(fit: Fit) -> list[str]:
-    """Format one line per parameter, in the quantities of the rig."""
+    """Format one line per parameter of a fit, in the units of the rig."""
     model = fit.model
     return parameter_lines(model.law, model.effects, fit.parameters, model.rig.quantities)
 
 
 def noise_floor_words(fit: Fit) -> str:
-    """Format the noise of the records, and the ratio of the residual to it."""
+    """Describe the noise floor of the records, and the ratio of the residual RMS to it."""
     if fit.noise_floor is None:
         return "unknown"
     ratio = fit.rms / fit.noise_floor
@@ -44,7 +44,7 @@ def noise_floor_words(fit: Fit) -> str:
 
 
 def fit_report(fit: Fit) -> str:
-    """Format statistics, parameters with standard errors, and the strongest correlations."""
+    """Report a fit: statistics, parameters with standard errors, and strongest correlations."""
     model = fit.model
     facts = [
         ("law", law_words(model)),
@@ -92,7 +92,7 @@ def fit_report(fit: Fit) -> str:
 
 
 def bootstrap_report(bootstrap: Bootstrap) -> str:
-    """Format the fit with bootstrap standard errors."""
+    """Report a fit with bootstrap standard errors."""
     repeats = len(next(iter(bootstrap.values.values())))
     return (
         f"Standard errors from {repeats} fits to simulated records of the same runs\n"
@@ -101,7 +101,7 @@ def bootstrap_report(bootstrap: Bootstrap) -> str:
 
 
 def trajectory_report(fit: TrajectoryFit) -> str:
-    """Format the statistics and the parameters with standard errors."""
+    """Report a trajectory fit: statistics, and parameters with standard errors."""
     facts = [
         ("samples", str(fit.nobs)),
         ("sum of squares", f"{number(fit.sum_of_squares)} (of friction coefficients)"),

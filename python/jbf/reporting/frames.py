@@ -29,7 +29,7 @@ def parameter_columns(
     parameters: Mapping[str, ParameterValue],
     quantities: Quantities = BEARING,
 ) -> Columns:
-    """Return one row per parameter: name, value, stderr, unit, held flag, note."""
+    """Table of parameters with one row each: name, value, stderr, unit, held flag, note."""
     pages = parameters_of(law, effects)
     return {
         "parameter": list(parameters),
@@ -45,20 +45,20 @@ def parameter_columns(
 
 
 def fit_columns(fit: Fit) -> Columns:
-    """Return one row per parameter of a fit."""
+    """Table of the parameters of a fit, one row per parameter."""
     model = fit.model
     return parameter_columns(model.law, model.effects, fit.parameters, model.rig.quantities)
 
 
 def trajectory_columns(fit: TrajectoryFit) -> Columns:
-    """Return one row per parameter of a trajectory fit."""
+    """Table of the parameters of a trajectory fit, one row per parameter."""
     return parameter_columns("journal", (), fit.parameters)
 
 
 def comparison_columns(comparison: Comparison) -> Columns:
-    """Return one row per sample of all concatenated runs.
+    """Table of all samples of a comparison, one row per sample.
 
-    The columns are the record, the motion, the model, and a flag for samples that count.
+    The columns are the record, the motion, the model, and a flag for included samples.
     """
     prepared = comparison.campaign.prepared
     joined: dict[str, Sequence[Any]] = {
@@ -74,17 +74,17 @@ def comparison_columns(comparison: Comparison) -> Columns:
 
 
 def model_comparison_columns(compared: ModelComparison) -> Columns:
-    """Return one row per model, the best first."""
+    """Table of compared models, one row per model, the best first."""
     return rows_as_columns(vars(m) for m in compared.models)
 
 
 def power_columns(planned: PlannedPower) -> Columns:
-    """Return one row per effect."""
+    """Table of detection limits, one row per effect."""
     return rows_as_columns({**vars(p), "like": ", ".join(p.confounded_with)} for p in planned.power)
 
 
 def plan_columns(plan: Plan) -> Columns:
-    """Return one row per run to record."""
+    """Table of a plan, one row per run to record."""
     return {
         "run": [run.name for run in plan.runs],
         "motion": list(plan.words),
@@ -93,18 +93,18 @@ def plan_columns(plan: Plan) -> Columns:
 
 
 def check_columns(check: Check) -> Columns:
-    """Return one row per rate, with its confidence interval."""
+    """Table of simulated success rates, one row per rate with its confidence interval."""
     return rows_as_columns(vars(rate) for rate in check.rates)
 
 
 def rows_as_columns(rows: Iterable[Mapping[str, Any]]) -> Columns:
-    """Transpose rows with equal keys."""
+    """Convert rows with equal keys to columns by key."""
     several = list(rows)
     return {name: [row[name] for row in several] for name in (several[0] if several else ())}
 
 
 def diagnosis_columns(diagnosis: Diagnosis) -> Columns:
-    """Return one row per step of the ledger."""
+    """Table of the ledger of a diagnosis, one row per step."""
     steps = diagnosis.steps
     return {
         "effects": [" + ".join(s.effects) for s in steps],

@@ -1,4 +1,4 @@
-"""Cards of individual failures: figure, description, cause, and recommended action."""
+"""Cards of residual patterns in a report: figure, description, cause and advice."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ TITLES = {
 
 @dataclass(frozen=True)
 class Card:
-    """Card of one failure in a report."""
+    """Card of one residual pattern in a report; its fields are text, except the figure."""
 
     title: str
     share: str
@@ -67,7 +67,7 @@ class Card:
 
 
 def failure_cards(diagnosis: Diagnosis) -> list[Card]:
-    """Return one card per failure of the base law, with the residual before and after."""
+    """Cards of the residual patterns of the base law, with the residual before and after."""
     if not diagnosis.failures:
         return []
     try:
@@ -78,7 +78,7 @@ def failure_cards(diagnosis: Diagnosis) -> list[Card]:
 
 
 def remainder_cards(diagnosis: Diagnosis) -> list[Card]:
-    """Return one card per item of unexplained residual structure."""
+    """Cards of the unexplained residual structure of the final model."""
     return [_remaining(diagnosis.after, remainder) for remainder in diagnosis.residual_structure]
 
 
@@ -146,7 +146,7 @@ def _remaining(after: Comparison, remainder: Remainder) -> Card:
 
 
 def _size(failure: Failure) -> float:
-    """Return the root mean square of the bin means, weighted by the number of samples, in N."""
+    """Root mean square of a pattern's bin means, weighted by the number of samples, N."""
     weight = failure.counts / max(int(failure.counts.sum()), 1)
     return float(np.sqrt(np.sum(weight * failure.means_n**2)))
 
@@ -154,7 +154,7 @@ def _size(failure: Failure) -> float:
 def _shares(
     before: Comparison, failure: Failure, contributions: Mapping[str, Sequence[Array]]
 ) -> dict[str, float]:
-    """Estimate the share of a pattern that each effect explains, in descending order.
+    """Share of a residual pattern that each effect explains, in descending order.
 
     Shares below `LEAST_SHARE` are omitted.
     """

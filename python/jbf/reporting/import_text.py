@@ -101,7 +101,7 @@ def import_report(campaign: Import) -> str:
 
 
 def channel_rows(files: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str, str, str]]:
-    """Return one row per channel: name, expression, unit conversion, rate, clock."""
+    """Name, expression, unit conversion, rate and clock of each imported channel, as text."""
     channels: dict[tuple[str, str, str, str, str], None] = {}
     for page in files:
         for channel in page["channels"]:
@@ -123,7 +123,7 @@ def _file_count(files: Sequence[Mapping[str, Any]]) -> str:
 
 
 def clock_lines(ledger: Mapping[str, Any]) -> list[str]:
-    """Describe how the clock of each additional file was aligned."""
+    """Describe how the clock of each further file was aligned, one line per file."""
     lines = []
     for page in ledger["files"]:
         for further in page.get("beside", ()):
@@ -156,13 +156,13 @@ def short_import(campaign: Import) -> str:
 
 
 def import_columns(campaign: Import) -> dict[str, list[Any]]:
-    """Return one row per piece."""
+    """Table of the pieces of an import, one row per piece."""
     names = ("name", "file", "from_s", "to_s", "keep", "why")
     return {name: [getattr(piece, name) for piece in campaign.pieces] for name in names}
 
 
 def provenance_rows(ledgers: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, str]]:
-    """Return file, hash prefix, and a description of how the channels were read, for a page."""
+    """File, hash prefix and description of the reading of each recording, for a page."""
     rows = []
     for ledger in ledgers:
         for page in ledger["files"]:

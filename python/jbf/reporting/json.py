@@ -9,7 +9,7 @@ from typing import Any
 
 
 def json_text(value: Any) -> str:
-    """Serialize to strict JSON.
+    """Serialize a value to strict JSON.
 
     NaN becomes `null`; infinities become the strings `"inf"` and `"-inf"`.
     """

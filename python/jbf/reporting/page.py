@@ -38,7 +38,10 @@ def _environment() -> jinja2.Environment:
 
 
 def page(template: str, title: str, *, command: str = "", **content: Any) -> str:
-    """Render a template, including a footer with the versions, the date and the command."""
+    """Render a template as a self-contained page with a footer.
+
+    The footer contains the versions, the date and the command.
+    """
     return (
         _environment()
         .get_template(template)
@@ -55,12 +58,12 @@ def page(template: str, title: str, *, command: str = "", **content: Any) -> str
 
 
 def pattern_rows(patterns: Iterable[Failure | Remainder]) -> list[tuple[str, str, str]]:
-    """Return axis, share and description of each pattern."""
+    """Axis, share and description of each residual pattern, as text."""
     return [(p.axis, f"{100 * p.share:.0f} %", p.where) for p in patterns]
 
 
 def import_rows(comparison: Comparison) -> list[tuple[str, str, str]]:
-    """Return the provenance of the runs that were imported."""
+    """Provenance of the runs of a comparison that were imported: file, hash, reading."""
     return provenance_rows(ledgers_of_runs(p.run.path for p in comparison.campaign.prepared))
 
 

@@ -1,4 +1,4 @@
-"""Power as plain text: the smallest size at which each effect is detected."""
+"""Detection limits as plain text: the smallest strength at which each effect is detected."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ WIDEST = 100
 
 
 def power_lines(power: Iterable[Power], model: Model) -> list[str]:
-    """Format one line per effect, under a header."""
+    """Tabulate the detection limits, one line per effect below a header."""
     head = ("effect", "detectable from", "of friction", "distinct from", "confounded with")
     rows = power_rows(power, model.law, model.rig.quantities)
     lines = columns([head, *rows], "<<>><", 4)
@@ -36,7 +36,7 @@ def power_lines(power: Iterable[Power], model: Model) -> list[str]:
 
 
 def level_words(level: Level) -> str:
-    """Describe the false-alarm rate and the log-likelihood gain that a detection requires."""
+    """Describe the false-alarm rate, and the log-likelihood gain that a detection requires."""
     text = (
         f"false-alarm rate at most {100.0 * level.false_alarm_rate:.3g} %: each of "
         f"{count_of(level.candidates, 'candidate')} must gain {number(level.critical)} in twice "
@@ -60,7 +60,7 @@ def level_words(level: Level) -> str:
 
 
 def planned_report(planned: PlannedPower) -> str:
-    """Report the power of planned runs."""
+    """Report the detection limits of planned runs."""
     model = planned.model
     unit = model.rig.quantities.force
     law = " + ".join([law_words(model), *model.effects])
@@ -84,7 +84,7 @@ def planned_report(planned: PlannedPower) -> str:
 
 
 def plan_report(plan: Plan) -> str:
-    """List the runs to record, followed by their power."""
+    """List the runs of a plan, followed by their detection limits."""
     lines = ["Recommended runs, the most informative first", ""]
     widest = max(len(run.name) for run in plan.runs)
     for run, words in zip(plan.runs, plan.words, strict=True):
@@ -93,7 +93,7 @@ def plan_report(plan: Plan) -> str:
 
 
 def travel_lines(plan: Plan) -> list[str]:
-    """State the travel of the motions, and the limit with its source."""
+    """State the travel of the planned motions, and its limit with the source."""
     unit = plan.planned.model.rig.quantities.length
     text = f"the motions cover at most {number(plan.travel)} {unit} from their start"
     if plan.travel_limit is None:
@@ -113,7 +113,7 @@ def short_plan(plan: Plan) -> str:
 
 
 def short_power(planned: PlannedPower) -> str:
-    """Summarize the power of planned runs in one line."""
+    """Summarize the detection limits of planned runs in one line."""
     detectable = sum(p.detectable_80 is not None for p in planned.power)
     return (
         f"PlannedPower: {count_of(len(planned.runs), 'run')}, {detectable} of "

@@ -21,7 +21,7 @@ The hash over all samples is shown in full.
 
 
 def fingerprint(runs: Sequence[Run]) -> str:
-    """Compute the SHA-256 hash over names and samples of the runs, as used in the fit."""
+    """SHA-256 hash over names and samples of the runs, as used in the fit."""
     digest = hashlib.sha256()
     for run in runs:
         digest.update(run.name.encode("utf-8", errors="replace"))
@@ -32,7 +32,7 @@ def fingerprint(runs: Sequence[Run]) -> str:
 
 
 def file_rows(runs: Iterable[Run]) -> list[tuple[str, str, str]]:
-    """Return run, file and SHA-256 prefix of each run read from a file.
+    """Run, file and SHA-256 prefix of each run that was read from a file.
 
     A file that no longer exists is marked as such.
     """

@@ -1,4 +1,4 @@
-"""Short text of results, for `repr` in a prompt, a debugger or a log."""
+"""Short texts of results for `repr`."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _law(model: Model) -> str:
 
 
 def short_fit(fit: Fit) -> str:
-    """Summarize model, runs and RMS, with the parameters on a second line."""
+    """Summarize a fit: model, runs and RMS, with the parameters on a second line."""
     search = "" if fit.converged else ", not converged"
     unit = fit.model.rig.quantities.force
     return (
@@ -60,19 +60,19 @@ def short_fit(fit: Fit) -> str:
 
 
 def short_bootstrap(bootstrap: Bootstrap) -> str:
-    """Summarize the number of repeated fits, and the parameters with bootstrap standard errors."""
+    """Summarize a bootstrap: number of repeats, and parameters with bootstrap standard errors."""
     repeats = len(next(iter(bootstrap.values.values())))
     return f"Bootstrap({count_of(repeats, 'fit')};\n    {_fitted(bootstrap.fit)})"
 
 
 def short_trajectory_fit(fit: TrajectoryFit) -> str:
-    """Summarize the number of samples and the parameters."""
+    """Summarize a trajectory fit: number of samples, and parameters."""
     search = "" if fit.converged else ", not converged"
     return f"TrajectoryFit({count_of(fit.nobs, 'sample')}{search};\n    {_values(fit.parameters)})"
 
 
 def short_comparison(comparison: Comparison) -> str:
-    """Summarize the error and the axes along which the model fails."""
+    """Summarize a comparison: error, and axes along which the model fails."""
     where = first_of(f.axis for f in comparison.failures)
     rms, noise = comparison.rms, comparison.noise_rms
     unit = comparison.model.rig.quantities.force
@@ -84,7 +84,7 @@ def short_comparison(comparison: Comparison) -> str:
 
 
 def short_model_comparison(compared: ModelComparison) -> str:
-    """Summarize the RMS of each model, the smallest first."""
+    """Summarize a comparison of models: RMS of each model, the smallest first."""
     errors = first_of(f"{m.name} {number(m.rms)}" for m in compared.models)
     return (
         f"ModelComparison({count_of(compared.nobs, 'sample')};\n"
@@ -93,7 +93,7 @@ def short_model_comparison(compared: ModelComparison) -> str:
 
 
 def short_diagnosis(diagnosis: Diagnosis) -> str:
-    """Summarize the verdict, the effects, and the held-out RMS of the final model."""
+    """Summarize a diagnosis: verdict, effects, and held-out RMS of the final model."""
     last = diagnosis.steps[-1]
     unit = diagnosis.model.rig.quantities.force
     effects = first_of(diagnosis.effects)

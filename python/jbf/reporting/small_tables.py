@@ -39,7 +39,7 @@ PARAMETER_HEAD = ("parameter", "value", "standard error", "", "unit", "note")
 
 
 def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Build a titled table; every cell is escaped because names come from users."""
+    """HTML table with a title; every cell is escaped because names come from users."""
 
     def line(cells: Iterable[str], tag: str) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
@@ -49,7 +49,7 @@ def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> str
 
 
 def fit_table(fit: Fit) -> str:
-    """Tabulate the parameters with standard errors."""
+    """HTML table of the parameters of a fit with standard errors."""
     quantities = fit.model.rig.quantities
     search = "" if fit.converged else ", not converged"
     title = f"Fit: {law_and_effects(fit.model)}; RMS {number(fit.rms)} {quantities.force}{search}"
@@ -58,20 +58,20 @@ def fit_table(fit: Fit) -> str:
 
 
 def bootstrap_table(bootstrap: Bootstrap) -> str:
-    """Tabulate the parameters with bootstrap standard errors."""
+    """HTML table of parameters with bootstrap standard errors."""
     model = bootstrap.fit.model
     rows = parameter_rows(model.law, model.effects, bootstrap.fit.parameters, model.rig.quantities)
     return table("Errors from fits of simulated records", PARAMETER_HEAD, rows)
 
 
 def trajectory_table(fit: TrajectoryFit) -> str:
-    """Tabulate the parameters with standard errors."""
+    """HTML table of the parameters of a trajectory fit with standard errors."""
     rows = parameter_rows("journal", (), fit.parameters)
     return table(f"Fit of trajectories: {fit.nobs} samples", PARAMETER_HEAD, rows)
 
 
 def loop_table(run: LoopRun) -> str:
-    """Tabulate the errors of a control-loop run."""
+    """HTML table of the errors of a control-loop run."""
     unit = run.task.unit
     head = ("scheme", f"RMS ({unit})", f"peak ({unit})", f"true RMS ({unit})", "status")
     row = (run.scheme, number(run.rms), number(run.peak), number(run.true_rms), status_words(run))
@@ -79,7 +79,7 @@ def loop_table(run: LoopRun) -> str:
 
 
 def comparison_table(comparison: Comparison) -> str:
-    """Tabulate the error of each run."""
+    """HTML table of the error of a model in each run."""
     where = listed(f.axis for f in comparison.failures)
     title = comparison_sentence(comparison) + (f"; fails along {where}" if where else "")
     unit = comparison.model.rig.quantities.force
@@ -87,13 +87,13 @@ def comparison_table(comparison: Comparison) -> str:
 
 
 def model_comparison_table(compared: ModelComparison) -> str:
-    """Tabulate the error of each model and its difference to the best."""
+    """HTML table of the error of each model and its difference to the best."""
     sentence = model_comparison_sentence(compared)
     return table(sentence, model_head(compared), model_rows(compared))
 
 
 def diagnosis_table(diagnosis: Diagnosis) -> str:
-    """Tabulate the ledger, titled with the verdict."""
+    """HTML table of the ledger of a diagnosis, titled with the verdict."""
     title = f"Verdict: {diagnosis.verdict}. {verdict_sentence(diagnosis, place='')}"
     unit = diagnosis.model.rig.quantities.force
     head = ("step", f"fit ({unit})", f"held out ({unit})", f"noise ({unit})", "held out / noise")
@@ -101,14 +101,14 @@ def diagnosis_table(diagnosis: Diagnosis) -> str:
 
 
 def model_table(model: Model) -> str:
-    """Tabulate the parameters, titled with the law and the effects."""
+    """HTML table of the parameters of a model, titled with the law and the effects."""
     quantities = model.rig.quantities
     rows = parameter_rows(model.law, model.effects, model.parameters, quantities)
     return table(f"Model: {law_and_effects(model)}", PARAMETER_HEAD, rows)
 
 
 def run_table(run: Run) -> str:
-    """Tabulate the columns, each with its smallest and largest value."""
+    """HTML table of the columns of a run with their smallest and largest values."""
     rows = [
         (name, number(float(np.min(values))), number(float(np.max(values))))
         for name, values in run.columns().items()
@@ -119,25 +119,25 @@ def run_table(run: Run) -> str:
 
 
 def planned_table(planned: PlannedPower) -> str:
-    """Tabulate the power of planned runs."""
+    """HTML table of the detection limits of planned runs."""
     rows = power_rows(planned.power, planned.model.law, planned.model.rig.quantities)
     return table(short_power(planned), POWER_HEAD, rows)
 
 
 def plan_table(plan: Plan) -> str:
-    """Tabulate the runs to record."""
+    """HTML table of the runs of a plan."""
     rows = [(run.name, words) for run, words in zip(plan.runs, plan.words, strict=True)]
     return table(short_plan(plan), ("run", "motion"), rows)
 
 
 def check_table(result: Check) -> str:
-    """Tabulate the simulated success rates of the diagnosis."""
+    """HTML table of the simulated success rates of a diagnosis."""
     lines = [(line.strip(),) for line in check_report(result).splitlines() if line.strip()]
     return table(lines[0][0] if lines else "Check", ("",), lines[1:])
 
 
 def import_table(campaign: Import) -> str:
-    """Tabulate the runs and the excluded pieces."""
+    """HTML table of the runs of an import and the excluded pieces."""
     rows = [
         (p.name or f"left out: {p.why}", p.file, f"{p.from_s:.3f}", f"{p.to_s:.3f}")
         for p in campaign.pieces

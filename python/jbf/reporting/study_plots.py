@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 
 
 def plot_planned_power(planned: PlannedPower, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Plot the power curves of planned runs, on one axes."""
+    """Plot the power curves of effects in planned runs, on one axes."""
     (ax,) = axes_or_new(axes, 1, 1, (7.0, 4.4))
     return [power(planned, ax=ax)]
 
 
 def plot_plan(plan: Plan, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Plot the power curves of the runs of a plan, on one axes."""
+    """Plot the power curves of effects in the runs of a plan, on one axes."""
     return plot_planned_power(plan.planned, axes)
 
 
 def plot_check(check: Check, axes: Sequence[Axes] | None = None) -> list[Axes]:
-    """Plot each rate with its confidence interval, on one axes."""
+    """Plot the simulated success rates with their confidence intervals, on one axes."""
     rates = check.rates
     (ax,) = axes_or_new(axes, 1, 1, (7.0, 1.2 + 0.4 * len(rates)))
     for row, rate in enumerate(rates):

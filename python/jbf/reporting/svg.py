@@ -26,7 +26,7 @@ _HEAD = re.compile(r"<svg\b[^>]*?viewBox=\"([^\"]*)\"[^>]*>", re.DOTALL)
 
 
 def svg(axes: Sequence[Axes], alt: str) -> Markup:
-    """Return the figure of the axes as SVG that scales to the width of its container."""
+    """Convert the figure of the axes to SVG that scales to the width of its container."""
     from matplotlib import rc_context
 
     buffer = io.StringIO()

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from jbf.records.findings.finding import Finding
 
 LEDGER_HEAD = ("step", "fit RMS", "held-out RMS", "noise", "held-out / noise")
-"""Header of the errors by step."""
+"""Header of the table of errors by step of a ledger."""
 MOST_RUNS_NAMED = 3
 """Maximum number of runs named per kind of finding."""
 LEAST_CORRELATION = 0.3
@@ -37,7 +37,7 @@ def parameter_rows(
     parameters: Mapping[str, ParameterValue],
     quantities: Quantities = BEARING,
 ) -> list[tuple[str, str, str, str, str, str]]:
-    """Return name, value, standard error, percentage, unit and note of each parameter, as text."""
+    """Name, value, standard error, percentage, unit and note of each parameter, as text."""
     units = units_of(law, effects, quantities)
     rows = []
     for name, p in parameters.items():
@@ -50,7 +50,7 @@ def parameter_rows(
 
 
 def correlation_pairs(fit: Fit) -> list[tuple[str, str, float]]:
-    """Return pairs of parameters correlated above 0.3 in absolute value, strongest first."""
+    """Pairs of parameters with a correlation above 0.3 in magnitude, strongest first."""
     names = [name for name, p in fit.parameters.items() if not p.held]
     pairs = [
         (names[i], names[j], float(fit.correlations[i, j]))
@@ -67,7 +67,7 @@ def ratio(error_n: float, noise_rms: float) -> str:
 
 
 def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
-    """Return step name, fit RMS, held-out RMS, noise (N), and the ratio of the last two."""
+    """Step name, fit RMS, held-out RMS, noise (N), and ratio of the last two, for each step."""
     return [
         (
             step_name(diagnosis, i),
@@ -81,14 +81,14 @@ def ledger_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str, str]]:
 
 
 def trial_rows(step: Step) -> list[tuple[str, str, str, str, str]]:
-    """Return effect, RMS (N), evidence, outcome and reason of each candidate."""
+    """Effect, RMS (N), evidence, outcome and reason of each candidate of a step."""
     return [
         (t.effect, number(t.rms), f"{t.evidence:+.0f}", t.outcome, t.reason) for t in step.trials
     ]
 
 
 def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
-    """Return name, number of counted samples, RMS (N), and RMS over noise of each run."""
+    """Name, number of included samples, RMS (N), and RMS over noise of each run."""
     return [
         (r.name, str(r.samples), number(r.rms), ratio(r.rms, comparison.noise_rms))
         for r in comparison.runs
@@ -96,7 +96,7 @@ def run_rows(comparison: Comparison) -> list[tuple[str, str, str, str]]:
 
 
 def model_rows(compared: ModelComparison) -> list[tuple[str, str, str, str]]:
-    """Return name, RMS, difference to the best, and its standard error of each model."""
+    """Name, RMS, difference to the best, and its standard error of each model."""
     return [
         (
             m.name,
@@ -109,7 +109,7 @@ def model_rows(compared: ModelComparison) -> list[tuple[str, str, str, str]]:
 
 
 def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
-    """Return each kind of finding with its description and runs; a long list is truncated."""
+    """Kind of each finding, with its description and runs; a long list of runs is truncated."""
     kinds: dict[str, list[Finding]] = {}
     for finding in findings:
         kinds.setdefault(finding.kind, []).append(finding)
@@ -132,7 +132,7 @@ def finding_rows(findings: Iterable[Finding]) -> list[tuple[str, str]]:
 def power_rows(
     power: Iterable[Power], law: str, quantities: Quantities
 ) -> list[tuple[str, str, str, str, str]]:
-    """Return the detection limits of each effect.
+    """Detection limits of each effect, as rows of text.
 
     The columns are the effect, the smallest strength at which it is detected, and this strength as
     a share of the friction. Further columns are the smallest strength at which the effect is
@@ -170,7 +170,7 @@ def power_rows(
 
 
 def law_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str, str]]:
-    """Return law, number of parameters, held-out RMS (N), and outcome of the comparison of laws."""
+    """Law, number of parameters, held-out RMS (N), and outcome of the comparison, for each law."""
     return [
         (
             comparison.law,

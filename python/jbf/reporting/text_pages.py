@@ -34,51 +34,51 @@ def _page(title: str, words: str, axes: Sequence[Axes], alt: str) -> str:
 
 
 def fit_page(fit: Fit) -> str:
-    """Return the HTML text of a fit's page."""
+    """HTML page of a fit."""
     alt = "Parameters with standard errors; residuals of all runs in sequence"
     return _page("Fit", fit_report(fit), plot_fit(fit), alt)
 
 
 def bootstrap_page(bootstrap: Bootstrap) -> str:
-    """Return the HTML text of a bootstrap's page."""
+    """HTML page of a bootstrap."""
     alt = "Parameters with estimates from repeated fits"
     words = bootstrap_report(bootstrap)
     return _page("Fit with bootstrap standard errors", words, plot_bootstrap(bootstrap), alt)
 
 
 def trajectory_page(fit: TrajectoryFit) -> str:
-    """Return the HTML text of the page of a trajectory fit."""
+    """HTML page of a trajectory fit."""
     alt = "Parameters with standard errors"
     return _page("Fit of trajectories", trajectory_report(fit), plot_trajectory_fit(fit), alt)
 
 
 def loop_page(run: LoopRun) -> str:
-    """Return the HTML text of the page of one control-loop run."""
+    """HTML page of one control-loop run."""
     alt = "Response, error, friction and learned parameters"
     return _page(f"Loop: {run.scheme}", runs_text([run]), plot_run_of_loop(run), alt)
 
 
 def model_comparison_page(compared: ModelComparison) -> str:
-    """Return the HTML text of the page of a comparison of models."""
+    """HTML page of a comparison of models."""
     alt = "Difference of each model to the best, with its standard error"
     words = model_comparison_report(compared)
     return _page("Comparison of models", words, plot_model_comparison(compared), alt)
 
 
 def planned_power_page(planned: PlannedPower) -> str:
-    """Return the HTML text of the page of planned runs."""
+    """HTML page of the detection limits of planned runs."""
     words = planned_report(planned)
     return _page("Power of planned runs", words, _power_axes(planned), "Probability of detection")
 
 
 def plan_page(plan: Plan) -> str:
-    """Return the HTML text of a plan's page."""
+    """HTML page of a plan."""
     axes = _power_axes(plan.planned)
     return _page("Plan", plan_report(plan), axes, "Probability of detection")
 
 
 def _power_axes(planned: PlannedPower) -> list[Axes]:
-    """Return the axes of the power curves; an empty list if no effect has a curve."""
+    """Axes with the power curves of planned runs; empty if no effect has a curve."""
     try:
         return plot_planned_power(planned)
     except InputError:
@@ -86,5 +86,5 @@ def _power_axes(planned: PlannedPower) -> list[Axes]:
 
 
 def check_page(check: Check) -> str:
-    """Return the HTML text of the page of a simulation study."""
+    """HTML page of the simulated success rates of a diagnosis."""
     return _page("Check", check_report(check), plot_check(check), "Rates with their intervals")

@@ -29,7 +29,7 @@ def listed(words: Iterable[str], last: str = "and") -> str:
 
 
 def law_words(model: Model, join: str = " (") -> str:
-    """Name a model's law, with its clock if the law has a lubricant film."""
+    """Name the law of a model, with the film's time scale (`clock`) if the law has a film."""
     if not find_law(model.law).has_film:
         return model.law
     return f"{model.law}{join}clock {model.clock}" + (")" if "(" in join else "")
@@ -49,12 +49,12 @@ def noise_words(noise_rms: float, unit: str) -> str:
 
 
 def times(error_n: float, noise_rms: float) -> str:
-    """Format an error as a multiple of the noise: `1.29 times`."""
+    """Format an error as a multiple of the noise floor: `1.29 times`."""
     return f"{error_n / noise_rms:.2f} times" if noise_rms > 0.0 else "above"
 
 
 def against_noise(error_n: float, noise_rms: float, unit: str = "") -> str:
-    """Format an error as a multiple of the noise: `1.29 times the noise of 0.5 N`.
+    """Format an error as a multiple of the noise floor: `1.29 times the noise of 0.5 N`.
 
     Without a unit, the size of the noise is omitted.
     """
@@ -65,7 +65,7 @@ def against_noise(error_n: float, noise_rms: float, unit: str = "") -> str:
 
 
 def comparison_sentence(comparison: Comparison) -> str:
-    """State the RMS error of a model, and its ratio to the noise."""
+    """State the RMS error of a model, and its ratio to the noise floor."""
     rms, noise = comparison.rms, comparison.noise_rms
     unit = comparison.model.rig.quantities.force
     if not noise > 0.0:
@@ -170,7 +170,7 @@ _STRUCTURE = "The residual has structure that no effect in the catalogue explain
 
 
 def conclusion(diagnosis: Diagnosis, place: str = " below") -> str:
-    """State the verdict, the held-out error and its ratio to the noise.
+    """State the verdict of a diagnosis, the held-out error and its ratio to the noise.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def _worst(remains: Sequence[Remainder], place: str) -> str:
 
 
 def _confounders_sentence(names: tuple[str, ...]) -> str:
-    """Name effects in the model that the verdict omits, and the reason; empty for an empty list."""
+    """Name effects in the model that the verdict omits, with the reason; empty without any."""
     if not names:
         return ""
     lone = len(names) == 1

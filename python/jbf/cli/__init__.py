@@ -1,4 +1,4 @@
-"""Command line; one module per command, each with `add(commands)` and `run(arguments) -> int`.
+"""Command line: one module per command, with `add(commands)` and `run(options) -> int`.
 
 Input: arguments and files. Output: text, files, an exit code. The package contains no physics and
 no statistics.
@@ -36,7 +36,7 @@ FIRST_COMMANDS = (
     ("jbf import log.csv", "read a recording of your own"),
     ("jbf diagnose rig.toml runs/ --report report.html", "find the missing effects"),
 )
-"""Commands to begin with, for the help of `jbf`, and what each does."""
+"""Commands to begin with, and a description of each, for the help of `jbf`."""
 TOP_EXAMPLES = (*(line for line, _ in FIRST_COMMANDS), 'eval "$(jbf --completion bash)"')
 """Examples in the help of `jbf --help`."""
 
@@ -61,7 +61,7 @@ class Parser(argparse.ArgumentParser):
         return parsed, rest
 
     def _words_before_subcommand(self, words: Sequence[str]) -> Iterator[str]:
-        """Yield the words before a subcommand and before `--`."""
+        """Yield the words of the command line before a subcommand and before `--`."""
         below = [a.choices for a in self._actions if isinstance(a, argparse._SubParsersAction)]
         for word in words:
             if word == "--" or any(word in names for names in below):
@@ -69,6 +69,7 @@ class Parser(argparse.ArgumentParser):
             yield word
 
     def _find_slips(self, rest: Sequence[str]) -> None:
+        """Raise an error for the first unknown option, with a suggestion."""
         options = list(self._option_string_actions)
         for word in rest:
             option = word.partition("=")[0]
@@ -80,12 +81,12 @@ class Parser(argparse.ArgumentParser):
                 self.error(f"unrecognized arguments: {word}; did you mean {guess}?")
 
     def error(self, message: str) -> NoReturn:
-        """Print a message in one line and exit with code 2."""
+        """Print an error message in one line and exit with code 2."""
         self.exit(2, f"jbf: {' '.join(message.split())} (see {self.prog} --help)\n")
 
 
 def parser(words: Sequence[str] | None = None) -> Parser:
-    """Build the parser, completely or only with the commands that these words need."""
+    """Build the argument parser, complete or only with the commands that these words need."""
     from jbf._core import __version__
 
     top = Parser(
@@ -117,14 +118,14 @@ def parser(words: Sequence[str] | None = None) -> Parser:
 
 
 def _needed(words: Sequence[str]) -> Collection[str]:
-    """Return the commands whose arguments these words may require."""
+    """Names of the commands whose arguments these words may require."""
     if words and words[0] in COMMANDS:
         return words[:1]
     return () if words and words[0] in ("-h", "--help", "--version") else COMMANDS
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command and return the exit code.
+    """Run one command of jbf and return its exit code.
 
     Parameters
     ----------
@@ -152,9 +153,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _configure_process() -> None:
-    """Make the process robust against its environment.
+    """Configure signals, streams and threads of a process that belongs to `jbf`.
 
-    Only called if the process belongs to `jbf`.
+    This is not done if jbf is used as a library.
     """
     # Figures are written to files: use no window, whatever backend the environment requests.
     os.environ["MPLBACKEND"] = "agg"
@@ -165,6 +166,7 @@ def _configure_process() -> None:
 
 
 def _dispatch(arguments: list[str]) -> int:
+    """Run the command of the arguments and return its exit code."""
     if not arguments:
         return _without_command()
     try:
@@ -191,7 +193,7 @@ def _dispatch(arguments: list[str]) -> int:
 
 
 def _show(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
-    """Print a warning as one line, like an error.
+    """Print a warning as one line on stderr.
 
     Deprecation warnings of libraries are suppressed because they concern developers, not users.
     """
@@ -200,12 +202,13 @@ def _show(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -
 
 
 def _refuse(error: InputError) -> int:
+    """Print an InputError in one line and return exit code 2."""
     outputs.complain(error)
     return 2
 
 
 def _without_command() -> int:
-    """Print the commands to begin with, and an error in one line."""
+    """Print the commands to begin with, and an error that no command was given."""
     width = max(len(line) for line, _ in FIRST_COMMANDS)
     lines = [f"  {line:<{width}}  {does}" for line, does in FIRST_COMMANDS]
     outputs.say("\n".join(["Commands to begin with:", *lines]), {})
@@ -213,7 +216,7 @@ def _without_command() -> int:
 
 
 def _check_command(arguments: list[str]) -> None:
-    """Raise an error for a misspelt command, with the closest command as suggestion."""
+    """Raise an InputError for an unknown command, with the most similar one as suggestion."""
     first = arguments[0]
     if not first.startswith("-") and first not in COMMANDS:
         raise InputError(

@@ -27,10 +27,14 @@ def command(
     options: type[Options],
     run: Callable[[Options], int],
 ) -> Parser:
-    """Add a subcommand.
+    """Add a subcommand of jbf to the parser.
 
     Parameters
     ----------
+    commands
+        Subcommands to which it is added.
+    name
+        Name of the subcommand.
     description
         Help text in one line.
     options
@@ -51,7 +55,7 @@ def command(
 
 
 def typed(options: type[Options], arguments: argparse.Namespace) -> Options:
-    """Convert parsed arguments to a dataclass whose fields have the names of the arguments.
+    """Convert parsed arguments to a dataclass with one field per argument.
 
     A field that is itself a dataclass takes its fields from the same arguments. Lists become
     tuples.
@@ -67,7 +71,7 @@ def typed(options: type[Options], arguments: argparse.Namespace) -> Options:
 
 
 class _Renamed(argparse.Action):
-    """Earlier spelling of an option, which is accepted with a note on stderr."""
+    """Action for an earlier spelling of an option: accepted with a note on stderr."""
 
     def __init__(self, *args: Any, new: str, **named: Any) -> None:
         super().__init__(*args, **named)
@@ -85,7 +89,7 @@ class _Renamed(argparse.Action):
 
 
 def add_earlier_name(parser: Parser, earlier: str, new: str) -> None:
-    """Accept the earlier spelling of an option with one value."""
+    """Accept the earlier spelling of an option that takes one value."""
     parser.add_argument(
         earlier,
         dest=new.removeprefix("--").replace("-", "_"),
@@ -97,7 +101,7 @@ def add_earlier_name(parser: Parser, earlier: str, new: str) -> None:
 
 
 def add_runs(parser: Parser, *, needed: bool = True) -> None:
-    """Add the positional argument `RUN...`."""
+    """Add the positional argument `RUN...`, the recorded runs."""
     parser.add_argument(
         "runs",
         metavar="RUN",
@@ -107,7 +111,7 @@ def add_runs(parser: Parser, *, needed: bool = True) -> None:
 
 
 def add_rig(parser: Parser, nargs: str | None = None) -> None:
-    """Add the positional argument `RIG` of a recorded campaign."""
+    """Add the positional argument `RIG`, the rig file or folder of a recorded campaign."""
     parser.add_argument(
         "rig",
         metavar="RIG",
@@ -118,12 +122,15 @@ def add_rig(parser: Parser, nargs: str | None = None) -> None:
 
 @dataclass(frozen=True)
 class LawOptions:
-    """Base law of a model, and the clock of its lubricant film.
+    """Base law of a model, and the definition of its film's time constant.
 
     Attributes
     ----------
     law
         Name of the law; None for the default of the command.
+
+    clock
+        Definition of the time constant of the film.
     """
 
     law: str | None
@@ -131,7 +138,7 @@ class LawOptions:
 
 
 def add_law(parser: Parser, also: str = "") -> None:
-    """Add `--law` and `--clock`.
+    """Add the options `--law` and `--clock`.
 
     `also` is appended to the help and describes the default or further values of `--law`.
     """
@@ -147,12 +154,12 @@ def add_law(parser: Parser, also: str = "") -> None:
 
 
 def add_law_name(parser: Parser, description: str) -> None:
-    """Add `--law` without `--clock`."""
+    """Add the option `--law` without `--clock`."""
     parser.add_argument("--law", metavar="NAME", help=description)
 
 
 def add_effects_from(parser: Parser) -> None:
-    """Add `--effects-from`."""
+    """Add the option `--effects-from`, a Python file with user-defined effects."""
     parser.add_argument(
         "--effects-from",
         metavar="FILE.py",
@@ -163,27 +170,35 @@ def add_effects_from(parser: Parser) -> None:
 
 
 def add_json(parser: Parser) -> None:
-    """Add `--json`."""
+    """Add the option `--json`, a file for the result."""
     parser.add_argument(
         "--json", metavar="FILE", help="write the result as JSON (- for standard output)"
     )
 
 
 def add_report(parser: Parser) -> None:
-    """Add `--report`."""
+    """Add the option `--report`, a file for the HTML report."""
     parser.add_argument("--report", metavar="FILE.html", help="write a report with figures")
 
 
 @dataclass(frozen=True)
 class Verbosity:
-    """Length of the printed text: complete report, verdict only, or in between."""
+    """Length of the printed text.
+
+    Attributes
+    ----------
+    full
+        Print the complete report.
+    quiet
+        Print the verdict only.
+    """
 
     full: bool
     quiet: bool
 
 
 def add_verbosity(parser: Parser) -> None:
-    """Add `--full` and `--quiet`."""
+    """Add the options `--full` and `--quiet`."""
     group = parser.add_mutually_exclusive_group()
     group.add_argument(
         "--full", action="store_true", help="print the complete report, not the summary"

@@ -1,4 +1,4 @@
-"""`jbf check MODEL RUN...`: estimate how often the diagnosis of such campaigns is right."""
+"""`jbf check MODEL RUN...`: simulated success rates of the diagnosis of such campaigns."""
 
 from __future__ import annotations
 
@@ -81,6 +81,7 @@ def run(options: CheckOptions) -> int:
     done = [] if options.resume is None else _stored_answers(Path(options.resume), name)
 
     def keep(answer: Answer) -> None:
+        """Append a result to the file of `--resume`."""
         if options.resume is not None:
             with Path(options.resume).open("a", encoding="utf-8") as file:
                 file.write(json.dumps({"of": name, **answer.to_dict()}) + "\n")
@@ -103,7 +104,7 @@ def run(options: CheckOptions) -> int:
 
 
 def _stored_answers(file: Path, name: str) -> Sequence[Answer]:
-    """Read the results that a file already contains.
+    """Read the simulation results that the file of `--resume` already contains.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Commands with their one-line descriptions, in the order of the help.
 
-They are defined here and not in the modules of the commands, so that the help of `jbf` imports
-none of them.
+The commands are listed here and not in the modules of the commands, so that the help of `jbf`
+imports none of them.
 """
 
 from __future__ import annotations

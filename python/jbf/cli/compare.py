@@ -1,4 +1,4 @@
-"""`jbf compare MODEL RUN...`: error of a model against measurement, and where it fails."""
+"""`jbf compare MODEL RUN...`: size and location of the errors of a model."""
 
 from __future__ import annotations
 

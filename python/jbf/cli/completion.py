@@ -11,7 +11,7 @@ SHELLS = ("bash", "zsh", "fish")
 
 
 class Completion(argparse.Action):
-    """Action that prints the script for a shell and exits."""
+    """Action of `--completion`: prints the completion script of a shell and exits."""
 
     def __call__(
         self, parser: argparse.ArgumentParser, namespace: Any, values: Any, option: Any = None
@@ -22,7 +22,7 @@ class Completion(argparse.Action):
 
 
 def script(parser: argparse.ArgumentParser, shell: str) -> str:
-    """Return the completion script, generated from the parser."""
+    """Completion script of a shell for all commands of a parser."""
     words_of_command = dict(_commands(parser))
     if shell == "fish":
         return _fish(words_of_command)
@@ -53,6 +53,7 @@ class _Words:
 
 
 def _subcommands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
+    """Parsers of the subcommands, by name."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             return cast("dict[str, argparse.ArgumentParser]", dict(action.choices))
@@ -60,12 +61,14 @@ def _subcommands(parser: argparse.ArgumentParser) -> dict[str, argparse.Argument
 
 
 def _commands(parser: argparse.ArgumentParser, name: str = "") -> Iterator[tuple[str, _Words]]:
+    """Yield the words of each command with its completions."""
     yield name, _Words(parser)
     for word, below in _subcommands(parser).items():
         yield from _commands(below, f"{name} {word}".strip())
 
 
 def _bash(words_of_command: dict[str, _Words]) -> str:
+    """Completion script for bash."""
     lines = [
         "_jbf() {",
         '  local word="${COMP_WORDS[COMP_CWORD]}" before="${COMP_WORDS[COMP_CWORD-1]}"',
@@ -98,6 +101,7 @@ def _bash(words_of_command: dict[str, _Words]) -> str:
 
 
 def _fish(words_of_command: dict[str, _Words]) -> str:
+    """Completion script for fish."""
     lines = []
     for name, words in words_of_command.items():
         conditions = [f"__fish_seen_subcommand_from {word}" for word in name.split()]

@@ -54,9 +54,9 @@ def run(options: DemoOptions) -> int:
 
 
 def called(started: str) -> str:
-    """Return the shell command that starts this program.
+    """Shell command that starts this program: its name if the shell finds it, else its path.
 
-    It is the name if the shell finds it, otherwise the path.
+    The command is used in suggestions to the user.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def called(started: str) -> str:
 
 
 def _shortest_path(path: Path) -> str:
-    """Return the shortest form of a path, relative to the working directory where possible."""
+    """Shortest form of a path, relative to the working directory where possible."""
     working_folder = Path.cwd()
     absolute = Path(os.path.abspath(path))
     return shlex.quote(

@@ -1,4 +1,4 @@
-"""`jbf diagnose RIG RUN...`: find the missing effect, and report the error as effects are added."""
+"""`jbf diagnose RIG RUN...`: find the effects that a friction law lacks."""
 
 from __future__ import annotations
 
@@ -75,6 +75,7 @@ def add(commands: Commands) -> None:
 
 
 def _add_next_run(parser: Parser) -> None:
+    """Add the options for the proposed next run."""
     group = parser.add_argument_group(
         "next experiment", "a run that distinguishes the effects of an ambiguous verdict"
     )
@@ -170,7 +171,7 @@ def run(options: DiagnoseOptions) -> int:
 
 
 def _text(diagnosis: Diagnosis, options: DiagnoseOptions, held_out: list[str]) -> str:
-    """Return the printed text."""
+    """Text that `jbf diagnose` prints."""
     from jbf.reporting.diagnosis_summary import MOST_LINES, diagnosis_summary, verdict_line
 
     if options.verbosity.quiet:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def add(parser: Parser) -> None:
-    """Add `--many` and `--jobs`."""
+    """Add the options `--many` and `--jobs`."""
     group = parser.add_argument_group("many rigs")
     group.add_argument(
         "--many",
@@ -79,7 +79,7 @@ def run(options: DiagnoseOptions, folder: str) -> int:
 
 
 def _paths(options: DiagnoseOptions, name: str) -> dict[str, str]:
-    """Return the output files of one campaign, by option."""
+    """Output files of one campaign, by option."""
     paths = {}
     if options.out:
         paths["--out"] = str(Path(options.out) / f"{name}.toml")
@@ -89,6 +89,7 @@ def _paths(options: DiagnoseOptions, name: str) -> dict[str, str]:
 
 
 def _files(options: DiagnoseOptions, name: str, result: Diagnosis | JbfError) -> dict[str, str]:
+    """Texts of the output files of one campaign, by path."""
     if isinstance(result, Exception):
         return {}
     paths, texts = _paths(options, name), {}
@@ -102,10 +103,12 @@ def _files(options: DiagnoseOptions, name: str, result: Diagnosis | JbfError) ->
 
 
 def _page(result: Diagnosis | JbfError) -> dict[str, Any]:
+    """JSON data of one campaign: its diagnosis or its error."""
     return {"error": str(result)} if isinstance(result, Exception) else result.to_dict()
 
 
 def _table(results: dict[str, Diagnosis | JbfError]) -> list[str]:
+    """Lines of the table of all campaigns with their verdicts."""
     done = [r for r in results.values() if not isinstance(r, Exception)]
     units = {r.model.rig.quantities.force for r in done} or {"N"}
     # If the units of the rigs differ, each number carries its own unit.

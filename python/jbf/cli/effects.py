@@ -1,4 +1,4 @@
-"""`jbf effects [NAME] [--law NAME]`: catalogue of effects, and those applicable to a law."""
+"""`jbf effects [NAME] [--law NAME]`: catalogue of effects, or one entry of it."""
 
 from __future__ import annotations
 
@@ -55,6 +55,6 @@ def run(options: EffectsOptions) -> int:
 
 
 def _plain(page: Effect) -> dict[str, Any]:
-    """Convert a catalogue entry to plain data; the function of a user-defined effect is omitted."""
+    """Convert a catalogue entry to JSON data, without the function of a user-defined effect."""
     content = {f.name: getattr(page, f.name) for f in fields(Effect)}
     return content | {"parameters": [asdict(p) for p in page.parameters]}

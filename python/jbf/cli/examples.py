@@ -44,7 +44,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "control tune": ("jbf control tune model.toml --toml settings.toml",),
     "control robustness": ("jbf control robustness model.toml --json robustness.json",),
 }
-"""Examples, keyed by the words of the command."""
+"""Example command lines by command, for the end of its help."""
 HEAD = "examples:"
 
 
@@ -58,6 +58,6 @@ class Help(argparse.HelpFormatter):
 
 
 def examples(prog: str) -> str | None:
-    """Return the examples for the end of a command's help."""
+    """Text of the examples for the end of a command's help; None without examples."""
     lines = EXAMPLES.get(prog.removeprefix("jbf "))
     return None if lines is None else "\n".join([HEAD, *(f"  {line}" for line in lines)])

@@ -1,4 +1,4 @@
-"""`jbf export MODEL --rust F / --c F`: the model as source code for firmware."""
+"""`jbf export MODEL --rust F / --c F`: source code of a model for firmware."""
 
 from __future__ import annotations
 

@@ -131,9 +131,9 @@ def run(options: FitOptions) -> int:
 
 
 def _bootstrapped(fitted: Fit, runs: list[Run], repeats: int, report: Report) -> Fit:
-    """Return the fit with bootstrap standard errors.
+    """Replace the standard errors of a fit by bootstrap standard errors.
 
-    Raise `Stopped` with the fit if interrupted.
+    An interrupt raises `Stopped` with the fit.
     """
     from jbf.estimation.bootstrap import bootstrap
 
@@ -146,7 +146,7 @@ def _bootstrapped(fitted: Fit, runs: list[Run], repeats: int, report: Report) ->
 def _values(
     option: str, items: tuple[str, ...], law: str, effects: tuple[str, ...]
 ) -> dict[str, float]:
-    """Parse the `NAME=VALUE` items of an option into full names and values."""
+    """Parse the items `NAME=VALUE` of an option into values by full parameter name."""
     parameters = parameters_of(law, effects)
     values: dict[str, float] = {}
     for item in items:

@@ -1,4 +1,4 @@
-"""`--hold-out PATTERN`: runs excluded from every fit, and the error of the model on them."""
+"""`--hold-out PATTERN`: runs that no fit uses, and the error of the model on these runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ WIDEST = 98
 
 
 def add(parser: Parser) -> None:
-    """Add `--hold-out`."""
+    """Add the option `--hold-out`."""
     parser.add_argument(
         OPTION,
         metavar="PATTERN",
@@ -34,7 +34,7 @@ def add(parser: Parser) -> None:
 
 
 def split(runs: Sequence[Run], patterns: Sequence[str]) -> tuple[list[Run], list[Run]]:
-    """Split the runs into those used and those held out.
+    """Split runs into those used for the fit and those held out, by the patterns of their names.
 
     Raises
     ------
@@ -60,14 +60,15 @@ def split(runs: Sequence[Run], patterns: Sequence[str]) -> tuple[list[Run], list
 
 
 def _fits(run: Run, pattern: str) -> bool:
+    """Whether the name or the file of a run matches a pattern."""
     names = [run.name] if run.path is None else [run.name, run.path.name, str(run.path)]
     return any(fnmatchcase(name, pattern) for name in names)
 
 
 def error_for_json(model: Model, held_out: Sequence[Run]) -> dict[str, Any]:
-    """Return the error of a model on the held-out runs as data for JSON.
+    """Error of a model on the held-out runs, JSON-serialisable; empty without such runs.
 
-    Empty without such runs.
+    The data contain the total error and the error of each run.
     """
     if not held_out:
         return {}
@@ -78,7 +79,7 @@ def error_for_json(model: Model, held_out: Sequence[Run]) -> dict[str, Any]:
 
 
 def words(model: Model, error: dict[str, Any]) -> list[str]:
-    """Format the error on the held-out runs as lines."""
+    """Lines that report the error of a model on the held-out runs."""
     if not error:
         return []
     from jbf.reporting.words import against_noise

@@ -1,4 +1,4 @@
-"""`jbf import FILE... [--map MAP] [--folder FOLDER]`: convert recordings to a campaign."""
+"""`jbf import FILE... [--map MAP] [--folder FOLDER]`: import recordings as a campaign."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ImportOptions:
     force: bool
 
     def inputs(self) -> list[Path]:
-        """Return every file that the command may read."""
+        """Paths of all files that the command may read."""
         return list(outputs.inputs_in(self.files, self.map, self.beside, self.cut))
 
 
@@ -101,7 +101,7 @@ def run(options: ImportOptions) -> int:
 
 
 def _each_joint(options: ImportOptions) -> int:
-    """Import each joint as a campaign into a folder with the joint's name."""
+    """Import each joint of a robot log as a campaign, into a folder with the joint's name."""
     from jbf.importing.campaign_folder import check_folder
     from jbf.importing.import_files import look
     from jbf.importing.joints import JointNotChosen
@@ -127,7 +127,7 @@ def _each_joint(options: ImportOptions) -> int:
 
 
 def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
-    """Import one campaign."""
+    """Import one campaign and return the exit code."""
     from jbf.importing.import_files import import_files
     from jbf.importing.mapping import OpenQuestions
 
@@ -157,7 +157,7 @@ def _import(options: ImportOptions, joint: str | None, out: str | None) -> int:
 
 
 def _inspect(options: ImportOptions) -> int:
-    """Inspect a file, print the guess, and write a map to edit."""
+    """Inspect a file, print its proposed map, and write it as a map to edit."""
     from jbf.importing.import_files import look
     from jbf.importing.map_text import map_text
     from jbf.reporting.import_text import guess_report
@@ -189,7 +189,7 @@ def _inspect(options: ImportOptions) -> int:
 
 
 def _map_path(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bool]:
-    """Return the path of a file's map, and whether an existing map there is kept.
+    """Path for the proposed map of a file, and whether an existing map there is kept.
 
     The name is `map.toml`, or `STEM.map.toml` if `map.toml` is the map of another file. The map of
     a joint is `STEM.JOINT.map.toml`. A number is appended if this name is in use as well.
@@ -212,6 +212,7 @@ def _map_path(file: Path, joint: str | None, *, replace: bool) -> tuple[Path, bo
 
 
 def _draw(campaign: Import, path: str) -> None:
+    """Save the figure of an import."""
     from jbf.reporting.cut_plot import save_cut
 
     save_cut(campaign, path)

@@ -1,4 +1,4 @@
-"""Readers of the files named on the command line, with hints for files of the wrong kind."""
+"""Reading of the files named on the command line, with hints for files of a wrong kind."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _imports: list[Import] = []
 
 
 def law_for(on: Rig, requested: str | None) -> str:
-    """Return the requested law, or the default.
+    """Law to use: the requested one, otherwise the default for the rig.
 
     The default is `journal` for a bearing; for a drive the law is selected from the data.
     """
@@ -35,12 +35,12 @@ def law_for(on: Rig, requested: str | None) -> str:
 
 
 def law_of_fit(on: Rig, requested: str | None) -> str:
-    """Return the requested law, or the default of a fit: `journal`; for a drive `coulomb`."""
+    """Law to fit: the requested one, otherwise `journal` for a bearing, `coulomb` for a drive."""
     return requested or ("journal" if on.drive is None else "coulomb")
 
 
 def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Rig, list[Run]]:
-    """Read rig and runs.
+    """Read the rig and the runs that the arguments of a command name.
 
     The source is `rig.toml` with CSV files, a folder written by an import, or a map with
     recordings.
@@ -57,17 +57,17 @@ def campaign(rig_or_map: str, items: Sequence[str], law: str | None) -> tuple[Ri
 
 
 def is_map(path: str) -> bool:
-    """Return whether a file is a map of `jbf import`."""
+    """Whether a file is a map of `jbf import`, by its top-level TOML keys."""
     return Path(path).suffix.lower() != ".csv" and "columns" in _keys(path)
 
 
 def is_model(path: str) -> bool:
-    """Return whether a file is a model file."""
+    """Whether a file is a model file, by its top-level TOML keys."""
     return Path(path).suffix.lower() != ".csv" and "law" in _keys(path)
 
 
 def recordings(map_path: str, items: Sequence[str]) -> tuple[Rig, list[Run]]:
-    """Import recordings through a map; returns rig and runs."""
+    """Import recordings through a map into a temporary campaign; return its rig and runs."""
     from jbf.importing.import_files import import_files
 
     with shown("importing") as report:
@@ -85,9 +85,9 @@ def _check(on: Rig, law: str | None) -> None:
 
 
 def rig(path: str, law: str | None) -> Rig:
-    """Read a rig file and check that it is complete for a law.
+    """Read a rig file and check that it has the data that a law needs.
 
-    No check if the data select the law.
+    The check is omitted if the law is selected from the runs.
     """
     _refuse_csv(path, "RIG")
     try:
@@ -123,9 +123,9 @@ def model(path: str) -> Model:
 
 
 def runs(items: Sequence[str], on: Rig, *, first: str) -> list[Run]:
-    """Read the runs on a rig from files, folders and patterns.
+    """Read the runs of a rig from files, folders and patterns.
 
-    `first` is the preceding argument.
+    `first` is the argument before the runs, for error messages.
     """
     for item in items:
         _refuse_toml(item, first)
@@ -133,12 +133,13 @@ def runs(items: Sequence[str], on: Rig, *, first: str) -> list[Run]:
 
 
 def motion(item: str, on: Rig) -> Run:
-    """Read one run on a rig; it need not contain friction."""
+    """Read one run of a rig, which need not contain friction."""
     _refuse_toml(item, "MODEL")
     return read_run(item, on, need_friction=False)
 
 
 def _keys(path: str) -> set[str]:
+    """Top-level keys of a TOML file; empty for any other file."""
     try:
         return set(read_toml(path))
     except InputError:

@@ -1,6 +1,6 @@
-"""`--false-alarm-rate P`, `--no-artefact-margin`, `--min-effect X`: thresholds of a detection.
+"""Options for the thresholds of a detection: `--false-alarm-rate`, `--min-effect` and so on.
 
-They set the false-alarm rate, the artefact margin and the minimum effect size.
+The options set the false-alarm rate, the artefact margin and the minimum effect size.
 """
 
 from __future__ import annotations
@@ -44,10 +44,14 @@ def add(parser: Parser) -> None:
 
 @dataclass(frozen=True)
 class LevelOptions:
-    """Thresholds of a detection; None for the default.
+    """Options for the thresholds of a detection; None for the default.
 
     Attributes
     ----------
+    false_alarm_rate
+        Fraction of campaigns without a missing effect in which one may be named.
+    no_artefact_margin
+        Whether the margin for recording artefacts is omitted.
     min_effect
         Smallest RMS change of the friction for which an effect is named, with or without a unit.
     """

@@ -1,4 +1,4 @@
-"""Operating limits of a rig, as options."""
+"""Options for the operating limits of a rig: speed, acceleration, travel, load, temperature."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ TRAVEL = "--travel"
 
 
 def add(group: Group, *, otherwise: str, sharpest: str, longest: str, needed: bool = False) -> None:
-    """Add the options that set the operating limits.
+    """Add the options for the operating limits of a rig to a group of arguments.
 
     Parameters
     ----------
     otherwise, sharpest, longest
-        Help text for the defaults: of loads and temperatures, of the acceleration, and of the
-        travel.
+        Help texts that state the default of loads and temperatures (`otherwise`), of the
+        acceleration (`sharpest`) and of the travel (`longest`).
     needed
-        Whether the maximum speed is required.
+        Whether the option for the maximum speed is required.
     """
     default = "" if needed else f" (default: {otherwise})"
     group.add_argument(
@@ -62,7 +62,10 @@ def add(group: Group, *, otherwise: str, sharpest: str, longest: str, needed: bo
 
 @dataclass(frozen=True)
 class LimitOptions:
-    """Operating limits of a rig, with or without units; None for the default."""
+    """Options for the operating limits of a rig, as text with or without units.
+
+    None stands for the default.
+    """
 
     max_velocity: str | None
     max_acceleration: str | None
@@ -71,7 +74,7 @@ class LimitOptions:
     temperatures_c: tuple[float, float] | None
 
     def limits(self, duration_s: float, quantities: Quantities = BEARING) -> Limits:
-        """Return the limits in the units of a rig, for runs of the given duration in seconds.
+        """Convert the options to limits in the units of a rig, for runs of a duration in s.
 
         Raises
         ------
@@ -81,6 +84,7 @@ class LimitOptions:
         from jbf.diagnosis import Limits
 
         def given(option: str, text: str | None, unit: str) -> float | None:
+            """Number of an option in a unit; None if the option was not given."""
             return None if text is None else number_in(unit, text, option)
 
         low, high = (number_in("N", load, LOADS) for load in self.loads or ("0", "0"))

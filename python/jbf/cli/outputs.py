@@ -1,4 +1,4 @@
-"""Output files, checked before a long computation and written together after it."""
+"""Output files of a command: checked before the computation, written together after it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STDOUT = "-"
 
 
 def inputs_in(*named: str | Iterable[str] | None) -> Iterator[Path]:
-    """Yield every named file or folder, and the rigs and runs inside the folders."""
+    """Yield every named file or folder, and the rigs and runs inside the named folders."""
     for value in named:
         for item in [value] if value is None or isinstance(value, str) else value:
             if item is None:
@@ -34,7 +34,9 @@ def _campaign_files(folder: Path) -> Iterator[Path]:
 
 
 def check(outputs: Mapping[str, str | None], inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
-    """Reject outputs that cannot be written, or that would replace each other or an input.
+    """Raise an InputError for outputs that cannot be written or that would replace other files.
+
+    An output must not replace an input or another output.
 
     Parameters
     ----------
@@ -93,7 +95,7 @@ def _check_writable(option: str, path: str) -> None:
 
 
 def check_folder(argument: str, path: Path) -> None:
-    """Create an output folder if it does not exist.
+    """Create the output folder of a command if it does not exist.
 
     Raises
     ------
@@ -123,11 +125,11 @@ def check_folder(argument: str, path: Path) -> None:
 
 
 class PartialResultSaved(KeyboardInterrupt):
-    """Interrupt after which the best result so far was written; `str` describes it."""
+    """Interrupt of a command whose best result so far was written; `str` names the file."""
 
 
 def keep(stop: Stopped, out: str | None) -> PartialResultSaved:
-    """Write the best model so far to the path of the complete one, and describe it.
+    """Write the best model of an interrupted command to the path of the complete one.
 
     Parameters
     ----------
@@ -150,7 +152,7 @@ def keep(stop: Stopped, out: str | None) -> PartialResultSaved:
 def keep_unfinished(
     end: Unfinished, out: str | None, json: str | None = None, report: str | None = None
 ) -> Unfinished:
-    """Write the partial results to the paths of the complete ones, and add that to the error.
+    """Write the partial results of a computation beyond its budget, and report that in the error.
 
     Parameters
     ----------
@@ -189,19 +191,19 @@ def write(texts: Mapping[str, str]) -> None:
 
 
 def say(text: str, outputs: Mapping[str, str | None]) -> None:
-    """Print a message, unless an output uses standard output or standard output is closed."""
+    """Print a message on standard output, unless an output file uses it or it is closed."""
     if STDOUT not in outputs.values() and sys.stdout is not None:
         _print(printable(text) + "\n")
 
 
 def complain(text: object) -> None:
-    """Print one line to stderr if it is open."""
+    """Print one line on stderr, if it is open."""
     if sys.stderr is not None:
         print(f"jbf: {printable(str(text))}", file=sys.stderr)
 
 
 def flush() -> None:
-    """Flush standard output; raises an InputError if that fails, for example on a full disk."""
+    """Flush standard output; raise an InputError if that fails, for example on a full disk."""
     _print("")
 
 
@@ -214,6 +216,7 @@ def drop_stdout() -> None:
 
 
 def _print(text: str, *, data: bool = False) -> None:
+    """Print text on standard output, with a defined handling of a closed pipe."""
     if sys.stdout is None:
         return
     try:

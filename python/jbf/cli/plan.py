@@ -1,4 +1,4 @@
-"""`jbf plan RIG`: suggest the runs to record."""
+"""`jbf plan RIG`: design of the runs to record on a rig."""
 
 from __future__ import annotations
 

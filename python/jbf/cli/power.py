@@ -1,4 +1,4 @@
-"""`jbf power RIG RUN...`: power of planned runs, before anything is recorded."""
+"""`jbf power RIG RUN...`: detection limits of effects in planned runs."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ def add(commands: Commands) -> None:
 
 
 def add_rig_or_model(parser: Parser) -> None:
-    """Add the positional argument `RIG`, which may be a model."""
+    """Add the positional argument `RIG`, which may also be a model file."""
     parser.add_argument(
         "rig", metavar="RIG", help="rig file (TOML), or a model written by jbf fit or diagnose"
     )
 
 
 def add_noise(parser: Parser) -> None:
-    """Add `--noise`."""
+    """Add the option `--noise`."""
     parser.add_argument(
         "--noise",
         metavar="X",
@@ -71,7 +71,7 @@ def add_noise(parser: Parser) -> None:
 
 
 def noise_of(option: str | None, model: Model) -> float:
-    """Return the value of `--noise`, or the RMS residual of the fitted model.
+    """Noise on the force: the value of `--noise`, otherwise the RMS residual of a fitted model.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def run(options: PowerOptions) -> int:
 
 
 def model_of(path: str, law_options: LawOptions) -> Model:
-    """Load a model, or build one from a rig and a law with the catalogue's typical values."""
+    """Load a model, or build one from a rig and a law with the catalogue's starting values."""
     if inputs.is_model(path):
         if law_options.law is not None:
             raise InputError(

@@ -1,4 +1,4 @@
-"""`jbf predict MODEL RUN [--out CSV]`: friction predicted by the model for a run's motion."""
+"""`jbf predict MODEL RUN [--out CSV]`: friction predicted by a model for a run's motion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Progress on stderr: a bar on a terminal, otherwise a log with one line per minute."""
+"""Progress on stderr: a bar on a terminal, otherwise one line per minute."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ LOG_INTERVAL_S = 60.0
 
 @contextmanager
 def shown(message: str, log_interval_s: float = LOG_INTERVAL_S) -> Iterator[Report]:
-    """Show the progress of the work.
+    """Context in which the progress of a computation is shown on stderr.
 
-    Yields `report(message, done, total)`.
+    The context yields the function `report(message, done, total)`.
 
     Parameters
     ----------
@@ -40,6 +40,7 @@ def shown(message: str, log_interval_s: float = LOG_INTERVAL_S) -> Iterator[Repo
 
 @contextmanager
 def _bar(message: str) -> Iterator[Report]:
+    """Context with a progress bar."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -64,6 +65,7 @@ def _bar(message: str) -> Iterator[Report]:
 
 @contextmanager
 def _log(message: str, interval_s: float) -> Iterator[Report]:
+    """Context with a log of one line per interval."""
     start_s, finished, state = time.monotonic(), Event(), [message]
 
     def report(message: str, done: int, total: int) -> None:

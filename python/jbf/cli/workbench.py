@@ -1,4 +1,4 @@
-"""`jbf workbench [FOLDER]`: local web page that shows runs, models and errors."""
+"""`jbf workbench [FOLDER]`: local web page for runs, models and errors."""
 
 from __future__ import annotations
 
@@ -60,8 +60,9 @@ def run(options: WorkbenchOptions) -> int:
 
 
 def _has_a_screen() -> bool:
-    """Return whether a graphical browser can be opened.
+    """Whether a graphical browser can be opened.
 
-    False on Linux without a display, where a text browser would take over the terminal.
+    The result is False on Linux without a display, where a text browser would take over the
+    terminal.
     """
     return sys.platform != "linux" or any(os.environ.get(n) for n in ("DISPLAY", "WAYLAND_DISPLAY"))

@@ -1,4 +1,4 @@
-"""Tables of the thesis under alternative assumptions about details that it does not state.
+"""Tables of Cohn (1998) recomputed under other assumptions about unstated details.
 
 Each assumption changes one element of the tables; only the affected columns are recomputed.
 """
@@ -21,10 +21,11 @@ _COUNT = 9
 
 
 def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[str, Tables]]:
-    """Yield name and tables of each assumption, the base first."""
+    """Yield name and tables of each alternative assumption, the base case first."""
     done = 0
 
     def case(name: str, changed: Tables | None = None) -> tuple[str, Tables]:
+        """Report progress, and return the case with its tables."""
         nonlocal done
         done += 1
         if report is not None:
@@ -60,9 +61,9 @@ def assumptions(base: Tables, report: Report | None = None) -> Iterator[tuple[st
 
 
 def on_the_journal_clock(report: Report | None = None) -> float:
-    """Return the largest deviation of the ratios without compensation.
+    """Largest deviation of the ratios to the thesis for the film time constant `journal`.
 
-    The film of the simulated bench then has the journal clock.
+    Only the cells without compensation are evaluated. The time constant of Cohn (1998) is `thesis`.
     """
     model, bench = fit_friction(clock="journal", report=report)
     schemes = {"none": standard_schemes(model)["none"]}
@@ -71,6 +72,7 @@ def on_the_journal_clock(report: Report | None = None) -> float:
 
 
 def _with_elastic(model: Model, place: str) -> Model:
+    """Model with the compliance `place` of `ELASTIC` in place of its own."""
     values = {n: p.value for n, p in model.parameters.items()}
     u_tr, k0, gamma = (values[n] for n in ("U_tr_m_s", "K0", "gamma"))
     return thesis_model(elastic=place, U_tr_m_s=u_tr, K0=k0, gamma=gamma)

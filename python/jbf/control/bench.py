@@ -20,7 +20,7 @@ from jbf.records.rig import Rig
 
 @dataclass(frozen=True)
 class Bench:
-    """Plant `v' = -a v + b (u - F)` with an encoder, a counter that wraps around, and noise.
+    """Simulated bench: plant `v' = -a v + b (u - F)` with encoder, counter and noise.
 
     Attributes
     ----------
@@ -70,11 +70,11 @@ class Bench:
             raise _wrong("counter_bits", self.counter_bits, "between 8 and 32")
 
     def drive(self) -> dict[str, float]:
-        """Return motor and shaft parameters in the form required by the core."""
+        """Motor and shaft parameters in the form of the core."""
         return {name: getattr(self, name) for name in DRIVE}
 
     def core(self, model: Model) -> dict[str, Any]:
-        """Return the arguments from which the core builds its bench."""
+        """Arguments from which the core builds its bench with a friction model."""
         names = (
             "counts_per_rad",
             "counter_bits",
@@ -93,7 +93,7 @@ def _wrong(name: str, value: float, rule: str) -> InputError:
 
 
 def check_rotary(model: Model) -> None:
-    """Refuse the model of a linear drive: motor, encoder and tasks of the bench are rotary.
+    """Raise an InputError for the model of a linear drive, since the bench is rotary.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def check_rotary(model: Model) -> None:
 
 
 def core_model(model: Model) -> dict[str, Any]:
-    """Convert a model to the form required by the core's bench and compensators.
+    """Convert a model to the form of the core's bench and compensators.
 
     Raises
     ------
@@ -151,21 +151,22 @@ def core_model(model: Model) -> dict[str, Any]:
 
 
 THESIS_RIG = Rig.thesis()
-"""Rig of Cohn's thesis."""
+"""Test rig of Cohn (1998)."""
 
 THESIS_LOAD_N = core_load_n(THESIS_RIG) or 1.0
-"""Load on one bearing of the thesis's rig, N."""
+"""Load on one bearing of the test rig of Cohn (1998), N."""
 
 THESIS_BENCH = Bench()
-"""Bench whose friction fits the "none" columns of the thesis's Tables 6.1 and 6.2."""
+"""Bench whose friction fits the columns "none" of Tables 6.1 and 6.2 of Cohn (1998)."""
 
 FITTED = {"U_tr_m_s": 0.05936, "K0": 5.029e6, "gamma": 84.58}
-"""Parameters that `jbf control tables` fits to the seven "none" cells, with `Bench.volts_per_n`."""
+"""Parameters that `jbf control tables` fits to the seven cells without compensation."""
 
 VOLTS_PER_N_M = 0.547
-"""Voltage per newton metre on the shaft; a factor of the thesis's programs, which omit its unit.
+"""Voltage per newton metre on the shaft, from the program listings of Cohn (1998).
 
-Four bearings of 12.7 mm at 104 N yield 2.89 V for a friction coefficient of 1.
+The listings omit its unit. Four bearings of 12.7 mm at 104 N yield 2.89 V for a friction
+coefficient of 1.
 """
 
 ELASTIC: Mapping[str, Mapping[str, float]] = {
@@ -186,14 +187,14 @@ that the Coulomb column of Table 6.2 requires (docs/control.md).
 
 
 def thesis_model(*, elastic: str = "belt", clock: Clock = "thesis", **parameters: float) -> Model:
-    """Return the friction model of the thesis's bench.
+    """Friction model of the bench that represents the one of Cohn (1998).
 
     Parameters
     ----------
     elastic
         Key of `ELASTIC`.
     clock
-        Clock of the film.
+        Definition of the film's time constant.
     parameters
         Values that replace the fitted ones.
     """
@@ -207,7 +208,7 @@ def thesis_model(*, elastic: str = "belt", clock: Clock = "thesis", **parameters
 
 
 def with_noise(bench: Bench, times: float) -> Bench:
-    """Return the bench with all noise scaled by a factor, including the encoder's quantisation."""
+    """Return a bench with all noise scaled by a factor, including the encoder's quantisation."""
     counting = (1.0 / 12.0) ** 0.5
     total = times * (counting**2 + bench.encoder_noise_counts**2) ** 0.5
     return replace(

@@ -1,4 +1,4 @@
-"""Constants defined by the core: parameters of the thesis's bench, and status flags of a loop."""
+"""Constants defined by the core: parameters of Cohn's bench, and status flags of a loop."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from jbf import _core
 _CORE = _core.control_constants()
 
 DRIVE = _CORE["drive"]
-"""a, b, friction scale and largest input of the thesis's drive, with the names of `Bench`."""
+"""Drive of Cohn (1998): a, b, friction scale and largest input, with the names of `Bench`."""
 
 COUNTS_PER_RAD = _CORE["counts_per_rad"]
 COUNTER_BITS = _CORE["counter_bits"]
-"""Encoder of the thesis: counts per radian, and width of the counter."""
+"""Encoder of Cohn (1998): counts per radian, and width of the counter in bits."""
 
 OBSERVER_1_S = _CORE["observer_1_s"]
-"""Gain of the thesis's velocity observer."""
+"""Gain of the velocity observer of Cohn (1998), 1/s."""
 
 TABLE_ENTRIES = _CORE["table_entries"]
 """Number of levels in a look-up table."""

@@ -1,4 +1,4 @@
-"""Control loop around a compensator: control law and observer of the thesis, and loop guards."""
+"""Control loop around a compensator: control law and observer of Cohn (1998), loop guards."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from jbf.control.task import Task
 
 
 def gains(task: Task, bench: Bench) -> tuple[float, float]:
-    """Return the gains of the control law.
+    """Gains of the control law for a task, with the closed-loop poles of Cohn (1998).
 
-    The closed-loop poles are those of the thesis.
+    The gains follow from the damping and the input gain of the bench.
 
     Returns
     -------
@@ -24,7 +24,7 @@ def gains(task: Task, bench: Bench) -> tuple[float, float]:
 
 
 def core_loop(task: Task, bench: Bench, guard: Settings | None) -> dict[str, Any]:
-    """Return the core's arguments for encoder, velocity observer, control law and limits.
+    """Arguments of the core for encoder, velocity observer, control law and limits of a loop.
 
     Without a `guard`, a compensator is stopped only by a jump of the counter, as in the thesis.
     """

@@ -17,7 +17,17 @@ Array = npt.NDArray[np.float64]
 
 
 class Motion(NamedTuple):
-    """Arguments `task`, `reference` and `load_n` of `jbf.control.run`."""
+    """Recorded motion as arguments of `jbf.control.run`.
+
+    Attributes
+    ----------
+    task
+        Task with the duration of the recording.
+    reference
+        Reference and its rate of change, one value per step; None for a periodic task.
+    load_n
+        Load on one bearing, N, one value per step; None if it was not recorded.
+    """
 
     task: Task
     reference: tuple[Array, Array] | None
@@ -30,7 +40,7 @@ def follow(
     control: Literal["position", "velocity"] = "velocity",
     bench: Bench = THESIS_BENCH,
 ) -> Motion:
-    """Return the reference that follows a recorded motion, linear between its samples.
+    """Convert a recorded motion to the reference of a loop, linear between its samples.
 
     Parameters
     ----------

@@ -29,9 +29,9 @@ from jbf.records.run import Run
 Report = Callable[[str, int, int], None]
 
 HELP, HARM = 0.95, 1.02
-"""Thresholds of the ratio of the errors with and without compensation.
+"""Ratios of the errors with and without compensation below or above which it helps or harms.
 
-Compensation helps below `HELP` and harms above `HARM`.
+Compensation helps below `HELP`, harms above `HARM`, and is neutral between them.
 """
 
 STRONG: Mapping[str, Mapping[str, float]] = {
@@ -50,7 +50,7 @@ STRONG: Mapping[str, Mapping[str, float]] = {
     "inertia": {"m_e": 2.0},
     "sensor_offset": {"b": 5.0},
 }
-"""Parameters of the added effects, which change friction by tens of percent.
+"""Parameters of the effects added to the plant, which change friction by tens of percent.
 
 Effects that are not listed have the catalogue's first starting value.
 """
@@ -62,7 +62,17 @@ _FIT_SPEED_M_S = 0.1
 
 @dataclass(frozen=True)
 class Case:
-    """Plant that differs from the model of the compensator."""
+    """Plant that differs from the model of the compensator.
+
+    Attributes
+    ----------
+    name
+        Description of the difference.
+    plant, bench
+        True friction, and bench.
+    load_factor
+        Factor on the load of the plant.
+    """
 
     name: str
     plant: Model
@@ -74,24 +84,32 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Ratio of the true errors with and without compensation, by task."""
+    """Effect of compensation on the true error of a case.
+
+    Attributes
+    ----------
+    name
+        Name of the case.
+    ratios
+        RMS of the true error with compensation divided by that without it, by task.
+    """
 
     name: str
     ratios: Mapping[str, float]
 
     @property
     def worst(self) -> float:
-        """Largest ratio of all tasks."""
+        """Largest ratio of errors over all tasks."""
         return max(self.ratios.values())
 
     @property
     def verdict(self) -> str:
-        """`help`, `neutral` or `harm`, according to the worst row."""
+        """`help`, `neutral` or `harm`, according to the largest ratio of errors."""
         return "help" if self.worst < HELP else "neutral" if self.worst <= HARM else "harm"
 
 
 def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
-    """Yield every case in which the model is wrong."""
+    """Yield every case in which the compensator's model differs from the plant."""
     for name, page in effects().items():
         user_defined = isinstance(page, UserEffect)
         if (
@@ -134,7 +152,7 @@ def cases(base: Model, bench: Bench = THESIS_BENCH) -> Iterator[Case]:
 
 
 def fit_to_simulated_records(base: Model, true_model: Model) -> Model:
-    """Fit the base model to records predicted by `true_model`, with 2 % noise."""
+    """Fit the base model to records simulated by `true_model` with 2 % noise."""
     rng = np.random.default_rng(1)
     runs = []
     for i, rate in enumerate((0.25, 1.0)):
@@ -160,15 +178,16 @@ def robustness(
     scheme: Scheme | None = None,
     report: Report | None = None,
 ) -> list[Outcome]:
-    """Compute the error ratios for every case of `cases`; the compensator uses `base`.
+    """Compute the effect of compensation on the error for every case of a wrong model.
 
-    `scheme` replaces the observed compensator. It and the control law know only the undisturbed
-    bench.
+    `scheme` replaces the observed compensator. The compensator uses the model `base`. Scheme and
+    control law know only the undisturbed bench.
     """
     model = thesis_model(elastic="nothing") if base is None else base
     todo = list(cases(model, bench))
 
     def judge(case: Case) -> Outcome:
+        """Simulate all tasks of a case with and without compensation."""
         carried = model if case.carried is None else case.carried
         given = Observed(carried, tune(carried, bench)) if scheme is None else scheme
         ratios = {}

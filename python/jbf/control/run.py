@@ -1,4 +1,4 @@
-"""Simulation of one run of a control loop on the bench."""
+"""Simulation of a control loop on the bench."""
 
 from __future__ import annotations
 
@@ -50,6 +50,8 @@ class Result(SharedResult):
 
     Attributes
     ----------
+    task, scheme
+        The task, and the name of the compensation scheme.
     time_s, reference : ndarray
         Time, and reference in rad or rad/s, depending on `task.control`.
     angle_rad, velocity_rad_s, friction_v : ndarray
@@ -95,7 +97,7 @@ class Result(SharedResult):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return task, scheme and errors for JSON; `columns` contains the arrays."""
+        """Return task, scheme and errors, JSON-serialisable; `columns` has the arrays."""
         return {
             "task": asdict(self.task),
             "scheme": self.scheme,
@@ -105,26 +107,27 @@ class Result(SharedResult):
         }
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """Return the arrays by name, in the order in which `to_csv` writes them."""
+        """Signals by name, in the order in which `to_csv` writes them."""
         return {name: getattr(self, name) for name in _COLUMNS}
 
     def to_csv(self) -> str:
-        """Return the run as the text of a CSV file."""
+        """Text of a CSV file with the signals of the run."""
         columns = self.columns()
         rows = zip(*(a.tolist() for a in columns.values()), strict=True)
         return "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
     @property
     def response(self) -> Array:
-        """True angle (rad) or speed (rad/s), depending on the controlled quantity."""
+        """True angle (rad) or speed (rad/s) of the shaft, whichever is controlled."""
         return self.angle_rad if self.task.is_position else self.velocity_rad_s
 
     @property
     def true_error(self) -> Array:
-        """Response minus reference."""
+        """True response minus reference, rad or rad/s."""
         return self.response - self.reference
 
     def _counting(self, error: Array) -> Array:
+        """Values of an error after the skipped start."""
         return error[self.time_s >= self.task.skip_s - 1e-9]
 
     @property
@@ -229,7 +232,7 @@ def run(
 
 
 def _remedy(problem: str) -> str:
-    """Return the remedy for an input that the core's loop rejects."""
+    """Remedy for an input that the core's loop rejects, by the text of the problem."""
     if problem.startswith("top_speed_rad_s"):
         return "decrease counts_per_rad, or limit_v and input_rad_s2_v, or use a wider counter"
     return "correct the value"
@@ -245,6 +248,7 @@ def _scheme(given: str | Scheme, carried: Model | None, settings: Settings | Non
 
 
 def _steps(span_s: tuple[float, float] | None, bench: Bench) -> tuple[int, int]:
+    """Convert an interval in s to first step and end (exclusive)."""
     if span_s is None:
         return _NEVER, _NEVER
     first, last = (round(t / bench.dt_s) for t in span_s)
@@ -254,6 +258,7 @@ def _steps(span_s: tuple[float, float] | None, bench: Bench) -> tuple[int, int]:
 def _reference(
     task: Task, bench: Bench, n: int, given: tuple[npt.ArrayLike, npt.ArrayLike] | None
 ) -> tuple[Array, Array]:
+    """Reference and its rate of change at each step."""
     if given is None and task.wave == RECORDED:
         raise InputError(problem="a recorded task has no wave", remedy="give its reference")
     if given is None:
@@ -270,6 +275,7 @@ def _reference(
 
 
 def _load(model: Model, given: float | npt.ArrayLike | None, n: int) -> Array:
+    """Load on one bearing at each step, N."""
     of_rig = core_load_n(model.rig) or 1.0
     load = np.full(n, of_rig) if given is None else np.array(np.broadcast_to(given, n), dtype=float)
     if not np.all(np.isfinite(load)):

@@ -31,7 +31,25 @@ _NOTES = {
 
 @dataclass(frozen=True)
 class Settings:
-    """Parameters of `Observed` and of the loop guard, in addition to model and bench."""
+    """Settings of the observed compensator and of the loop guard.
+
+    Attributes
+    ----------
+    bandwidth_rad_s, learning_1_s
+        Bandwidth of the friction observer, and rate at which the friction level is learned.
+    level_limit_v, rest_limit_v
+        Limits of the correction of the friction level, and of all other corrections, V.
+    slow_rad_s
+        Speed below which the shaft counts as slow.
+    loop_rad_s
+        Natural frequency of the stiffened position loop.
+    breakaway
+        Share of the friction level that is applied at slow speed.
+    moving_v
+        Voltage that moves the shaft with certainty.
+    patience_s
+        Time after which a constant counter counts as frozen, or a saturated loop falls back.
+    """
 
     bandwidth_rad_s: float
     learning_1_s: float
@@ -53,7 +71,7 @@ class Settings:
                 )
 
     def to_toml(self) -> str:
-        """Return the text that `save` writes."""
+        """Text of the settings file that `save` writes."""
         document = tomlkit.document()
         document.add(tomlkit.comment(_HEADER))
         for name, value in asdict(self).items():
@@ -67,7 +85,7 @@ class Settings:
 
     @classmethod
     def load(cls, path: PathLike) -> Settings:
-        """Read a settings file.
+        """Read settings from a file that `save` wrote.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Reference of a loop, and the interval over which its error is evaluated."""
+"""Task of a loop: its reference, and the interval over which its error is evaluated."""
 
 from __future__ import annotations
 
@@ -10,17 +10,29 @@ from jbf.errors import InputError, did_you_mean
 
 WAVES = ("sine", "triangle", "square")
 RECORDED = "recorded"
-"""Wave of a task whose reference is given sample by sample."""
+"""Value of `Task.wave` if the reference is given sample by sample."""
 
 _FARTHEST = 1e6
 
 
 @dataclass(frozen=True)
 class Task:
-    """Periodic reference for position (rad) or velocity (rad/s) control.
+    """Periodic reference for position or velocity control.
 
-    `low` and `high` are its limits, `seconds` is the duration of the run. The error is evaluated
-    from `skip_s` on.
+    Attributes
+    ----------
+    control
+        Controlled quantity.
+    wave
+        Form of the reference, such as `sine`, `triangle` or `square`.
+    low, high
+        Limits of the reference, rad or rad/s.
+    frequency_rad_s
+        Angular frequency of the reference.
+    seconds
+        Duration of the run, s.
+    skip_s
+        Start of the interval over which the error is evaluated, s.
     """
 
     control: Literal["position", "velocity"]
@@ -69,7 +81,7 @@ class Task:
 
     @property
     def unit(self) -> str:
-        """Unit of reference and error."""
+        """Unit of reference and error: rad or rad/s."""
         return "rad" if self.is_position else "rad/s"
 
     @property
@@ -105,4 +117,4 @@ TASKS = {
     "velocity square": _velocity("square", -1.04, 1.04, 0.25),
     "velocity sine 20.8": _velocity("sine", 0.52, 20.8, 0.25),
 }
-"""Seven rows of the thesis's Tables 6.1 and 6.2."""
+"""Seven tasks by name, the rows of Tables 6.1 and 6.2 of Cohn (1998)."""

@@ -1,4 +1,4 @@
-"""Tables 6.1 and 6.2 of the thesis, with one column fitted and the other two predicted.
+"""Tables 6.1 and 6.2 of Cohn (1998): one column fitted, the other two predicted.
 
 Four parameters of the bench's friction are fitted to the seven cells without compensation. The
 other thirteen cells are predicted.
@@ -35,7 +35,7 @@ PRINTED_RMS: dict[str, tuple[float | None, float | None, float | None]] = {
     "velocity square": (0.451, 0.0733, None),
     "velocity sine 20.8": (0.210, 0.025, 0.0162),
 }
-"""RMS errors printed in the thesis, rad or rad/s: none, learning, Coulomb."""
+"""RMS errors in Cohn (1998), rad or rad/s, for the schemes none, learning and Coulomb."""
 
 PRINTED_PEAK: dict[str, tuple[float | None, float | None, float | None]] = {
     "position triangle": (0.474, 0.454, 0.296),
@@ -46,15 +46,27 @@ PRINTED_PEAK: dict[str, tuple[float | None, float | None, float | None]] = {
     "velocity square": (None, None, None),
     "velocity sine 20.8": (0.519, 0.168, 0.0895),
 }
-"""Peak errors printed in the thesis, in the same order and units."""
+"""Peak errors in Cohn (1998), in the same order and units as `PRINTED_RMS`."""
 
 _FARTHEST = 3.0
-"""Largest change of a fitted parameter's logarithm, a factor of 20."""
+"""Largest change of a fitted parameter's logarithm (a factor of 20)."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell of the tables: errors of the bench, and printed errors (None where not printed)."""
+    """One cell of the tables: errors of one scheme on one task.
+
+    Attributes
+    ----------
+    row, column
+        Task and scheme.
+    rms, peak
+        Errors of the simulated bench, rad or rad/s.
+    printed_rms, printed_peak
+        Errors in Cohn (1998); None where none is printed.
+    true_rms
+        RMS of the true error of the shaft on the simulated bench.
+    """
 
     row: str
     column: str
@@ -66,13 +78,21 @@ class Cell:
 
     @property
     def ratio(self) -> float | None:
-        """RMS of the bench over the printed RMS."""
+        """RMS error of the bench divided by the printed one; None without a printed value."""
         return None if self.printed_rms is None else self.rms / self.printed_rms
 
 
 @dataclass(frozen=True)
 class Tables:
-    """Cells by row and column, and the friction model and bench used to compute them."""
+    """Both tables, and the friction model and bench with which they were computed.
+
+    Attributes
+    ----------
+    cells
+        Cells by row and column.
+    model, bench
+        Friction model and bench.
+    """
 
     cells: dict[tuple[str, str], Cell]
     model: Model
@@ -82,17 +102,17 @@ class Tables:
         return self.cells[key]
 
     def column(self, name: str) -> list[Cell]:
-        """Return the cells of one column, in row order."""
+        """Cells of one column, in the order of the rows."""
         return [cell for (_, column), cell in self.cells.items() if column == name]
 
     def replaced(self, replacement: Tables) -> Tables:
-        """Return these tables, with cells replaced by those of `replacement`."""
+        """Return the tables with the cells of `replacement` in place of the same cells."""
         return replace(replacement, cells={**self.cells, **replacement.cells})
 
     def gains(self) -> dict[str, float]:
-        """Return the improvement over the thesis's schemes, by row.
+        """Improvement of the observed compensator over the schemes of Cohn (1998), by row.
 
-        It is the true RMS of the better of the two schemes over that of `observed`.
+        The improvement is ``min(learning, coulomb) / observed``, in true RMS errors.
         """
         return {
             row: min(self[row, "learning"].true_rms, self[row, "coulomb"].true_rms)
@@ -102,17 +122,17 @@ class Tables:
 
     @property
     def predicted(self) -> list[Cell]:
-        """The thirteen cells with a printed value that were not fitted."""
+        """Cells with a printed value that were not fitted."""
         return [c for c in self.cells.values() if c.column in COLUMNS[1:] and c.ratio is not None]
 
     def within(self, factor: float) -> int:
-        """Return the number of predicted cells within a factor of the printed value."""
+        """Number of predicted cells within a factor of the printed value."""
         ratios = [c.ratio for c in self.predicted if c.ratio is not None]
         return sum(abs(math.log(r)) <= math.log(factor) for r in ratios)
 
 
 def _run_rows(work: Callable[[Task], Result], tasks: Mapping[str, Task] = TASKS) -> list[Result]:
-    """Run `work` on all rows, on all cores; the core releases the interpreter lock."""
+    """Apply `work` to the tasks of all rows in parallel."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(work, tasks.values()))
 
@@ -126,8 +146,8 @@ def fit_friction(
 ) -> tuple[Model, Bench]:
     """Fit volts per newton, U_tr, K0 and gamma to the seven cells without compensation.
 
-    Nonlinear least squares on the logarithm of bench over printed RMS. It starts from the
-    parameters of an earlier fit.
+    The fit is by nonlinear least squares on the logarithm of simulated over printed RMS error. It
+    starts from the parameters of an earlier fit.
     """
     from scipy.optimize import least_squares
 
@@ -135,11 +155,13 @@ def fit_friction(
     calls = 0
 
     def built(logs: npt.NDArray[np.float64]) -> tuple[Model, Bench]:
+        """Model and bench for the logarithms of the four fitted parameters."""
         volts, u_tr, k0, gamma = np.exp(logs).tolist()
         model = thesis_model(elastic=elastic, clock=clock, U_tr_m_s=u_tr, K0=k0, gamma=gamma)
         return model, replace(bench, volts_per_n=volts)
 
     def misses(logs: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Logarithms of simulated over printed RMS errors."""
         nonlocal calls
         calls += 1
         if report is not None:
@@ -164,6 +186,7 @@ def fit_friction(
 
 
 def _mean_square_root(values: Sequence[float]) -> float:
+    """Root mean square of values."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 
@@ -180,13 +203,13 @@ def tables(
     seeds: int = 5,
     report: Report | None = None,
 ) -> Tables:
-    """Compute both tables on a bench with a friction model.
+    """Simulate all cells of both tables on a bench with a friction model.
 
     `schemes` maps the names of columns to schemes.
 
-    A cell is the root mean square over several seeds of the noise. If the shaft reverses within one
-    encoder count, the instant of the reversal depends on the noise, and a single run is not
-    representative.
+    A cell is the root mean square over several seeds of the noise. `seeds` is the number of runs.
+    If the shaft reverses within one encoder count, the instant of the reversal depends on the
+    noise, and a single run is not representative.
     """
     columns = standard_schemes(model) if schemes is None else schemes
     cells = {}
@@ -210,7 +233,7 @@ def tables(
 
 
 def standard_schemes(model: Model) -> dict[str, Scheme]:
-    """Return the three columns of the thesis, and the observed compensator as a fourth."""
+    """Schemes of the three columns of Cohn (1998), and the observed compensator, by name."""
     return {
         "none": NoCompensation(),
         "learning": Learning(),

@@ -1,4 +1,4 @@
-"""Settings of a compensator, computed from a fitted model without trial and error.
+"""Tuning of the observed compensator from a fitted model, without trial and error.
 
 All settings follow from four quantities: the step of the loop, the encoder's resolution, and the
 model's friction at rest and at the start of sliding.
@@ -18,13 +18,16 @@ from jbf.models.model import Model, the_model
 from jbf.records.run import Run
 
 _SHARE_OF_SAMPLING = 0.12
-"""Bandwidth of the observer times the step; a delay of half a step is 3.4 deg of phase."""
+"""Bandwidth of the observer times the step of the loop.
+
+The delay of half a step is then 3.4 deg of phase.
+"""
 
 _MOTOR_SHARE = 0.1
-"""Tolerance of the motor, as a share of the largest voltage."""
+"""Tolerance for errors of the motor model, as a share of the largest voltage."""
 
 LAW_RAD_S = math.sqrt(200.0)
-"""Natural frequency of the position law, whose poles are at -10 +- 10i."""
+"""Natural frequency of the position control law, whose poles are at -10 +- 10i, rad/s."""
 
 _MOST_LEVELS = 256
 
@@ -33,7 +36,7 @@ _NOISE_SHARE = 0.01
 
 
 def friction_level_v(model: Model, bench: Bench = THESIS_BENCH) -> float:
-    """Return the largest friction of a model in slow motion, effects included, in V."""
+    """Largest friction of a model in slow motion, effects included, as a voltage, V."""
     values = {n: p.value for n, p in model.parameters.items()}
     key = (model.rig, model.law, model.effects, model.clock, tuple(values.items()))
     if key not in _levels_n:
@@ -67,7 +70,7 @@ def _friction_level_n(model: Model) -> float:
 
 
 def tune(model: Model, bench: Bench = THESIS_BENCH) -> Settings:
-    """Compute the settings of the observed compensator for a model on a drive.
+    """Compute the settings of the observed compensator for a model on a bench.
 
     Parameters
     ----------

@@ -11,11 +11,14 @@ from jbf.cli.control import robustness, run, tables, tune
 
 @dataclass(frozen=True)
 class ControlOptions:
-    """No arguments: the command has only actions."""
+    """Options of `jbf control`, which has subcommands (actions) only."""
 
 
 def add(commands: Commands) -> None:
-    """Add the actions to the parser, one module each; without an action, the help is printed."""
+    """Add the actions of `jbf control` to the parser, one module each.
+
+    Without an action, the help is printed.
+    """
 
     def print_help(options: ControlOptions) -> int:
         parser.print_help()

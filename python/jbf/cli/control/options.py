@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def add_bench(parser: Parser) -> None:
-    """Add the options of motor, shaft, encoder and noise."""
+    """Add the options of the bench: motor, shaft, encoder and noise."""
     group = parser.add_argument_group("bench", "changes of the thesis's bench")
     numbers = {
         "volts-per-n": "motor voltage per newton of friction of one bearing, V/N",
@@ -31,7 +31,7 @@ def add_bench(parser: Parser) -> None:
 
 @dataclass(frozen=True)
 class BenchOptions:
-    """Changes of the thesis's bench; None for its own value."""
+    """Values that replace those of the bench of Cohn (1998); None keeps the value."""
 
     volts_per_n: float | None
     damping_1_s: float | None
@@ -42,7 +42,7 @@ class BenchOptions:
     seed: int | None
 
     def bench(self) -> Bench:
-        """Return the bench."""
+        """Bench with these values."""
         from jbf.control.bench import THESIS_BENCH, with_noise
 
         given = _given(self)
@@ -59,7 +59,7 @@ class BenchOptions:
 
 
 def add_task(parser: Parser) -> None:
-    """Add the options of the reference that the loop follows."""
+    """Add the options of the task, which defines the reference of the loop."""
     group = parser.add_argument_group(
         "task", "a row of the thesis's tables (--task), modified by the other options"
     )
@@ -83,7 +83,7 @@ def add_task(parser: Parser) -> None:
 
 @dataclass(frozen=True)
 class TaskOptions:
-    """A row of the thesis's tables and its changes, or a recorded motion."""
+    """Task of a loop: a row of the tables of Cohn (1998) with changes, or a recorded motion."""
 
     task: str
     motion: str | None
@@ -96,7 +96,7 @@ class TaskOptions:
     skip_s: float | None
 
     def reference(self) -> Task:
-        """Return the task without a recorded motion."""
+        """Task with a periodic reference: the selected row of the tables, with changes."""
         from jbf.control.task import TASKS
 
         if self.task not in TASKS:
@@ -107,12 +107,12 @@ class TaskOptions:
 
 
 def _given(options: BenchOptions | TaskOptions) -> dict[str, Any]:
-    """Return the options that have a value."""
+    """Options that have a value, by name."""
     return {name: value for name, value in asdict(options).items() if value is not None}
 
 
 def model_of(path: str | None) -> Model:
-    """Load the friction model of a file; without a path, that of the thesis's bench."""
+    """Load a friction model from a file; without a path, that of the bench of Cohn (1998)."""
     from jbf.cli import inputs
     from jbf.control import thesis_model
 

@@ -1,4 +1,4 @@
-"""Option `--plot`: checked before the computation, written after it."""
+"""Option `--plot` of `jbf control`: checked before the computation, written after it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 
 def add_plot(parser: Parser) -> None:
-    """Add `--plot`."""
+    """Add the option `--plot`."""
     parser.add_argument("--plot", metavar="PNG", help="write a figure (png, svg or pdf)")
 
 
 def check_picture(path: str | None) -> None:
-    """Check, before the computation, that the image format is supported."""
+    """Raise an InputError if the suffix of a path is not a supported image format."""
     if path is None:
         return
     from matplotlib.backend_bases import FigureCanvasBase
@@ -31,7 +31,7 @@ def check_picture(path: str | None) -> None:
 
 
 def save_picture(figure: Any, path: str | None) -> None:
-    """Save a figure if a path was given."""
+    """Save a figure to the path of `--plot`, if one was given."""
     if path is None:
         return
     try:

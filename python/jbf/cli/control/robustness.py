@@ -1,4 +1,4 @@
-"""`jbf control robustness [MODEL]`: effect of compensation when its model is wrong."""
+"""`jbf control robustness [MODEL]`: effect of compensation if its friction model is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`jbf control run [MODEL]`: control loops on the bench, with several schemes compared."""
+"""`jbf control run [MODEL]`: simulation of control loops with several compensation schemes."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def run(options: RunOptions) -> int:
 
 
 def _requested_motion(options: TaskOptions, truth: Model | None, bench: Bench) -> Motion:
-    """Return the task, and the reference and load if a recorded motion is followed."""
+    """Task of the loop; for a recorded motion also its reference and load."""
     from jbf.control import Motion, follow, thesis_model
     from jbf.records.csv_file import read_run
 

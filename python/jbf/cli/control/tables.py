@@ -1,4 +1,4 @@
-"""`jbf control tables`: the thesis's Tables 6.1 and 6.2, fitted and predicted."""
+"""`jbf control tables`: Tables 6.1 and 6.2 of Cohn (1998), fitted and predicted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`jbf control tune MODEL`: settings of the compensator from a fitted model."""
+"""`jbf control tune MODEL`: settings of the observed compensator from a fitted model."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ SCHEMES = ("none", "learning", "coulomb", "table", "repetitive", "observed")
 
 
 def scheme(name: str, model: Model | None = None, settings: Settings | None = None) -> Scheme:
-    """Return the scheme of a name; `model` is its friction model, if it uses one.
+    """Create the compensation scheme with this name; `model` is its friction model, if it uses one.
 
     Without a model, the learning scheme has the parameters of the thesis. A table and the observed
     compensator then have the friction that fits the thesis's bench.

@@ -1,4 +1,4 @@
-"""Schemes with a friction model."""
+"""Compensation schemes that contain a friction model."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from jbf.models.model import Model
 
 @dataclass(frozen=True)
 class Table(Unguarded):
-    """Look-up table of the model's steady friction against speed, zero at rest."""
+    """Look-up table of the model's steady friction over speed, zero at rest."""
 
     model: Model
     name: str = "table"
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """Return the core's parameters; see `Scheme`."""
+        """Return the arguments from which the core builds the compensator; see `Scheme`."""
         bearing = self.model.rig.bearing
         radius_m = 1.0 if bearing is None else bearing.radius_m
         width = max(task.top_speed_rad_s, 1.0) / (TABLE_ENTRIES - 1)
@@ -44,7 +44,19 @@ class Table(Unguarded):
 
 @dataclass(frozen=True)
 class Observed:
-    """Friction model corrected by an observer; settings from `tune` by default."""
+    """Compensation by a friction model that an observer corrects.
+
+    Attributes
+    ----------
+    model
+        Friction model.
+    settings
+        Settings of the observer; by default those of `tune`.
+    start
+        Initial corrections of the level and at rest, V.
+    name
+        Name of the scheme.
+    """
 
     model: Model
     settings: Settings | None = None
@@ -52,11 +64,11 @@ class Observed:
     name: str = "observed"
 
     def guard(self, bench: Bench) -> Settings:
-        """Return the guard settings; see `Scheme`."""
+        """Return the settings of the loop guard; see `Scheme`."""
         return tune(self.model, bench) if self.settings is None else self.settings
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """Return the core's parameters; see `Scheme`."""
+        """Return the arguments from which the core builds the compensator; see `Scheme`."""
         return {
             "kind": "observed",
             "model": core_model(self.model),

@@ -1,4 +1,4 @@
-"""Learning compensator of the thesis."""
+"""Learning friction compensator of Cohn (1998), section 6.4."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jbf.models.vocabulary import Clock
 from jbf.records.rig import Rig
 
 LISTED_VOLTS = 0.5 * THESIS_LOAD_N * 0.2245 * 4.0 * VOLTS_PER_N_M
-"""Voltage for a friction coefficient of 1 in the thesis's listings: 25.5 V.
+"""Voltage for a friction coefficient of 1 in the program listings of Cohn (1998): 25.5 V.
 
 This assumes that radius and load are in inches and pounds. In newton metres, the same factors
 yield 2.89 V.
@@ -24,11 +24,31 @@ yield 2.89 V.
 
 @dataclass(frozen=True)
 class Learning(Unguarded):
-    """Learning compensator of the thesis with the parameters of its programs.
+    """Learning friction compensator of Cohn (1998), section 6.4: adapts K0 and gamma to the error.
 
-    `volts` is the voltage for a friction coefficient of 1, by default the bench's own scale; the
-    thesis's listings use `LISTED_VOLTS`. Gains are per step of 2 ms. Gains that are None are those
-    of the listings, scaled in proportion to the initial parameters.
+    The defaults are those of the program listings in the thesis.
+
+    Attributes
+    ----------
+    rig
+        Bearing and load.
+    f_m, u_tr_m_s, eps_tr
+        Boundary friction coefficient, transition speed (m/s) and transition eccentricity ratio of
+        the journal law; None for the eccentricity that follows from the law.
+    volts
+        Voltage for a friction coefficient of 1; None for that of the bench. The listings use
+        `LISTED_VOLTS`.
+    k0, gamma
+        Initial values of the adapted parameters.
+    k0_gain, gamma_gain
+        Adaptation gains per step of 2 ms; None for those of the listings, scaled in proportion to
+        the initial values.
+    k0_bounds, gamma_bounds
+        Lower and upper bounds of the adapted parameters.
+    clock
+        Definition of the film's time constant.
+    name
+        Name of the scheme.
     """
 
     rig: Rig = THESIS_RIG
@@ -47,7 +67,7 @@ class Learning(Unguarded):
 
     @classmethod
     def of(cls, model: Model) -> Learning:
-        """Create a scheme that starts from a fitted model's parameters, without its effects.
+        """Create the scheme with the parameters of a fitted model, without its effects.
 
         Raises
         ------
@@ -73,7 +93,7 @@ class Learning(Unguarded):
         )
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """Return the core's parameters; see `Scheme`."""
+        """Return the arguments from which the core builds the compensator; see `Scheme`."""
         load_n = core_load_n(self.rig) or 1.0
         return {
             "kind": "learning",

@@ -1,4 +1,4 @@
-"""Schemes with few friction parameters or none."""
+"""Compensation schemes with few friction parameters or none."""
 
 from __future__ import annotations
 
@@ -19,13 +19,23 @@ class NoCompensation(Unguarded):
     name: str = "none"
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """Return the core's parameters; see `Scheme`."""
+        """Return the arguments from which the core builds the compensator; see `Scheme`."""
         return {"kind": "none"}
 
 
 @dataclass(frozen=True)
 class Coulomb(Unguarded):
-    """Coulomb friction observer (6.1): gain k_F, exponent p, limit of the learned level."""
+    """Coulomb friction observer of Cohn (1998), section 6.1.
+
+    Attributes
+    ----------
+    gain, exponent
+        Gain k_F and exponent p of the adaptation.
+    limit_v, start_v
+        Limit and initial value of the learned friction level, V.
+    name
+        Name of the scheme.
+    """
 
     gain: float = 0.01
     exponent: float = 1.0
@@ -34,7 +44,7 @@ class Coulomb(Unguarded):
     name: str = "coulomb"
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """Return the core's parameters; see `Scheme`."""
+        """Return the arguments from which the core builds the compensator; see `Scheme`."""
         return {
             "kind": "coulomb",
             "gain": self.gain,
@@ -46,7 +56,22 @@ class Coulomb(Unguarded):
 
 @dataclass(frozen=True)
 class Repetitive(Unguarded):
-    """Repetitive learning with gain in volts per unit of error, smoothing, lead and limit."""
+    """Repetitive learning control: a correction over one period of the reference.
+
+    Attributes
+    ----------
+    gain
+        Learning gain, V per unit of the error; None for half of the loop's static stiffness.
+    smooth
+        Coefficient of the three-point smoothing of the correction, 0 to 0.5.
+    lead_s
+        Delay of the plant's response, by which the correction precedes the error, s; None for 0.1 s
+        in position control and 0.02 s in velocity control.
+    limit_v
+        Limit of the correction, V.
+    name
+        Name of the scheme.
+    """
 
     gain: float | None = None
     smooth: float = 0.1
@@ -55,7 +80,7 @@ class Repetitive(Unguarded):
     name: str = "repetitive"
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """Return the core's parameters; see `Scheme`."""
+        """Return the arguments from which the core builds the compensator; see `Scheme`."""
         # Half of the gain that corresponds to the loop's stiffness against a steady disturbance.
         g, c = gains(task, bench)
         stuck = bench.input_rad_s2_v / (bench.damping_1_s + OBSERVER_1_S)

@@ -14,27 +14,28 @@ class Scheme(Protocol):
 
     @property
     def name(self) -> str:
-        """Name in options, tables and plots."""
+        """Name of the scheme in options, tables and plots."""
         ...
 
     def core(self, task: Task, bench: Bench) -> dict[str, Any]:
-        """Return the arguments from which the core builds its compensator.
+        """Return the arguments from which the core builds the compensator.
 
-        `kind` selects its type.
+        The argument `kind` selects its type.
         """
         ...
 
     def guard(self, bench: Bench) -> Settings | None:
-        """Return the settings whose `moving_v` and `patience_s` guard the loop.
+        """Return the settings of the loop guard, or None if the scheme has no guard.
 
-        None for no guard.
+        The guard uses `moving_v` and `patience_s`, and stops the compensator if the encoder is
+        frozen or the output is saturated.
         """
         ...
 
 
 class Unguarded:
-    """Scheme without a guard: only a jump of the counter stops it, as in the thesis."""
+    """Scheme without a loop guard: only a jump of the counter stops it, as in Cohn (1998)."""
 
     def guard(self, bench: Bench) -> Settings | None:
-        """Return no guard; see `Scheme`."""
+        """Return None, since the scheme has no guard; see `Scheme`."""
         return None

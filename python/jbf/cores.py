@@ -14,7 +14,7 @@ _VARIABLES = ("RAYON_NUM_THREADS", "RAYON_RS_NUM_CPUS")
 
 
 def cap_threads() -> None:
-    """Limit the thread counts in the environment to the number of cores."""
+    """Limit the thread counts in the environment variables to the number of cores."""
     cores = os.cpu_count() or 1
     for name in _VARIABLES:
         try:
@@ -40,7 +40,7 @@ def check_jobs(requested: int | None) -> None:
 
 
 def processes(requested: int | None, tasks: int) -> int:
-    """Return the number of parallel processes.
+    """Number of processes for parallel tasks.
 
     The result is the requested number (None: the number of cores), limited to the number of tasks.
     All processes are started at once, even for short tasks.

@@ -151,7 +151,7 @@ class Unfinished(InputError):
     Parameters
     ----------
     steps
-        Number of inner steps of the model.
+        Number of integration steps of the model.
     fit
         The best :class:`jbf.Fit` so far, or None.
 
@@ -195,14 +195,14 @@ def quoted(text: object) -> str:
 
 
 def closest(word: str, words: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """Return the known word that is most similar to `word`, ignoring case, or None."""
+    """Known word that is most similar to `word`, ignoring case; None if none is similar."""
     by_lower = {name.lower(): name for name in words}
     matches = get_close_matches(word.lower(), list(by_lower), n=1, cutoff=cutoff)
     return by_lower[matches[0]] if matches else None
 
 
 def did_you_mean(word: object, words: Iterable[str]) -> str:
-    """Return a remedy for an unknown word: the most similar known word, or all known words."""
+    """Remedy for an unknown word: the most similar known word, or the list of all known words."""
     names = list(words)
     guess = closest(word, names) if isinstance(word, str) else None
     if guess is not None:

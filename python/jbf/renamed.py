@@ -65,12 +65,12 @@ OPTIONS = {
 
 
 def current_effect(name: str, names: Collection[str] = ()) -> str:
-    """Return the current name of an effect; an unknown name is returned unchanged."""
+    """Current name of an effect; an unknown name is returned unchanged."""
     return _current(name, EFFECTS, names)
 
 
 def current_parameter(name: str, names: Collection[str] = ()) -> str:
-    """Return the current name of a parameter (dotted); an unknown name is returned unchanged."""
+    """Current dotted name of a parameter; an unknown name is returned unchanged."""
     if name in names:
         return name
     effect, dot, short = name.rpartition(".")
@@ -78,7 +78,7 @@ def current_parameter(name: str, names: Collection[str] = ()) -> str:
 
 
 def current_option(word: str) -> str:
-    """Return the current name of an option in a word of the command line, also in `OLD=VALUE`."""
+    """Replace an old option name in a word of the command line, also in `OLD=VALUE`."""
     option, equals, value = word.partition("=")
     return _current(option, OPTIONS, ()) + equals + value
 

@@ -47,7 +47,7 @@ def presented_by(module: str, *operations: Operation) -> None:
 
 
 def present(operation: Operation, result: object, *arguments: Any) -> Any:
-    """Call the presenter of a result.
+    """Call the function that is registered to present a result.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def present(operation: Operation, result: object, *arguments: Any) -> Any:
 
 
 def data_frame(columns: Any) -> Any:
-    """Return columns as a `pandas.DataFrame`; pandas is an optional dependency.
+    """Convert columns to a `pandas.DataFrame`; pandas is an optional dependency.
 
     Raises
     ------

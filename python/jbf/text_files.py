@@ -31,7 +31,7 @@ _PACKED = {
 
 
 def os_error(path: Path, error: OSError, doing: str) -> InputError:
-    """Return the error for a failed file operation; `doing` is "read" or "written"."""
+    """Error for a failed file operation; `doing` is "read" or "written"."""
     if isinstance(error, FileNotFoundError):
         try:
             guess = closest(path.name, (entry.name for entry in path.parent.iterdir()), 0.8)
@@ -52,7 +52,7 @@ def os_error(path: Path, error: OSError, doing: str) -> InputError:
 
 
 def name_of(path: Path, depth: int = 1) -> str:
-    """Return the name of a file without its suffix, with `depth - 1` parent folders.
+    """Name of a file without its suffix, with `depth - 1` parent folders.
 
     Terminal control characters, and bytes that are not UTF-8, are escaped.
     """
@@ -108,7 +108,7 @@ def check_readable(path: Path, *, pipes: bool = True) -> None:
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return the content of a file, or of a pipe.
+    """Read the content of a file, or of a pipe.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def _from_pipe(path: Path) -> bytes:
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
-    """Return the text of a UTF-8 file, without a byte order mark.
+    """Read the text of a UTF-8 file, without a byte order mark.
 
     Raises
     ------

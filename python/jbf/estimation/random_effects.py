@@ -90,7 +90,7 @@ class RandomEffects:
         share = (1.0 - 1.0 / np.sqrt(1.0 + size**2))[:, None]
 
         def white(values: Array) -> Array:
-            """Weighted innovations of values of the run."""
+            """Values without the part of their correlation that is due to the random effects."""
             columns = values if values.ndim == 2 else values[:, None]
             return np.asarray((columns - u @ (share * (u.T @ columns))).reshape(values.shape))
 

@@ -250,7 +250,7 @@ def _is_setpoint(word: str) -> bool:
 
 
 def _is_label(word: str) -> bool:
-    """Whether a word is a number or letter that distinguishes columns, such as a joint."""
+    """Whether a word indicates no quantity and may be a label, such as that of a joint."""
     has_meaning = word in _BY_WORD or word in _MOTOR or _is_setpoint(word) or word in _ACTUAL
     return not has_meaning and word not in _GENERIC and _quantity_of_last_part(word) is None
 

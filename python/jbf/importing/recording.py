@@ -359,7 +359,7 @@ def keep_common_span(recording: Recording) -> None:
 
 
 def _name(stream: Stream) -> str:
-    """Description of a stream for messages."""
+    """Name of the file of a stream; empty if unknown."""
     return "" if stream.source is None else stream.source.name
 
 

@@ -1,4 +1,4 @@
-"""Plot coordinates of a failure's bins: positions, series, tick labels, axis label."""
+"""Plot coordinates of the bins of a residual pattern."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ Array = npt.NDArray[np.float64]
 
 
 def _names(quantities: Quantities) -> dict[Axis, str]:
+    """Axis label of each axis, with the units of a rig."""
     return {
         "velocity": f"{quantities.velocity} ({quantities.speed})",
         "angle": "Shaft angle (deg)" if quantities.motion == "bearing" else "Angle (deg)",
@@ -32,7 +33,7 @@ def _names(quantities: Quantities) -> dict[Axis, str]:
 
 @dataclass(frozen=True)
 class BinAxis:
-    """Plot coordinates of the bins.
+    """Plot coordinates of the bins of a residual pattern.
 
     Attributes
     ----------
@@ -53,9 +54,9 @@ class BinAxis:
 
 
 def bin_axis(failure: Failure, quantities: Quantities = BEARING) -> BinAxis:
-    """Return the plot coordinates of a failure's bins.
+    """Plot coordinates of the bins of a pattern, numerical where possible.
 
-    They are numerical if known, otherwise categorical.
+    Bins without a numeric position are on a categorical axis.
     """
     name = _names(quantities)[failure.axis]
     series = tuple(_series(b, failure.axis) for b in failure.bins)
@@ -73,7 +74,7 @@ def bin_axis(failure: Failure, quantities: Quantities = BEARING) -> BinAxis:
 
 
 def _series(b: Bin, axis: Axis) -> str:
-    """Return the line to which a bin belongs.
+    """Label of the line to which a bin belongs.
 
     Along velocity and direction the position itself contains the direction of motion.
     """
@@ -81,7 +82,7 @@ def _series(b: Bin, axis: Axis) -> str:
 
 
 def _tick(b: Bin, axis: Axis) -> str:
-    """Return the tick label of a bin; the label of an interval has two lines.
+    """Tick label of a bin; the label of an interval has two lines.
 
     The unit is in the axis label.
     """

@@ -30,7 +30,7 @@ _MOST_POINTS = 6000
 def control_trace(
     run: Result, what: Trace = "response", *, ax: Axes | None = None, named: bool = True
 ) -> Axes:
-    """Plot one trace of a control-loop run.
+    """Plot one signal of a control-loop run.
 
     Parameters
     ----------
@@ -39,6 +39,8 @@ def control_trace(
     what
         `response` with its reference, `error`, `loop` (friction against speed), `friction` in
         time, or the quantities that the compensator `learned`.
+    ax
+        Matplotlib axes to draw on. Default: those of a new figure.
     named
         Whether to add the label of the vertical axis and a legend.
     """

@@ -1,4 +1,4 @@
-"""Error per step of the ledger: fit and held-out error, with the noise floor."""
+"""Plot of the errors in each step of a diagnosis, with the noise floor."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
-    """Plot fit and held-out error of each step of the ledger, one row each.
+    """Plot fit and held-out error of each step of a diagnosis, one row each.
 
     The error axis is logarithmic, so that the last steps remain visible next to the first.
     """
@@ -67,6 +67,7 @@ def ledger(diagnosis: Diagnosis, *, ax: Axes | None = None) -> Axes:
 
 
 def _errors(steps: Sequence[Step]) -> tuple[list[float], list[float]]:
+    """Fit RMS and held-out RMS of each step."""
     return [s.rms for s in steps], [s.held_out_rms for s in steps]
 
 
@@ -81,7 +82,7 @@ def _falls(held_out: Sequence[float], unit: str) -> list[str]:
 
 
 def _reach(ax: Axes, values: Sequence[float]) -> None:
-    """Set the limits slightly beyond the values, with few round ticks."""
+    """Set the limits of an axis slightly beyond the values, with few round ticks."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     positive = [v for v in values if v > 0.0 and np.isfinite(v)] or [1.0]

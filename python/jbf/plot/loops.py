@@ -1,4 +1,4 @@
-"""Friction against speed along a run, which shows the hysteresis loops of dynamic friction."""
+"""Plot of friction against speed along a run, with the hysteresis loops of dynamic friction."""
 
 from __future__ import annotations
 

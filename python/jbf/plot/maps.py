@@ -28,7 +28,7 @@ OUTSIDE_SHARE = 0.0005
 
 
 def friction_map(comparison: Comparison, *, alone: bool = True, ax: Axes | None = None) -> Axes:
-    """Plot the number of samples of all runs per speed and friction, with the model's means.
+    """Plot the density of all samples over speed and friction, with the means of the model.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def residual_map(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """Plot the mean residual (record minus model) per cell, in multiples of the noise.
+    """Plot the mean residual (record minus model) in cells of two quantities, in noise units.
 
     Parameters
     ----------
@@ -130,6 +130,7 @@ def residual_map(
 
 
 def _values(comparison: Comparison, name: Over) -> list[Array]:
+    """Values of a quantity at all samples, one array per run."""
     prepared = comparison.campaign.prepared
     if name == "time":
         return [p.run.time_s - p.run.time_s[0] for p in prepared]
@@ -141,6 +142,7 @@ def _values(comparison: Comparison, name: Over) -> list[Array]:
 
 
 def _place(comparison: Comparison, index: int) -> Array:
+    """Position or angle of a run."""
     p = comparison.campaign.prepared[index]
     if comparison.model.rig.quantities.motion == "linear" and p.run.position_m is not None:
         return np.asarray(p.run.position_m)
@@ -148,7 +150,7 @@ def _place(comparison: Comparison, index: int) -> Array:
 
 
 def _edges(values: Array, cells: int = CELLS, runs: int = 0) -> Array:
-    """Return cell edges that cover nearly all values, or one cell per run."""
+    """Edges of the cells of a map, which cover nearly all values, or one cell per run."""
     if runs:
         return np.linspace(-0.5, runs - 0.5, runs + 1)
     low, high = map(float, np.quantile(values, [OUTSIDE_SHARE, 1.0 - OUTSIDE_SHARE]))
@@ -158,6 +160,7 @@ def _edges(values: Array, cells: int = CELLS, runs: int = 0) -> Array:
 
 
 def _means(speed: Array, force: Array) -> tuple[Array, Array]:
+    """Mean speed and force of samples in bins of the speed."""
     order = np.argsort(speed, kind="stable")
     parts = np.array_split(order, max(min(CELLS // 2, len(order) // 5), 1))
     return np.array([speed[p].mean() for p in parts]), np.array([force[p].mean() for p in parts])

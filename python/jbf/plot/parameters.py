@@ -1,4 +1,4 @@
-"""Fitted parameters with their intervals."""
+"""Plot of fitted parameters with their confidence intervals."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ NO_UNITS: Mapping[str, str] = MappingProxyType({})
 
 
 def height(parameters: Mapping[str, object]) -> float:
-    """Return the height of a figure with this number of parameters, in inches."""
+    """Height of a figure with this number of parameters, inches."""
     return 1.6 + 0.5 * len(parameters)
 
 
 def parameters(
     fit: Fit, *, ax: Axes | None = None, answers: Mapping[str, Array] | None = None
 ) -> Axes:
-    """Plot the parameters of a fit with their intervals.
+    """Plot the parameters of a fit with their confidence intervals.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def intervals(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """Plot each parameter's standard error (percent of its value), and repeated estimates.
+    """Plot the standard error of each parameter in percent of its value, and repeated estimates.
 
     A parameter with value zero or without a standard error is an open marker. `units` contains
     the unit of each parameter that has one.

@@ -1,4 +1,4 @@
-"""Power curves: probability of detection over the strength of an effect."""
+"""Plot of power curves: detection probability over the strength of an effect."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def power(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """Plot the detection probability of effects in such runs, against their share of the friction.
+    """Plot the detection probability of effects against their share of the friction.
 
     Each curve passes through the strengths that are detected in 80 % and 95 % of campaigns. The
     log-likelihood gain of an effect grows as the square of its strength. The probability is the
@@ -78,13 +78,14 @@ def power(
 
 
 def _has_curve(p: Power) -> bool:
+    """Whether the strengths of 80 % and 95 % power are known."""
     return not p.always and None not in (p.detectable_80, p.detectable_95, p.share_80)
 
 
 def deviate(p: Power, share: np.ndarray) -> np.ndarray:
-    """Return the normal deviate of the detection probability at shares of the friction.
+    """Normal deviate of the detection probability at shares of the friction.
 
-    It is linear in the share, through the points of 80 % and 95 %.
+    The deviate is linear in the share, through the points of 80 % and 95 %.
     """
     from scipy.special import ndtri
 

@@ -1,4 +1,4 @@
-"""Candidates of one selection step, ranked by evidence."""
+"""Plot of the candidates of one selection step, ranked by evidence."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ if TYPE_CHECKING:
 MOST = 12
 FEWEST = 3
 LINEAR = 10.0
-"""Evidence up to which the axis is linear; it is logarithmic beyond."""
+"""Evidence up to which the axis is linear; beyond it the axis is logarithmic."""
 COLOURS = {"added": MODEL, "ties": NOISE, "rejected": BEFORE}
 
 
 def _shown(trials: Sequence[Trial]) -> Sequence[Trial]:
-    """Return the candidates with evidence, at least `FEWEST` and at most `MOST`."""
+    """Candidates to plot: those with evidence, at least `FEWEST` and at most `MOST`."""
     return trials[: min(max(sum(t.evidence > 0.0 for t in trials), FEWEST), MOST)]
 
 
 def ranking_height(step: Step) -> float:
-    """Return the height of the figure of a step's candidates, in inches."""
+    """Height of a figure of the candidates of a step, inches."""
     return 1.2 + 0.27 * len(_shown(sorted(step.trials, key=lambda t: -t.evidence)))
 
 
 def ranking(diagnosis: Diagnosis, step: int = 0, *, ax: Axes | None = None) -> Axes:
-    """Plot the candidates tested at a step of the ledger, strongest first.
+    """Plot the candidates of one step of a diagnosis by evidence, strongest first.
 
     Long lists are truncated.
 

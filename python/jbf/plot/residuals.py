@@ -1,4 +1,4 @@
-"""Residual (record minus model): means along an axis, in time, and over all runs."""
+"""Plots of the residual (record minus model): means along an axis, in time, over all runs."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ Array = npt.NDArray[np.float64]
 MOST_TICKS = 16
 MOST_DOTS = 4000
 MERGE_DISTANCE = 0.012
-"""Share of an axis's length below which two marks are merged."""
+"""Share of an axis's length below which two bins are merged in the plot."""
 SHOWN_SHARE = 0.998
 """Share of the samples that a time plot shows."""
 
 
 def means_along(comparison: Comparison, axis: str | None) -> Failure:
-    """Return the bin means of a comparison's residual along an axis.
+    """Bin means of the residual of a comparison along an axis.
 
     The axis need not be one along which the model fails. Default: the axis of the worst failure,
     otherwise velocity.
@@ -89,7 +89,7 @@ def residual_along(
 def draw_means(
     ax: Axes, failure: Failure, colour: str, quantities: Quantities, label: str = ""
 ) -> None:
-    """Plot the mean residual in the bins, one line per direction of motion."""
+    """Draw the mean residual in the bins of an axis, one line per direction of motion."""
     place = bin_axis(failure, quantities)
     directions = list(dict.fromkeys(place.series))
     for direction, marker in zip(directions, "os", strict=False):
@@ -117,7 +117,7 @@ def draw_means(
 
 
 def _at_places(x: Array, means: Array, counts: npt.NDArray[np.int64]) -> tuple[Array, Array]:
-    """Sort the bins and merge those that coincide in the plot.
+    """Sort bins by position, and merge those that coincide in the plot.
 
     Motion at constant speed yields many coinciding bins.
     """

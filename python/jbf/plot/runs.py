@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def largest_error_run(comparison: Comparison, other: Comparison | None = None) -> int:
-    """Return the run with the largest error, or the run in which two models differ most."""
+    """Index of the run with the largest error, or of the run in which two models differ most."""
     if other is None:
         return int(np.argmax([r.rms for r in comparison.runs]))
     gaps = [
@@ -27,7 +27,7 @@ def largest_error_run(comparison: Comparison, other: Comparison | None = None) -
 
 
 def index_of(comparison: Comparison, run: int | str | None) -> int:
-    """Return the index of a run given by index or name; by default that with the largest error.
+    """Index of a run given by index or name; by default of that with the largest error.
 
     Raises
     ------
@@ -45,12 +45,12 @@ def index_of(comparison: Comparison, run: int | str | None) -> int:
 
 
 def quantities_of(comparison: Comparison) -> Quantities:
-    """Return the names and units of the rig's quantities."""
+    """Units and names of the quantities of a comparison's rig."""
     return comparison.model.rig.quantities
 
 
 def axes_words(comparison: Comparison) -> tuple[str, str]:
-    """Return the axis labels of speed and friction."""
+    """Axis labels of speed and friction, with units."""
     quantities = quantities_of(comparison)
     return (
         f"{quantities.velocity} ({quantities.speed})",

@@ -1,4 +1,4 @@
-"""Spectra of the residual, which reveal hum, ripple or rattle above the noise."""
+"""Spectra of the residual, which show hum, ripple or rattle above the noise."""
 
 from __future__ import annotations
 
@@ -27,9 +27,10 @@ def spectrum(
     colour: str = MODEL,
     label: str = "record minus model",
 ) -> Axes:
-    """Plot the amplitude density of one run's residual, and that of white noise of equal size.
+    """Plot the amplitude spectral density of one run's residual, and that of white noise.
 
-    The residual is record minus model. Samples that do not count are set to zero.
+    The residual is record minus model; excluded samples are set to zero. The white noise has the
+    same variance.
 
     Parameters
     ----------

@@ -18,10 +18,11 @@ if TYPE_CHECKING:
 
 
 def stribeck(comparison: Comparison, *, ax: Axes | None = None) -> Axes:
-    """Plot friction against speed, without the model terms that are not friction.
+    """Plot the Stribeck curve: mean friction against speed of all runs, for record and model.
 
-    The plot shows the means of all runs with their scatter, and the model's means at the same
-    samples. The steady curve of the law and the limits of its regimes are added.
+    Model terms that are not friction are subtracted. The plot shows the means of all runs with
+    their scatter, and the model's means at the same samples. The steady curve of the law and the
+    limits of its regimes are added.
     """
     from jbf.comparison.over_speed import friction_over_speed
 
@@ -67,7 +68,7 @@ def _steady(ax: Axes, comparison: Comparison, branches: tuple[OverSpeed, ...]) -
 
 
 def _regimes(ax: Axes, comparison: Comparison) -> None:
-    """Mark the limits of the law's regimes, each labelled at its lower limit."""
+    """Mark the speeds at which the lubrication regimes of the law begin."""
     from jbf.comparison.over_speed import regimes
 
     left, right = ax.get_xlim()

@@ -40,7 +40,7 @@ def shortened(words: str, longest: int = 28) -> str:
 
 
 def dress(ax: Axes, title: str, x: str, y: str) -> None:
-    """Set title, axis labels and grid."""
+    """Set title, axis labels and grid of axes."""
     from matplotlib.ticker import AutoLocator, MaxNLocator
 
     ax.set_title(plain(title), loc="left", fontsize="medium")
@@ -72,7 +72,7 @@ def axes_or_new(
 
 
 def one_axes(ax: Axes | None, size: tuple[float, float] = (6.0, 4.0)) -> Axes:
-    """Return the given axes, or those of a new figure."""
+    """Return the given axes, or that of a new figure."""
     return axes_or_new(None if ax is None else [ax], 1, 1, size)[0]
 
 

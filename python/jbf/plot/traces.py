@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 def record_and_model(
     comparison: Comparison, run: int | str | None = None, *, ax: Axes | None = None
 ) -> Axes:
-    """Plot measured and modelled friction of one run in time; by default of the worst run."""
+    """Plot measured and modelled friction of one run in time.
+
+    The default is the run with the largest error.
+    """
     from matplotlib.ticker import MaxNLocator
 
     ax = one_axes(ax, (10.0, 3.0))

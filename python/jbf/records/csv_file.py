@@ -140,7 +140,7 @@ def _checked_header(
 
 
 def _is_number(cell: str) -> bool:
-    """Whether a cell is a number or empty."""
+    """Whether a cell is a number."""
     try:
         float(cell)
     except ValueError:

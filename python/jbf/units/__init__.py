@@ -1,1 +1,1 @@
-"""Units of measurement: names, sizes, dimensions and conversion."""
+"""Units of measurement: names, conversion factors, dimensions, parsing and conversion."""

@@ -1,4 +1,4 @@
-"""Quantities with a unit, in TOML and as values of options."""
+"""Quantities with units in TOML files and command-line options."""
 
 from __future__ import annotations
 
@@ -37,6 +37,7 @@ def quantities(section: Mapping[str, Any], prefix: str) -> dict[str, Any]:
 
 
 def _converted(key: str, value: object, prefix: str) -> object:
+    """Value of one key in the unit of the key; unchanged if it is not a quantity."""
     named = unit_of_name(key)
     if named is None or not isinstance(value, str) or len(value) > _LONGEST:
         return value
@@ -57,7 +58,7 @@ def _converted(key: str, value: object, prefix: str) -> object:
 
 
 def number_in(unit: str, text: str, option: str) -> float:
-    """Convert the value of an option, with or without a unit, to a number in a unit.
+    """Convert the text of an option, with or without a unit, to a number in a given unit.
 
     Parameters
     ----------
@@ -90,6 +91,7 @@ def number_in(unit: str, text: str, option: str) -> float:
 
 
 def _in_unit(number: float, unit: str, target: str) -> float:
+    """Convert a number from one unit to another."""
     if unit == target:
         return number
     given, to = parse_unit(unit), parse_unit(target)

@@ -1,4 +1,4 @@
-"""Units of recordings by their names in loggers, with exact conversion factors to SI units.
+"""Table of units by their names in loggers, with exact conversion factors to SI units.
 
 A factor is a ratio of integers times a power of pi, so that a conversion is rounded only once. For
 example, milliseconds are divided by 1000, not multiplied by a rounded 0.001. Angles and counts are
@@ -10,15 +10,15 @@ from __future__ import annotations
 from fractions import Fraction
 
 BASES = ("kg", "m", "s", "A", "K", "rad", "count")
-"""Base units; dimensions are exponents of these."""
+"""Base units; the dimensions of a unit are exponents of these."""
 
 Dimensions = tuple[int, ...]
 Entry = tuple[Fraction, int, Dimensions]
-"""Ratio, power of pi, dimensions."""
+"""Conversion factor of a unit, as ratio and power of pi, and its dimensions."""
 
 
 def dimensions(**powers: int) -> Dimensions:
-    """Return exponents in the order of `BASES`."""
+    """Dimensions as exponents in the order of `BASES`."""
     return tuple(powers.get(base, 0) for base in BASES)
 
 
@@ -94,7 +94,7 @@ UNITS: dict[str, Entry] = _SINGLE | {
     for name, (entry, prefixes) in _WITH_PREFIX.items()
     for prefix in ("", *prefixes)
 }
-"""Size and dimensions by name; upper and lower case differ (mN, MN)."""
+"""Conversion factor and dimensions of each unit by its case-sensitive name (mN, MN)."""
 
 ALIASES = {
     "sek": "s", "second": "s", "seconds": "s", "sekunde": "s", "sekunden": "s", "secs": "s",
@@ -138,7 +138,7 @@ ASK = {
     "Hz": "rev/s or rad/s",
     "oz": "ozf (a force) or a mass",
 }
-"""Names with several meanings in recordings; the user must state which one applies."""
+"""Unit names that are ambiguous in recordings; the user must state the meaning."""
 
 SUFFIXES = {
     "s": "s", "ms": "ms", "us": "us", "ns": "ns", "min": "min", "h": "h", "sec": "s", "m": "m",

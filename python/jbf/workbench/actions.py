@@ -1,4 +1,4 @@
-"""Handlers of the page's requests: plain functions of a session and the request parameters."""
+"""Handlers of the page's requests: functions of a session and the request parameters."""
 
 from __future__ import annotations
 
@@ -27,49 +27,53 @@ MOST_PIXELS = 4000
 
 
 def _model(parameters: Parameters) -> int | None:
+    """Number of the model that a request names; None if it names none."""
     value = parameters.get("model")
     return None if value in (None, "", "null") else int(value)
 
 
 def _span(parameters: Parameters) -> tuple[float | None, float | None]:
+    """Interval of a request, s; None for an open end."""
     ends = [parameters.get(key) for key in ("from_s", "to_s")]
     first, last = (None if v in (None, "") else float(v) for v in ends)
     return first, last
 
 
 def _pixels(parameters: Parameters, key: str = "pixels", default: int = 1000) -> int:
+    """Number of pixels that a request specifies, limited to the permitted range."""
     return min(max(int(parameters.get(key, default)), 10), MOST_PIXELS)
 
 
 def state(session: Session, parameters: Parameters) -> Any:
-    """Return the complete state, except the plots."""
+    """State of the session for the page: rig, runs, models and running job, without plots."""
     return session.to_dict()
 
 
 def listing(session: Session, parameters: Parameters) -> Any:
-    """List the folder."""
+    """Files of the session's folder by kind."""
     return session.folder.listing()
 
 
 def series(session: Session, parameters: Parameters) -> Any:
-    """Return a section of a run."""
+    """Time series of a section of a run, for a plot."""
     span = _span(parameters)
     return views.series(session, _model(parameters), parameters["run"], span, _pixels(parameters))
 
 
 def signature(session: Session, parameters: Parameters) -> Any:
-    """Return the signature of an effect in a run."""
+    """Contribution of an effect to the friction of a run, for a plot."""
     number = _number(parameters)
     span, pixels = _span(parameters), _pixels(parameters)
     return views.signature(session, number, parameters["effect"], parameters["run"], span, pixels)
 
 
 def map_of_runs(session: Session, parameters: Parameters) -> Any:
-    """Return the map of the residual over runs and speeds."""
+    """Mean residual of each run by speed range, for a map."""
     return views.map_of_runs(session, _number(parameters))
 
 
 def _number(parameters: Parameters) -> int:
+    """Number of the model that a request requires."""
     number = _model(parameters)
     if number is None:
         raise InputError(problem="no model is selected", remedy="fit or select one")
@@ -77,31 +81,31 @@ def _number(parameters: Parameters) -> int:
 
 
 def plane(session: Session, parameters: Parameters) -> Any:
-    """Return the plane of friction against speed."""
+    """Density of the samples of runs in the friction-speed plane, for a plot."""
     return views.plane(session, _model(parameters), *_picture(parameters))
 
 
 def brush(session: Session, parameters: Parameters) -> Any:
-    """Return a selection in all views."""
+    """Selected samples in all views."""
     return views.brushed(
         session, _model(parameters), dict(parameters["selection"]), *_picture(parameters)
     )
 
 
 def _picture(parameters: Parameters) -> tuple[list[str], tuple[int, int]]:
-    """Return the runs and the size in pixels of a plane."""
+    """Names of the runs, and size in pixels, of a requested friction-speed plane."""
     size = (_pixels(parameters, "columns", 400), _pixels(parameters, "rows", 300))
     return [str(name) for name in parameters["runs"]], size
 
 
 def open_campaign(session: Session, parameters: Parameters) -> Any:
-    """Open a rig and its runs."""
+    """Open a rig and its runs in the session."""
     session.open(str(parameters["rig"]), [str(name) for name in parameters["runs"]])
     return {}
 
 
 def demo(session: Session, parameters: Parameters) -> Any:
-    """Open the demo data; copy them into the folder if `jbf demo` has not written them there."""
+    """Open the demo data in the session, copied into the folder if `jbf demo` has not done it."""
     with as_file(files("jbf") / "data" / "demo" / "hidden") as shipped:
         shipped_copies = [
             name for name in DEMO_PLACES if _holds(session.folder.root / name, shipped)
@@ -115,26 +119,26 @@ def demo(session: Session, parameters: Parameters) -> Any:
 
 
 def _holds(folder: Path, shipped: Path) -> bool:
-    """Return whether a folder contains the shipped rig and runs."""
+    """Whether a folder contains the shipped rig and runs of the demo."""
     names = ["rig.toml", *(path.name for path in shipped.glob("*.csv"))]
     _, differ, missing = filecmp.cmpfiles(shipped, folder, names, shallow=False)
     return not differ and not missing
 
 
 def look(session: Session, parameters: Parameters) -> Any:
-    """Return the guessed assignment of a file's columns."""
+    """Proposed map for a file: the assignment of its columns."""
     return importer.guess_map(session.folder, str(parameters["file"]))
 
 
 def try_map(session: Session, parameters: Parameters) -> Any:
-    """Return the runs that a map yields from files."""
+    """Runs that a map yields from files, without an import."""
     form = parameters.get("form")
     trims = None if form is None else dict(form)
     return importer.try_map(session.folder, _files(parameters), str(parameters["map"]), trims)
 
 
 def import_files(session: Session, parameters: Parameters) -> Any:
-    """Import files as runs and open them."""
+    """Import files as runs, and open these in the session."""
     into = str(parameters["into"])
     imported = importer.import_runs(
         session.folder, _files(parameters), str(parameters["map"]), into
@@ -148,7 +152,7 @@ def _files(parameters: Parameters) -> list[str]:
 
 
 def trim(session: Session, parameters: Parameters) -> Any:
-    """Restrict a run to an interval, or restore all of it."""
+    """Restrict a run to an interval, or restore the complete run."""
     first, last = _span(parameters)
     span = None if first is None or last is None else (first, last)
     with session.lock:
@@ -166,19 +170,19 @@ def leave_out(session: Session, parameters: Parameters) -> Any:
 
 
 def law(session: Session, parameters: Parameters) -> Any:
-    """Choose the base law."""
+    """Choose the base law of new models."""
     session.choose_law(str(parameters["law"]))
     return {}
 
 
 def fit(session: Session, parameters: Parameters) -> Any:
-    """Fit a law with effects, and test all other effects as candidates."""
+    """Start a fit of a law with effects, followed by tests of all other effects."""
     session.begin("round", [str(e) for e in parameters.get("effects", [])], _parent(parameters))
     return {}
 
 
 def diagnose(session: Session, parameters: Parameters) -> Any:
-    """Run the complete diagnosis."""
+    """Start a complete diagnosis."""
     session.begin("diagnose", (), _parent(parameters))
     return {}
 
@@ -188,7 +192,7 @@ def _parent(parameters: Parameters) -> int | None:
 
 
 def cancel(session: Session, parameters: Parameters) -> Any:
-    """Cancel the running fit."""
+    """Cancel the running job."""
     return {"cancelled": session.jobs.cancel()}
 
 
@@ -206,19 +210,19 @@ def compare_with(session: Session, parameters: Parameters) -> Any:
 
 
 def undo(session: Session, parameters: Parameters) -> Any:
-    """Return to the parent model."""
+    """Display the parent of the current model."""
     parent = session.models.node()["parent"]
     session.show(parent)
     return {}
 
 
 def keep(session: Session, parameters: Parameters) -> Any:
-    """Write the model, its report or another result as a file into the folder."""
+    """Write a result of the displayed model (model file, report and so on) into the folder."""
     return saved_files.save_as_file(session, str(parameters["what"]))
 
 
 def text(session: Session, parameters: Parameters) -> Any:
-    """Return the content of a file that `keep` would write, as a download."""
+    """Content of a file that `keep` would write, for a download."""
     name, content = saved_files.text_of(session, str(parameters["what"]))
     disposition = f"attachment; filename*=UTF-8''{quote(name)}"
     # Never displayed as a page of this server: a report is opened from disk.
@@ -233,7 +237,7 @@ QUERIES: dict[str, Callable[[Session, Parameters], Any]] = {
     "map": map_of_runs,
     "text": text,
 }
-"""Handlers of GET requests, which change nothing."""
+"""Handlers of GET requests by path; these change nothing."""
 COMMANDS: dict[str, Callable[[Session, Parameters], Any]] = {
     "plane": plane,
     "brush": brush,
@@ -253,4 +257,4 @@ COMMANDS: dict[str, Callable[[Session, Parameters], Any]] = {
     "undo": undo,
     "keep": keep,
 }
-"""Handlers of POST requests, which may change the session."""
+"""Handlers of POST requests by path; these may change the session."""

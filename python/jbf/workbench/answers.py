@@ -29,7 +29,7 @@ Answer = dict[str, Any]
 
 
 def of_model(comparison: Comparison) -> Answer:
-    """Return a model with its errors, parameters and failures."""
+    """Errors, parameters and residual patterns of a model, for the page."""
     model = comparison.model
     return {
         "law": model.law,
@@ -48,7 +48,7 @@ def of_model(comparison: Comparison) -> Answer:
 
 
 def _stribeck(comparison: Comparison) -> Answer:
-    """Return friction against speed.
+    """Friction over speed, for the page.
 
     The data are the means of record and model per direction, the steady curve, and the regimes.
     """
@@ -61,9 +61,9 @@ def _stribeck(comparison: Comparison) -> Answer:
 
 
 def _steady_curve(comparison: Comparison) -> Answer | None:
-    """Return the law at steady speeds in the range of the runs.
+    """Steady friction of the law over the speeds of the runs; None without a steady curve.
 
-    None if the law has no steady curve.
+    The data are speeds, m/s, and forces, N.
     """
     model = comparison.model
     motions = [p.motion.velocity for p in comparison.campaign.prepared]
@@ -77,13 +77,13 @@ def _steady_curve(comparison: Comparison) -> Answer | None:
 
 
 def _parameters(model: Model, values: Mapping[str, ParameterValue]) -> Answer:
-    """Return each parameter with its unit."""
+    """Parameters of a model with their units, for the page."""
     units = units_of(model.law, model.effects, model.rig.quantities)
     return {name: {**p.to_dict(), "unit": units[name]} for name, p in values.items()}
 
 
 def of_fit(fit: Fit) -> Answer:
-    """Return the parameters of a fit with their correlations."""
+    """Parameters of a fit with their correlations, for the page."""
     estimated = [name for name, p in fit.parameters.items() if not p.held]
     return {
         "parameters": _parameters(fit.model, fit.parameters),
@@ -94,7 +94,7 @@ def of_fit(fit: Fit) -> Answer:
 
 
 def of_step(step: Step) -> Answer:
-    """Return the held-out error of a step and the trials of its candidates."""
+    """Held-out error of a step of the ledger, and its candidates, for the page."""
     return {
         "held_out_rms": step.held_out_rms if math.isfinite(step.held_out_rms) else None,
         "trials": [t.to_dict() for t in step.trials],
@@ -102,7 +102,7 @@ def of_step(step: Step) -> Answer:
 
 
 def of_power(power: Iterable[Power], model: Model) -> list[Answer]:
-    """Return the detection limits of each effect, worded as in the reports."""
+    """Detection limits of effects, worded as in the reports, for the page."""
     limits = list(power)
     rows = power_rows(limits, model.law, model.rig.quantities)
     names = ("effect", "found", "share", "alone", "like")
@@ -113,7 +113,7 @@ def of_power(power: Iterable[Power], model: Model) -> list[Answer]:
 
 
 def of_diagnosis(diagnosis: Diagnosis) -> Answer:
-    """Return the verdict, the summary and the proposed run of a diagnosis."""
+    """Verdict, summary and proposed run of a diagnosis, for the page."""
     content = diagnosis.to_dict()
     next_run = diagnosis.experiment
     return {
@@ -129,7 +129,7 @@ def of_diagnosis(diagnosis: Diagnosis) -> Answer:
 
 
 def write_records(comparison: Comparison, folder: Path) -> Answer:
-    """Write time, speed, friction, prediction and the flag of counted samples, one file per run."""
+    """Write time, speed, friction, prediction and mask of included samples, one file per run."""
     folder.mkdir(parents=True, exist_ok=True)
     rows = zip(
         comparison.campaign.prepared,

@@ -1,4 +1,4 @@
-"""Routes of the server and their handlers."""
+"""Web application of the workbench: routes of the server and their handlers."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from jbf.workbench.guard import LARGEST_UPLOAD, Guard
 from jbf.workbench.session import Session
 
 TICK_S = 0.1
-"""Interval between checks for changes."""
+"""Interval between checks for changes of the session, s."""
 PULSE_S = 10.0
-"""Interval without changes after which a comment line is sent, to detect a closed page."""
+"""Interval without changes after which a comment line is sent, s, to detect a closed page."""
 
 Parameters = dict[str, Any]
 Action = Callable[[Session, Parameters], Any]
 
 
 def create_app(session: Session, token: str, port: int, largest: int = LARGEST_UPLOAD) -> Starlette:
-    """Create the application.
+    """Create the web application for a session.
 
     Parameters
     ----------
@@ -47,6 +47,8 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
     """
 
     def endpoint(action: Action) -> Callable[[Request], Any]:
+        """Convert an action of the session to a handler of requests."""
+
         async def answer(request: Request) -> Response:
             parameters: Parameters = dict(request.query_params)
             if request.method == "POST":
@@ -96,6 +98,7 @@ def create_app(session: Session, token: str, port: int, largest: int = LARGEST_U
 
 
 def _answered(action: Action, session: Session, parameters: Parameters) -> Response:
+    """Response with the result of an action, or with its error."""
     try:
         answer = action(session, parameters)
     except JbfError as error:
@@ -106,15 +109,18 @@ def _answered(action: Action, session: Session, parameters: Parameters) -> Respo
 
 
 def _refused(words: str, code: int = 422) -> JSONResponse:
+    """Response with an error message."""
     return JSONResponse({"error": words}, code)
 
 
 async def _page(request: Request) -> Response:
+    """Response with the page."""
     page = files("jbf.workbench") / "static" / "index.html"
     return Response(page.read_bytes(), media_type="text/html; charset=utf-8")
 
 
 async def _vendored(request: Request) -> Response:
+    """Response with a file of the plot library."""
     file = vendored.file(request.path_params["name"])
     if file is None:
         return _refused("file not found", 404)

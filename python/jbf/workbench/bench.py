@@ -26,12 +26,14 @@ Span = tuple[float, float]
 
 @dataclass
 class Bench:
-    """Rig and its runs.
+    """Rig and runs that are open in a session.
 
     Attributes
     ----------
     rig_name, run_names
         Names of the files in the folder.
+    rig, runs
+        The rig, and the complete runs.
     trims
         Used interval of each trimmed run, s.
     imported
@@ -53,7 +55,7 @@ class Bench:
 
     @classmethod
     def read(cls, folder: Folder, rig_name: str, run_names: Sequence[str]) -> Bench:
-        """Read files of the folder.
+        """Read a rig and runs from files of the folder.
 
         Raises
         ------
@@ -66,7 +68,7 @@ class Bench:
         return cls(rig_name, tuple(run_names), rig, tuple(runs), imported=imported)
 
     def run(self, name: str) -> Run:
-        """Return a run by its name.
+        """Run with a given name, without its trim.
 
         Raises
         ------
@@ -79,7 +81,7 @@ class Bench:
         raise InputError(file=name, problem="this run is not open", remedy="select an open run")
 
     def trim(self, name: str, span: Span | None) -> None:
-        """Restrict a run to an interval; None restores all of it.
+        """Restrict a run to an interval, s; None restores the complete run.
 
         Raises
         ------
@@ -107,7 +109,7 @@ class Bench:
         (self.excluded.add if out else self.excluded.discard)(name)
 
     def used_runs(self) -> tuple[Run, ...]:
-        """Return the runs that fits use, trimmed.
+        """Trimmed runs that are not excluded from fits.
 
         Raises
         ------
@@ -120,13 +122,14 @@ class Bench:
         return runs
 
     def _trimmed(self, run: Run) -> Run:
+        """Part of a run within its trim."""
         if run.name not in self.trims:
             return run
         first, last = self.trims[run.name]
         return run.select((run.time_s >= first) & (run.time_s <= last))
 
     def steps(self) -> Steps:
-        """Return the steps that produce these runs."""
+        """Steps of the session that produced these runs, for the equivalent commands."""
         rows = zip(self.runs, self.run_names, strict=True)
         folder = PurePosixPath(self.rig_name).parent
         return Steps(
@@ -139,7 +142,7 @@ class Bench:
         )
 
     def examine_runs(self, changed: Any) -> None:
-        """Examine the recordings in a thread; `changed` is called after each run."""
+        """Examine all runs for recording artefacts in a thread; call `changed` after each run."""
 
         def look() -> None:
             for run in self.runs:
@@ -149,7 +152,7 @@ class Bench:
         threading.Thread(target=look, daemon=True).start()
 
     def to_list(self) -> list[Mapping[str, Any]]:
-        """Return the runs as data for the page."""
+        """Data of the runs for the page."""
         return [
             {
                 "name": run.name,
@@ -168,7 +171,7 @@ class Bench:
 
 
 def _imported(folder: Folder, parent: PurePosixPath) -> tuple[str, ...]:
-    """Return the recordings from which a campaign was imported, if located next to its folder."""
+    """Recordings from which a campaign was imported, if these are next to its folder."""
     try:
         ledger = json.loads(read_text(folder.path((parent / LEDGER).as_posix())))
         names = [(parent.parent / str(file["file"])).as_posix() for file in ledger["files"]]

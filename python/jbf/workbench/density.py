@@ -1,4 +1,4 @@
-"""Density of samples in the friction-speed plane, computed once and cached."""
+"""Density of samples in the friction-speed plane as an image, computed once and cached."""
 
 from __future__ import annotations
 
@@ -23,14 +23,17 @@ LEAST_FINE = 0.35
 
 @dataclass(frozen=True, eq=False)
 class Density:
-    """Density of some runs in the friction-speed plane.
+    """Images of the density of samples of some runs in the friction-speed plane.
 
     Attributes
     ----------
+    frame
+        Pixel grid of the images.
     places
         Pixel index of each sample of each run; one beyond the last index for samples outside.
     measured, model
-        Encoded images; `model` is None without a model.
+        Images of the measured and the predicted friction (`Frame.picture`); `model` is None without
+        a model.
     """
 
     frame: Frame
@@ -39,18 +42,18 @@ class Density:
     model: str | None
 
     def layer_of(self, masks: Mapping[RunSeries, Mask]) -> str:
-        """Return the image of a subset of the samples."""
+        """Encoded image of the density of a subset of the samples, given by one mask per run."""
         return self.frame.picture([place[masks[run]] for run, place in self.places.items()])
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the data for the page."""
+        """Data of the images for the page."""
         content: dict[str, Any] = {"frame": self.frame.to_dict(), "measured": self.measured}
         return content if self.model is None else {**content, "model": self.model}
 
 
 @lru_cache(maxsize=8)
 def density(runs: tuple[RunSeries, ...], size: Size) -> Density:
-    """Compute the density of runs with at most the given number of columns and rows."""
+    """Compute the density of runs on a grid of at most `size` (columns, rows) pixels."""
     measured = {run: run.friction for run in runs if run.friction is not None}
     models = [run.model_n for run in measured if run.model_n is not None]
     speeds = [run.velocity for run in measured]
@@ -65,6 +68,6 @@ def density(runs: tuple[RunSeries, ...], size: Size) -> Density:
 
 
 def pixels_for(samples: int, size: Size) -> Size:
-    """Reduce the number of pixels for few samples, so that a single one is visible."""
+    """Size of the grid for a number of samples, reduced if few, so that each is visible."""
     share = min(max((samples / DENSE) ** 0.5, LEAST_FINE), 1.0)
     return max(int(size[0] * share), 1), max(int(size[1] * share), 1)

@@ -1,4 +1,4 @@
-"""Equivalent commands and Python code of the steps in a session."""
+"""Commands and Python code equivalent to the steps of a session."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ WIDTH = 88
 
 @dataclass(frozen=True)
 class Steps:
-    """Steps in the session before the first model was created.
+    """Steps of a session before the first model: rig, runs, import and trims.
 
     Attributes
     ----------
@@ -23,7 +23,9 @@ class Steps:
     imported
         Recordings from which the runs were imported; empty if they were opened directly.
     map
-        Map of that import. `out` is the output folder.
+        Map of that import.
+    out
+        Output folder of that import.
     trims
         Used interval of each trimmed run, s.
     """
@@ -37,7 +39,7 @@ class Steps:
 
 
 def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
-    """Return the `jbf` commands that lead to a model; without a model, those for the runs alone."""
+    """`jbf` commands that lead to a model (`node`); without a model, those for the runs alone."""
     lines = []
     if steps.imported:
         files = shlex.join(steps.imported)
@@ -58,7 +60,7 @@ def commands(node: Mapping[str, Any] | None, steps: Steps) -> str:
 
 
 def python(node: Mapping[str, Any] | None, steps: Steps) -> str:
-    """Return the equivalent Python code."""
+    """Python code that leads to a model (`node`); without a model, that for the runs alone."""
     lines = ["import jbf", ""]
     if steps.imported:
         into = f", {steps.map!r}, {steps.out!r}, replace_folder=True)"

@@ -24,13 +24,13 @@ _UPLOADS = _RECORDINGS | {".csv", ".toml"}
 
 @dataclass(frozen=True)
 class Folder:
-    """Folder whose names are relative paths, with `/` between their parts."""
+    """Folder of a session; names are paths relative to it, with `/` between their parts."""
 
     root: Path
 
     @classmethod
     def of(cls, path: str | os.PathLike[str]) -> Folder:
-        """Return the folder at a path.
+        """Open a folder for a session.
 
         Raises
         ------
@@ -43,7 +43,7 @@ class Folder:
         return cls(root)
 
     def path(self, name: str) -> Path:
-        """Resolve a name to a path in the folder, following links.
+        """Path of a file or folder with this name, with links resolved.
 
         Raises
         ------
@@ -65,11 +65,11 @@ class Folder:
         )
 
     def name(self, path: Path) -> str:
-        """Return the name of a path in the folder."""
+        """Name of a path within the folder."""
         return Path(os.path.realpath(path)).relative_to(self.root).as_posix()
 
     def new_file(self, name: str) -> Path:
-        """Return the path of a new uploaded file.
+        """Path for a new uploaded file.
 
         The name must be a file name without a folder, of a supported kind, that is not in use.
 
@@ -94,7 +94,7 @@ class Folder:
         return path
 
     def listing(self) -> dict[str, Any]:
-        """List campaigns (a rig and runs in one folder), rigs, maps, models and recordings."""
+        """Campaigns (a rig and runs in one folder), rigs, maps, models and recordings by kind."""
         names_by_kind: dict[str, Any] = {
             "rigs": [],
             "maps": [],
@@ -139,7 +139,7 @@ def _parent(name: str) -> str:
 
 
 def _toml_kind(path: Path) -> str | None:
-    """Classify a TOML file as `rigs`, `maps` or `models`; None for any other file."""
+    """Kind of a TOML file: `rigs`, `maps` or `models`; None for any other file."""
     try:
         if path.stat().st_size > _LARGEST_TOML:
             return None

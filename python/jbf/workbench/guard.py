@@ -17,7 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 TOKEN = "x-jbf-token"
 LARGEST_UPLOAD = 1 << 29
-"""Maximum size of a request body: half a gigabyte. Larger files must be copied manually."""
+"""Maximum size of a request body, bytes; larger files must be copied manually."""
 POLICY = "; ".join(
     [
         "default-src 'none'",
@@ -46,7 +46,7 @@ class TooLarge(Exception):
 
 
 class Guard:
-    """Middleware around the whole application.
+    """Middleware that rejects requests of other pages, around the whole application.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Guard:
         self.hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Handle or reject a request."""
+        """Pass a request to the application, or reject it."""
         if scope["type"] == "lifespan":
             await self.app(scope, receive, send)
             return
@@ -105,7 +105,7 @@ class Guard:
                 await PlainTextResponse(self._too_large(), 413)(scope, receive, with_headers)
 
     def refusal(self, path: str, headers: dict[str, str]) -> tuple[int, str] | None:
-        """Return status code and reason of a rejection; None for a permitted request."""
+        """Status code and reason for the rejection of a request; None for a permitted request."""
         if headers.get("host", "") not in self.hosts:
             return 400, "this server answers to 127.0.0.1 and localhost alone"
         origin = headers.get("origin")

@@ -37,9 +37,9 @@ SI_UNITS = {
 
 
 def guess_map(folder: Folder, name: str) -> dict[str, Any]:
-    """Guess the map of a file.
+    """Propose a map for a file of the folder.
 
-    Returns its text, open questions, and a name for the new campaign.
+    Returns the text of the map, open questions, and a name for the new campaign.
     """
     stem = PurePosixPath(name).stem
     names = chain([stem], (f"{stem}_{k}" for k in count(2)))
@@ -59,9 +59,9 @@ def guess_map(folder: Folder, name: str) -> dict[str, Any]:
 
 
 def _first_joint(path: Path) -> tuple[Guess, list[str]]:
-    """Guess the map of a file.
+    """Proposed map of a file (of the first joint, if there are several), with notes.
 
-    If the file contains several joints, the guess is that of the first, with a note on the others.
+    The notes name the other joints.
     """
     try:
         return look(path), []
@@ -74,10 +74,11 @@ def _first_joint(path: Path) -> tuple[Guess, list[str]]:
 def try_map(
     folder: Folder, names: Sequence[str], text: str, form: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
-    """Try a map on files: smallest, median and largest value of each run's columns in SI units.
+    """Apply a map to files, and summarize the resulting runs without an import.
 
-    If a form is given, it changes the map first. Errors and open questions are reported as text,
-    together with the current map.
+    The summary has the smallest, median and largest value of each column in SI units. If a form is
+    given, it changes the map first. Errors and open questions are reported as text, together with
+    the current map.
     """
     if form is not None:
         text = changed_by(text, list(form["rows"]), dict(form["rig"]))
@@ -95,7 +96,7 @@ def try_map(
 
 
 def import_runs(folder: Folder, names: Sequence[str], text: str, into: str) -> dict[str, Any]:
-    """Import into a new folder of the given name; returns its rig and its runs."""
+    """Import files into a new folder of a given name; return the names of its rig and runs."""
     out = folder.path(into)
     if out.exists():
         raise InputError(file=into, problem="already exists", remedy="name another folder")
@@ -124,13 +125,13 @@ def _paths(folder: Folder, names: Sequence[str]) -> list[Path]:
 
 
 def _cut_file(folder: Folder, text: str) -> Path | None:
-    """Return the trim file named by a map; like all names from a page, it must be in the folder."""
+    """Path of the trim file that a map names; it must be in the folder."""
     name = cut_name(text)
     return None if name is None else folder.path(name)
 
 
 def _additional_files(folder: Folder, text: str) -> list[Path] | None:
-    """Return the additional files named by a map; the files must be in the folder."""
+    """Paths of the further files that a map names; these must be in the folder."""
     return [folder.path(name) for name in additional_names(text)] or None
 
 

@@ -24,7 +24,17 @@ STOP_TIMEOUT_S = 20.0
 
 @dataclass
 class Job:
-    """Progress of the running job."""
+    """Progress of the running job.
+
+    Attributes
+    ----------
+    words
+        Description of the job.
+    begun
+        Start on the monotonic clock, s.
+    message, done, total
+        Last message, amount done and total amount.
+    """
 
     words: str
     begun: float = field(default_factory=time.monotonic)
@@ -33,7 +43,7 @@ class Job:
     total: int = 0
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the data for the page."""
+        """Data of the job for the page."""
         return {
             "words": self.words,
             "message": self.message,
@@ -44,7 +54,7 @@ class Job:
 
 
 class Jobs:
-    """Manager of the single job.
+    """Manager of the job, of which at most one runs at a time.
 
     Parameters
     ----------
@@ -61,7 +71,7 @@ class Jobs:
         self._lock = threading.Lock()
 
     def start(self, words: str, order: Order, on_end: Ended, part: Part | None = None) -> None:
-        """Start a job.
+        """Start a job in a separate process.
 
         `on_end` is called once, with the kind of ending and the result or the reason. `part` is
         called earlier with a partial result.
@@ -87,7 +97,7 @@ class Jobs:
         ).start()
 
     def cancel(self, at_once: bool = False) -> bool:
-        """Stop the job; returns False if no job is running.
+        """Stop the running job; return False if there is none.
 
         The job ends with its best result so far. On a second call, after `STOP_TIMEOUT_S`, or with
         `at_once`, it is killed without a result.
@@ -111,6 +121,7 @@ class Jobs:
     def _follow(
         self, connection: Any, process: BaseProcess, on_end: Ended, part: Part | None
     ) -> None:
+        """Forward the messages of the process until it ends, and report how it ended."""
         ending: Ending = "error"
         answer: Answer | str = "the fit process ended without a result (out of memory?)"
         job = self.job

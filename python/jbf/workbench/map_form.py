@@ -1,4 +1,4 @@
-"""Form view of a map: assignment, unit and sign of each column of the file.
+"""Form for a map on the page: quantity, unit and sign of each column of the file.
 
 The text of the map is authoritative. The form is derived from it and changes it. Elements that the
 form cannot represent (a formula, a cut, a clock) remain unchanged.
@@ -26,7 +26,7 @@ from jbf.importing.targets import KNOWN, wanted_unit
 from jbf.units.unit import parse_unit
 
 FIRST = 3
-"""Number of values of a column that are shown as in the file."""
+"""Number of first values of a column that the form shows."""
 _PLAIN = re.compile(r"\s*(?P<sign>-?)\s*`(?P<column>[^`]+)`\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*")
 _ANSWERED = re.compile(r"^# Open:\n(?:#   .*\n)+\n?", re.MULTILINE)
 """Comments with open questions in a guessed map; removed because the form shows them."""
@@ -52,7 +52,7 @@ WORDS = {
     "motor_velocity_rad_s": "angular speed of the motor",
     "motor_speed_rpm": "speed of the motor, in revolutions",
 }
-"""Plain description of each column of a run."""
+"""Plain description of each possible column of a run."""
 SUGGESTED = (
     "s", "ms", "us", "min", "m", "cm", "mm", "um", "in", "rad", "deg", "rev", "m/s", "mm/s", "um/s",
     "m/min", "mm/min", "rad/s", "deg/s", "rpm", "N", "mN", "kN", "lbf", "N m", "mN m", "N cm", "A",
@@ -62,7 +62,7 @@ SUGGESTED = (
 
 
 def file_columns(path: Path) -> list[dict[str, Any]]:
-    """Return the columns of a file: name, unit, first values as in the file."""
+    """Name, unit and first values of each column of a file, as in the file."""
     columns = []
     with open_source(path) as source:
         for table in source.tables:
@@ -84,7 +84,7 @@ def _shown(value: Any) -> str:
 
 
 def quantities() -> list[dict[str, Any]]:
-    """Return the possible assignments of a column: key, description, offered units."""
+    """Possible quantities of a column: key, description, offered units."""
     entries = []
     for key in (*WORDS, *(k for k in KNOWN if k not in WORDS)):
         required = wanted_unit(key)
@@ -96,7 +96,7 @@ def quantities() -> list[dict[str, Any]]:
 
 
 def form_of(text: str) -> dict[str, Any]:
-    """Return the form of a map's text.
+    """Contents of the form for the text of a map.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def form_of(text: str) -> dict[str, Any]:
 
 
 def rewritten(text: str, columns: Mapping[str, str], rig: Mapping[str, Any]) -> str:
-    """Return the text of a map with other columns and rig values.
+    """Replace columns and rig values in the text of a map.
 
     If the columns imply a different machine, its sections are guessed again; values already filled
     in are kept.
@@ -173,6 +173,7 @@ def _quoted(text: str) -> str:
 def _sections(
     before: Map, columns: Mapping[str, str], rig: Mapping[str, Any]
 ) -> dict[str, dict[str, Any]]:
+    """Rig sections of the changed map."""
     filled = {k: v for part in before.rig.values() for k, v in part.items() if v != OPEN}
     sections = {name: dict(part) for name, part in before.rig.items()}
     if set(columns) != set(before.columns) or not before.rig:
@@ -192,7 +193,7 @@ def _sections(
 
 
 def _put(section: Any, content: Mapping[str, Any]) -> None:
-    """Set the content of a section; unchanged items keep their comments."""
+    """Replace the content of a TOML section; unchanged items keep their comments."""
     for key in [key for key in section if key not in content]:
         del section[key]
     for key, value in content.items():
@@ -201,14 +202,14 @@ def _put(section: Any, content: Mapping[str, Any]) -> None:
 
 
 def expression_of(row: Mapping[str, Any]) -> str:
-    """Return a row of the form as an expression."""
+    """Map expression for a row of the form."""
     column = str(row["column"]).replace("`", "")
     unit = str(row.get("unit") or "").strip()
     return f"{'-' if row.get('turned') else ''}`{column}`{f' [{unit}]' if unit else ''}"
 
 
 def changed_by(text: str, rows: Sequence[Mapping[str, Any]], rig: Mapping[str, Any]) -> str:
-    """Return the text of a map with the changes made in its form.
+    """Apply the changes made in a form to the text of its map.
 
     Raises
     ------
@@ -239,7 +240,7 @@ def _number(value: Any) -> Any:
 
 
 def cut_name(text: str) -> str | None:
-    """Return the trim file named by a map, as written in it.
+    """Name of the trim file in the text of a map, as written; None without one.
 
     Raises
     ------
@@ -252,7 +253,7 @@ def cut_name(text: str) -> str | None:
 
 
 def additional_names(text: str) -> list[str]:
-    """Return the additional files named by a map, as written in it.
+    """Names of the further files in the text of a map, as written.
 
     Raises
     ------
@@ -284,7 +285,7 @@ def _map_of(text: str) -> Map:
 
 
 def without_path(error: InputError) -> InputError:
-    """Return the error without the path of the temporary map file."""
+    """Return an error without the path of the temporary map file."""
     fields = error._fields()
     if str(fields.get("file") or "").endswith("map.toml"):
         fields["file"] = "the map"

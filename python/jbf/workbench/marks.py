@@ -16,7 +16,7 @@ from jbf.workbench.thinning import ranges_of
 
 
 def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return each pattern with description, causes, advice, and the intervals in its worst bin.
+    """Description, causes, advice and worst intervals of each residual pattern, for the page.
 
     `ranges_s` maps the number of a run to pairs of instants, s.
     """
@@ -41,5 +41,5 @@ def failure_marks(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def worst_bin(failure: Failure) -> int:
-    """Return the index of the bin whose mean explains most of the residual's mean square."""
+    """Index of the bin whose mean explains most of the mean square of the residual."""
     return int(np.argmax(failure.counts * failure.means_n**2))

@@ -1,4 +1,4 @@
-"""Tree of models in a session, and the model that is displayed."""
+"""Tree of the models of a session, and the model that is displayed."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 from jbf.errors import InputError
 
 LARGE = ("model", "report")
-"""Large content that the page requests separately."""
+"""Keys of large contents, which the page requests separately."""
 
 
 @dataclass
 class Models:
-    """History of models.
+    """Tree of models, each derived from a parent model.
 
     Attributes
     ----------
@@ -31,14 +31,14 @@ class Models:
     compared: int | None = None
 
     def add(self, parent: int | None, words: str, content: Mapping[str, Any]) -> int:
-        """Add a model, which becomes the current one; returns its number."""
+        """Add a model to the tree, make it the current one, and return its number."""
         number = max(self.nodes, default=0) + 1
         self.nodes[number] = {"id": number, "parent": parent, "words": words, **content}
         self.current = number
         return number
 
     def node(self, number: int | None = None) -> dict[str, Any]:
-        """Return the data of a model; by default of the current one.
+        """Data of a model; by default of the current one.
 
         Raises
         ------
@@ -51,19 +51,19 @@ class Models:
         return self.nodes[at]
 
     def choose(self, number: int | None) -> None:
-        """Display a model, or only the records."""
+        """Make a model the current one; None displays only the records."""
         self.current = None if number is None else int(self.node(number)["id"])
 
     def set_compared(self, number: int | None) -> None:
-        """Draw a second model for comparison with the current one."""
+        """Choose a second model that is drawn for comparison; None for none."""
         self.compared = None if number is None else int(self.node(number)["id"])
 
     def undo(self) -> None:
-        """Return to the parent of the current model, which stays in the tree."""
+        """Make the parent of the current model the current one; the model stays in the tree."""
         self.current = self.node()["parent"]
 
     def ledger(self) -> list[dict[str, Any]]:
-        """Return the errors of the models from the first one to the current one."""
+        """Errors of the models from the first one to the current one."""
         line, at = [], self.current
         while at is not None:
             node = self.nodes[at]
@@ -73,7 +73,7 @@ class Models:
         return [{key: node.get(key) for key in keys} for node in reversed(line)]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the data for the page."""
+        """Data of the tree for the page, without large contents."""
         return {
             "current": self.current,
             "compared": self.compared,

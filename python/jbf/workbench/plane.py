@@ -20,9 +20,16 @@ MARGIN = 0.04
 
 @dataclass(frozen=True)
 class Frame:
-    """Pixel grid over a rectangle of the plane.
+    """Pixel grid over a rectangle of the friction-speed plane.
 
-    `x` is the speed, `y` is the force; row 0 is at the bottom.
+    Attributes
+    ----------
+    left, right
+        Range of the speed.
+    low, high
+        Range of the force.
+    columns, rows
+        Number of pixels; row 0 is at the lowest force.
     """
 
     left: float
@@ -34,7 +41,7 @@ class Frame:
 
     @classmethod
     def around(cls, x: Sequence[Array], y: Sequence[Array], columns: int, rows: int) -> Frame:
-        """Return the rectangle that contains all points, with a margin."""
+        """Create the grid over the smallest rectangle with all points and a margin."""
 
         def ends(parts: Sequence[Array]) -> tuple[float, float]:
             low = min((float(np.nanmin(p)) for p in parts if np.any(np.isfinite(p))), default=0.0)
@@ -45,9 +52,9 @@ class Frame:
         return cls(*ends(x), *ends(y), columns, rows)
 
     def places(self, x: Array, y: Array) -> Places:
-        """Return the pixel index of each sample in row-major order.
+        """Pixel index of each sample in row-major order; one beyond the last for samples outside.
 
-        Samples outside the rectangle have an index one beyond the last.
+        `x` is the speed and `y` the force of each sample.
         """
         across = (x - self.left) * (self.columns / (self.right - self.left))
         up = (y - self.low) * (self.rows / (self.high - self.low))
@@ -59,7 +66,7 @@ class Frame:
         return pixels
 
     def counts(self, places: Sequence[Places]) -> Counts:
-        """Return the number of samples in each pixel, shape (rows, columns)."""
+        """Number of samples in each pixel, shape (rows, columns)."""
         pixels = self.rows * self.columns
         total = np.zeros(pixels + 1, dtype=np.int64)
         for part in places:
@@ -67,18 +74,18 @@ class Frame:
         return total[:pixels].reshape(self.rows, self.columns)
 
     def picture(self, places: Sequence[Places]) -> str:
-        """Return the number of samples in each pixel as encoded by `shade`."""
+        """Image of the number of samples in each pixel, encoded by `shade`."""
         return shade(self.counts(places))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the data for the page."""
+        """Data of the grid for the page."""
         return dict(vars(self))
 
 
 def shade(counts: Counts) -> str:
-    """Encode counts as bytes from 0 (no samples) to 255.
+    """Encode numbers of samples per pixel as an image: bytes from 0 (none) to 255, base64.
 
-    The scale is logarithmic, the order row by row, the encoding base64.
+    The scale is logarithmic, the order row by row.
     """
     largest = max(int(counts.max(initial=0)), 1)
     level = np.log1p(counts) / np.log1p(largest)
@@ -87,7 +94,7 @@ def shade(counts: Counts) -> str:
 
 
 def within(x: Array, y: Array, box: tuple[float, float, float, float]) -> Mask:
-    """Return the mask of samples in a rectangle.
+    """Mask of the samples in a rectangle of the friction-speed plane.
 
     `box` contains smallest and largest speed, smallest and largest force.
     """

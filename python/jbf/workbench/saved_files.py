@@ -1,4 +1,4 @@
-"""Files saved from a model: model, report, firmware constants, next run, trimmed runs."""
+"""Files that are saved from a session: model, report, firmware source, next run, trimmed runs."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from jbf.workbench.session_file import FILE, save
 
 
 def model_text(session: Session) -> str:
-    """Return the text of the model file."""
+    """Text of the model file of the displayed model."""
     return str(session.models.node()["model"])
 
 
 def report_text(session: Session) -> str:
-    """Return the report: the page of a diagnosis, or the comparison of a fit with the runs."""
+    """HTML report: of the diagnosis, or of the comparison of the fit with the runs."""
     node = session.models.node()
     if "report" in node:
         return str(node["report"])
@@ -29,17 +29,17 @@ def report_text(session: Session) -> str:
 
 
 def rust_text(session: Session) -> str:
-    """Return the model as Rust source for a controller."""
+    """Rust source of the displayed model for a controller."""
     return rust(session.model(int(session.models.node()["id"])), "model.toml")
 
 
 def c_text(session: Session) -> str:
-    """Return the model as a C header for a controller."""
+    """C header of the displayed model for a controller."""
     return c(session.model(int(session.models.node()["id"])), "model.toml")
 
 
 def next_run_text(session: Session) -> str:
-    """Return the motion of the next experiment as CSV."""
+    """Motion of the proposed next run as CSV."""
     diagnosis = session.models.node().get("diagnosis") or {}
     if not diagnosis.get("next_run"):
         raise InputError(
@@ -56,11 +56,11 @@ TEXTS: dict[str, tuple[str, Callable[[Session], str]]] = {
     "c": ("model.h", c_text),
     "next_run": ("next_run.csv", next_run_text),
 }
-"""File name and text function of each kind of file."""
+"""File name, and function that returns the text, of each kind of file."""
 
 
 def text_of(session: Session, kind: str) -> tuple[str, str]:
-    """Return name and text of a file.
+    """File name and text of one kind of saved file.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def text_of(session: Session, kind: str) -> tuple[str, str]:
 
 
 def save_as_file(session: Session, kind: str) -> dict[str, list[str]]:
-    """Write a file into the folder; returns the names of written files, and of replaced ones."""
+    """Write one kind of file into the folder; return the names of written and replaced files."""
     if kind == "session":
         name = FILE
         before = session.folder.path(name).exists()

@@ -22,7 +22,17 @@ TIME_DIGITS = 11
 
 @dataclass(frozen=True, eq=False)
 class RunSeries:
-    """Data of one run, compared by identity; `model_n` and `counted` exist only with a model."""
+    """Time series of one run, compared by identity.
+
+    Attributes
+    ----------
+    time_s, velocity, friction
+        Time, speed and friction of the run, shape (n,).
+    model_n
+        Predicted friction; None without a model.
+    counted
+        True at included samples; None without a model.
+    """
 
     time_s: Array
     velocity: Array
@@ -32,13 +42,13 @@ class RunSeries:
 
     @cached_property
     def residual_n(self) -> Array | None:
-        """Record minus prediction, N; NaN where the sample does not count."""
+        """Record minus prediction, N; NaN at excluded samples; None without a model."""
         if self.model_n is None or self.friction is None or self.counted is None:
             return None
         return np.where(self.counted > 0, self.friction - self.model_n, np.nan)
 
     def columns(self) -> dict[str, Array]:
-        """Return the available columns by name."""
+        """Available time series by name."""
         candidates: Mapping[str, Array | None] = {
             "velocity_m_s": self.velocity,
             "friction_n": self.friction,
@@ -50,7 +60,7 @@ class RunSeries:
 
 @lru_cache(maxsize=512)
 def as_read(run: Run) -> RunSeries:
-    """Return the data of a run as in its file."""
+    """Time series of a run as in its file."""
     speed = run.velocity
     if not np.any(np.isfinite(speed)):
         path = run.position_m if run.position_m is not None else run.angle_rad
@@ -60,13 +70,13 @@ def as_read(run: Run) -> RunSeries:
 
 @lru_cache(maxsize=512)
 def as_modelled(file: Path) -> RunSeries:
-    """Return the data of a run with a model's prediction, from the file written by the fit."""
+    """Time series of a run with a model's prediction, from the file written by the fit."""
     time, speed, friction, model, counted = map(np.asarray, np.load(file, mmap_mode="r"))
     return RunSeries(time, speed, friction, model, counted)
 
 
 def drawn(data: RunSeries, from_s: float | None, to_s: float | None, pixels: int) -> dict[str, Any]:
-    """Return an interval of a run, reduced to the resolution of the plot."""
+    """Time series of an interval of a run, reduced to the resolution of a plot."""
     begin = data.time_s[0] if from_s is None else from_s
     end = data.time_s[-1] if to_s is None else to_s
     stretch = Stretch.between(data.time_s, float(begin), float(end), pixels)
@@ -82,9 +92,9 @@ def drawn(data: RunSeries, from_s: float | None, to_s: float | None, pixels: int
 
 
 def listed(values: Sequence[float] | Array, digits: int = DIGITS) -> list[float | None]:
-    """Convert values for JSON.
+    """Round values to the displayed precision for JSON; non-finite values become None.
 
-    They are rounded to the displayed precision; non-finite values become None.
+    `digits` is the number of significant digits.
     """
     array = np.asarray(values, dtype=float)
     finite = np.isfinite(array)

@@ -1,4 +1,4 @@
-"""Start of the workbench: port on the loopback interface, token, server."""
+"""Start of the workbench server on the loopback interface, with an access token."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ HOST = "127.0.0.1"
 
 
 def listening(port: int) -> socket.socket:
-    """Return a socket on the loopback interface; port 0 selects a free port.
+    """Open a socket on the loopback interface; port 0 selects a free port.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def listening(port: int) -> socket.socket:
 
 
 def serve(folder: str, port: int, opened: Callable[[str], None], *, demo: bool = False) -> None:
-    """Serve the page for a folder until Ctrl-C; `opened` is called with its address.
+    """Serve the workbench page for a folder until Ctrl-C; `opened` is called with its address.
 
     Raises
     ------

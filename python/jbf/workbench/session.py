@@ -1,4 +1,4 @@
-"""Session: the rig and runs, the models, and the running fit."""
+"""Session of the workbench: rig and runs, models, and the running job."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from jbf.workbench.work import Kind, Order
 
 
 class Session:
-    """State of the page for one folder.
+    """State of the workbench for one folder.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Session:
         self._loaded: dict[int, Model] = {}
 
     def changed(self) -> None:
-        """Register a change.
+        """Register a change of the session, so that pages reload the state.
 
         A comparison that was postponed during another job is started.
         """
@@ -64,12 +64,12 @@ class Session:
                     self._compare(current)
 
     def say(self, kind: str, words: str) -> None:
-        """Set the message for clients; `kind` is `done` or `error`."""
+        """Set the message that pages show; `kind` is `done` or `error`."""
         self.message = {"kind": kind, "words": words}
         self.changed()
 
     def on_bench(self) -> Bench:
-        """Return the rig and runs.
+        """Rig and runs that are open.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class Session:
         self.say("done", f"{rig_name} is open, with {count_of(len(run_names), 'run')}")
 
     def put(self, bench: Bench, models: Models, law: str | None = None) -> None:
-        """Replace rig, runs and models."""
+        """Replace the rig, the runs and the models of the session."""
         with self.lock:
             if self.jobs.job is not None:
                 raise InputError(problem="a fit is running", remedy="wait for it, or cancel it")
@@ -163,6 +163,7 @@ class Session:
         self.changed()
 
     def _compare(self, number: int) -> None:
+        """Start the comparison of a model of the tree with the runs."""
         node, bench = self.models.node(number), self.on_bench()
         place = self._new_place()
         file = place.with_suffix(".toml")
@@ -178,11 +179,12 @@ class Session:
         self.jobs.start(f"comparing {node['words']}", order, on_end)
 
     def _new_place(self) -> Path:
+        """Path of a new temporary folder for the records of a model."""
         self._places += 1
         return Path(self._kept.name) / str(self._places)
 
     def _add_model(self, answer: Any, parent: int | None, how: str, law: str, place: Path) -> int:
-        """Add a model to the tree.
+        """Add the model of a finished job to the tree, and return its number.
 
         `law` is the requested law, `how` the prefix of the model's label.
         """
@@ -192,7 +194,7 @@ class Session:
             return self.models.add(parent, f"{how}{named}", content)
 
     def _add_ranking(self, ending: Ending, answer: Any, number: int) -> None:
-        """Add the ranking of the candidates to a model that was added after its fit."""
+        """Add the ranking of candidates to a model that is already in the tree."""
         node = self.models.node(number)
         unit = self.on_bench().rig.quantities.force
         if ending == "done":
@@ -210,6 +212,7 @@ class Session:
     def _finish(
         self, ending: Ending, answer: Any, parent: int | None, words: str, law: str, place: Path
     ) -> None:
+        """Handle the end of a job: add its model, or report its error."""
         if ending == "done":
             self._add_model(answer, parent, "diagnosed: ", law, place)
             self.say("done", f"{words}: done")
@@ -222,7 +225,7 @@ class Session:
             self.say("error", f"{words}: {answer}")
 
     def records(self, number: int) -> dict[str, Path] | None:
-        """Return the record file of each run; None if the model has not been compared."""
+        """File with prediction and record of each run; None if the model has not been compared."""
         node = self.models.node(number)
         place = Path(self._kept.name) / str(node.get("records", ""))
         if not node.get("records") or not place.is_dir():
@@ -231,7 +234,7 @@ class Session:
         return {name: place / f"{index}.npy" for index, name in enumerate(names)}
 
     def model(self, number: int) -> Model:
-        """Return a model of the tree."""
+        """Model with a number in the tree."""
         text = str(self.models.node(number)["model"])
         if number not in self._loaded:
             file = Path(self._kept.name) / f"model-{number}.toml"
@@ -240,7 +243,7 @@ class Session:
         return self._loaded[number]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the complete state for the page."""
+        """Complete state of the session for the page."""
         with self.lock:
             job, bench = self.jobs.job, self.bench
             state: dict[str, Any] = {
@@ -281,9 +284,9 @@ class Session:
 
 
 def first_law(rig: Rig) -> str:
-    """Return the initial law of a rig.
+    """Initial base law for a rig.
 
-    It is `auto` for a drive, `journal` if the bearing data are complete, otherwise `stribeck`.
+    The law is `auto` for a drive, `journal` if the bearing data are complete, otherwise `stribeck`.
     """
     if rig.drive is not None:
         return AUTO

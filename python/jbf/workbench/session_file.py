@@ -1,4 +1,4 @@
-"""File of a session with rig, runs and models, for later continuation."""
+"""File of a session with rig, runs and models, from which it can be continued."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FORMAT = "jbf workbench 1"
 
 
 def save(session: Session) -> Path:
-    """Write the file into the session's folder and return its path.
+    """Write the session file into the session's folder, and return its path.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def save(session: Session) -> Path:
 
 
 def load(session: Session) -> bool:
-    """Restore the session from the file in the folder; returns False without a file.
+    """Restore a session from the file in its folder; return False if there is no file.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def load(session: Session) -> bool:
 
 
 def _node(node: dict[str, Any]) -> dict[str, Any]:
-    """Check that a model's entry has all keys that the page requires, and return it unchanged."""
+    """Check that the entry of a model has all keys that the page requires, and return it."""
     for key in ("id", "words", "law", "effects", "model", "rms"):
         node[key]
     return node

@@ -1,4 +1,4 @@
-"""Reduction of a record to the resolution of a screen: smallest and largest value per pixel.
+"""Reduction of a record to the resolution of a screen: minimum and maximum per pixel.
 
 Short peaks are preserved, because the drawn range contains all measured values.
 """
@@ -16,7 +16,15 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stretch:
-    """Samples `first` to `end` (exclusive), in `pixels` groups of `stride`."""
+    """Section of a record, in groups of samples with one group per pixel.
+
+    Attributes
+    ----------
+    first, end
+        First sample, and end (exclusive).
+    pixels
+        Number of groups.
+    """
 
     first: int
     end: int
@@ -29,7 +37,7 @@ class Stretch:
 
     @classmethod
     def between(cls, time_s: Array, from_s: float, to_s: float, pixels: int) -> Stretch:
-        """Return the samples between two instants.
+        """Section of a record between two instants.
 
         One more sample at each end makes lines continuous.
         """
@@ -39,7 +47,7 @@ class Stretch:
 
 
 def thinned(time_s: Array, columns: Mapping[str, Array], stretch: Stretch) -> dict[str, Array]:
-    """Reduce time and columns to two points per pixel, unless there are few samples.
+    """Reduce a section of a record to two points per pixel, unless it has few samples.
 
     Returns
     -------
@@ -65,7 +73,7 @@ def thinned(time_s: Array, columns: Mapping[str, Array], stretch: Stretch) -> di
 
 
 def ranges_of(mask: npt.NDArray[np.bool_], limit: int = 400) -> list[tuple[int, int]]:
-    """Return first sample and end (exclusive) of each interval in which a mask is true.
+    """First sample and end (exclusive) of each interval in which a mask is True.
 
     Intervals with the smallest gaps are merged until at most `limit` remain.
     """

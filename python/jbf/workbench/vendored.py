@@ -1,4 +1,4 @@
-"""Plot library uPlot, which is not part of the repository; fetched once by version and hash.
+"""Plot library uPlot, fetched once by version and hash since the repository lacks it.
 
 `python -m jbf.workbench.vendored` stores it next to this file; wheels include it.
 """
@@ -27,21 +27,21 @@ FOLDER = Path(__file__).resolve().parent / "vendored_files"
 
 
 def file(name: str) -> Path | None:
-    """Return the path of a file of the plot library.
+    """Path of a file of the plot library; None if it is unknown or was not fetched.
 
-    None if the name is unknown or the file was not fetched.
+    `name` is the name of the file.
     """
     path = FOLDER / name
     return path if name in FILES.values() and path.is_file() else None
 
 
 def is_complete() -> bool:
-    """Return whether all files were fetched."""
+    """Whether all files of the plot library were fetched."""
     return all(file(name) for name in FILES.values())
 
 
 def unpacked(archive: bytes) -> dict[str, bytes]:
-    """Return the required files of the archive.
+    """Required files of the library's archive, after a check of its hash.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def unpacked(archive: bytes) -> dict[str, bytes]:
 
 
 def fetch() -> None:
-    """Fetch the archive from the registry, check it, and store the required files."""
+    """Fetch the archive of the plot library, check it, and store the required files."""
     with urllib.request.urlopen(ADDRESS, timeout=60) as answer:
         contents = unpacked(answer.read())
     FOLDER.mkdir(exist_ok=True)

@@ -1,4 +1,4 @@
-"""Data of the plots: sections of runs, plane, map over all runs, signature of an effect."""
+"""Data of the workbench's plots: time series, plane, map over all runs, effect signatures."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MAP_SPEEDS = 24
 
 
 def series_by_run(session: Session, number: int | None) -> dict[str, RunSeries]:
-    """Return every run by name: with a model's prediction if available, otherwise as read."""
+    """Time series of every run by name, with the prediction of a model if available."""
     by_name = {run.name: as_read(run) for run in session.on_bench().runs}
     files = None if number is None else session.records(number)
     for name, file in (files or {}).items():
@@ -33,7 +33,7 @@ def series_by_run(session: Session, number: int | None) -> dict[str, RunSeries]:
 
 
 def series_of_run(session: Session, number: int | None, name: str) -> RunSeries:
-    """Return the run of a name, with a model's prediction if available."""
+    """Time series of one run, with the prediction of a model if available."""
     session.on_bench().run(name)
     return series_by_run(session, number)[name]
 
@@ -42,7 +42,7 @@ def series(
     session: Session, number: int | None, name: str, span: tuple[float | None, float | None],
     pixels: int,
 ) -> dict[str, Any]:  # fmt: skip
-    """Return a section of a run, with the prediction of the second model if one is selected."""
+    """Data of a section of a run for a plot, with the prediction of a second model if selected."""
     run = series_of_run(session, number, name)
     section = drawn(run, *span, pixels)
     compared = session.models.compared
@@ -62,7 +62,7 @@ def series(
 
 
 def plane(session: Session, number: int | None, names: list[str], size: Size) -> dict[str, Any]:
-    """Return friction against speed of some runs: density of the samples and of the model."""
+    """Data of the friction-speed plane of some runs: density of samples and of the model."""
     return _density(session, number, names, size).to_dict()
 
 
@@ -78,7 +78,7 @@ def masks_of(
     selection: Mapping[str, Any],
     runs: Mapping[str, RunSeries],
 ) -> dict[str, Mask]:
-    """Return the mask of selected samples of each run.
+    """Mask of the selected samples of each run, by name.
 
     A selection is one of three kinds: an interval of a run (`run`, `from_s`, `to_s`); a `box` of
     the plane in all runs or in one `run`; or the `mark` of a model's failure by its index. The box
@@ -105,6 +105,7 @@ def masks_of(
 def _mask_of_bins(
     session: Session, number: int | None, place: int, runs: Mapping[str, RunSeries]
 ) -> dict[str, Mask]:
+    """Mask of the samples in the worst bin of a residual pattern, by run."""
     node = session.models.node(number)
     if not 0 <= place < len(node["failures"]):
         raise InputError(
@@ -129,10 +130,10 @@ def brushed(
     session: Session, number: int | None, selection: Mapping[str, Any], names: list[str],
     size: Size,
 ) -> dict[str, Any]:  # fmt: skip
-    """Return the statistics and positions of a selection for all views.
+    """Statistics and positions of selected samples, for all views.
 
-    They are its intervals and residual per run, its speed range, its cells in the map over runs,
-    and its density in the plane of some runs.
+    The result contains intervals and residual per run, speed range, cells in the map over runs, and
+    density in the plane of some runs.
     """
     runs = series_by_run(session, number)
     masks = masks_of(session, number, selection, runs)
@@ -178,9 +179,9 @@ def _rms(values: Array) -> float | None:
 
 @lru_cache(maxsize=8)
 def speed_edges(runs: tuple[RunSeries, ...]) -> Array:
-    """Return the edges of the map's columns, m/s.
+    """Edges of the speed ranges (columns) of the map over runs, m/s.
 
-    They are closer near standstill, where friction changes most.
+    The ranges are narrower near standstill, where friction changes most.
     """
     top_speed = max((float(np.nanmax(np.abs(s.velocity))) for s in runs), default=0.0) or 1.0
     half = top_speed * np.linspace(0.0, 1.0, MAP_SPEEDS // 2 + 1) ** 2
@@ -192,7 +193,7 @@ def _column(speed: Array, edges: Array) -> Array:
 
 
 def map_of_runs(session: Session, number: int) -> dict[str, Any]:
-    """Return the mean of record minus prediction, one row per run, one column per speed range."""
+    """Mean residual (record minus prediction), one row per run and one column per speed range."""
     runs = series_by_run(session, number)
     if all(run.residual_n is None for run in runs.values()):
         raise InputError(problem="this model has not been compared yet", remedy="wait a moment")
@@ -216,9 +217,9 @@ def signature(
     session: Session, number: int, effect: str, name: str,
     span: tuple[float | None, float | None], pixels: int,
 ) -> dict[str, Any]:  # fmt: skip
-    """Return the contribution of an effect at its typical strength to a run.
+    """Contribution of an effect to the friction of a run, scaled to the residual.
 
-    It is scaled by least squares to the residual.
+    The contribution is that at the typical strength. The factor is determined by least squares.
     """
     run = session.on_bench().run(name)
     run_series = series_of_run(session, number, name)
@@ -248,6 +249,7 @@ def signature(
 
 
 def _usual(base: Model, effect: str) -> dict[str, float]:
+    """Parameters of an effect at its typical strength."""
     values = {name: p.value for name, p in base.parameters.items()}
     page = catalogue()[effect]
     return {**values, **{f"{effect}.{p.name}": p.starts[0] for p in page.parameters}}

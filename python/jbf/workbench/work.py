@@ -1,4 +1,4 @@
-"""Process of a fit: executes one order, sends progress messages and one result.
+"""Process of a job: executes one order, and sends progress messages and one result.
 
 A result is JSON data; data of the length of a record are written to files.
 """
@@ -38,20 +38,24 @@ from jbf.workbench.answers import (
 
 Kind = Literal["round", "diagnose", "compare"]
 STOP = "stop"
-"""Message of the server that stops the fit of a process."""
+"""Message of the server that stops the job of a process."""
 
 
 @dataclass(frozen=True)
 class Order:
-    """Work to be done by a process.
+    """Job for a separate process.
 
     Attributes
     ----------
     kind
         `round` fits the given effects and tests every other; `diagnose` runs all rounds; `compare`
         compares an unchanged model.
+    rig, runs
+        The rig, and the runs to use.
     folder
         Folder for the records with the model's prediction, one file per run.
+    law, clock, effects
+        Base law, definition of its film's time constant, and effects.
     model
         Path of the model file to compare.
     """
@@ -67,7 +71,7 @@ class Order:
 
 
 def main(connection: Connection, order: Order) -> None:
-    """Execute an order and send messages to the server.
+    """Execute a job in this process, and send its messages to the server.
 
     Progress messages are `("progress", message, done, total)`. The last message is
     `("done", result)`, `("error", words)`, or after `STOP` `("stopped", result)` with the best
@@ -126,13 +130,13 @@ def _interrupted_by(connection: Connection) -> Iterator[None]:
 
 
 def best_so_far(fit: Fit, order: Order) -> Answer:
-    """Return the result of a stopped fit."""
+    """Result of a job that was stopped, from its best fit."""
     compared = compare(fit.model, order.runs)
     return {**of_model(compared), **of_fit(fit), **write_records(compared, order.folder)}
 
 
 def execute(order: Order, progress: Any = None, part: Any = None) -> Answer:
-    """Return the result of an order; for a round, only the content that `part` has not received."""
+    """Result of a job; for a round, only the content that `part` has not received."""
     if order.kind == "compare":
         assert order.model is not None
         compared = compare(Model.load(order.model), order.runs)
@@ -140,6 +144,7 @@ def execute(order: Order, progress: Any = None, part: Any = None) -> Answer:
     if order.kind == "round":
 
         def fitted_as(fit: Fit, comparison: Comparison) -> None:
+            """Send the fitted model before its candidates are tested."""
             if part is not None:
                 part(
                     {

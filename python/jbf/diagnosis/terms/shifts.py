@@ -85,7 +85,7 @@ def moved(problem: Problem, late_s: Array, drift: float) -> Campaign:
 
 
 def _settled(problem: Problem, prepared: list[Prepared]) -> Campaign:
-    """Campaign of prepared runs with the settings of a problem's campaign."""
+    """Campaign of shifted runs, with the initial-state transients excluded again."""
     old = problem.campaign
     shifted = replace(
         old,

@@ -75,7 +75,7 @@ def trimmed(path: Path, recordings: Sequence[Recording]) -> list[Piece]:
 
 
 def _piece(row: object, at: int, recordings: Sequence[Recording]) -> Piece:
-    """Convert line number `at` of the file to a piece."""
+    """Convert entry number `at` of the file to a piece."""
     key = f"pieces, {at}"
     content: Mapping[str, Any] = table(row, key)
     refuse_unknown(content, _KEYS, f"{key}, ")

@@ -244,7 +244,7 @@ class TextSource(Source):
             yield number, cells if len(cells) == width else cells[:width]
 
     def _counts(self, cell: str) -> bool:
-        """Whether a cell is a number, a date or empty."""
+        """Whether a cell is a number or a date."""
         cell = cell.strip()
         return self.dialect.is_number(cell) or is_instant(cell)
 

@@ -61,7 +61,9 @@ def test_invalid_model_is_refused_with_file_and_cause(
 
 
 @pytest.mark.parametrize("name", ACCEPTED)
-def test_model_file_in_unusual_notation_gives_the_same_rms(name: str, capfd: Capture) -> None:
+def test_rms_is_unchanged_by_an_unusual_notation_of_the_model_file(
+    name: str, capfd: Capture
+) -> None:
     write(ACCEPTED[name])
     assert compared("a.csv", capfd, "bad.toml")["rms"] == pytest.approx(RMS_N, rel=5e-3)
 

@@ -71,7 +71,7 @@ def test_invalid_rig_is_refused_with_file_and_cause(
 
 
 @pytest.mark.parametrize("name", ACCEPTED)
-def test_rig_file_in_unusual_notation_gives_the_same_rig(name: str) -> None:
+def test_rig_is_unchanged_by_an_unusual_notation_of_its_file(name: str) -> None:
     write(ACCEPTED[name])
     assert read_rig("bad.toml") == read_rig("rig.toml")
 
@@ -84,7 +84,7 @@ EXTENDED = pytest.mark.extended
 )
 @pytest.mark.parametrize("key", ["radius_m", "length_m", "clearance_m", "mass_kg", "viscosity_pa_s",
                                  "normal_n"])  # fmt: skip
-def test_rig_with_an_extreme_size_gives_a_finite_rms(key: str, value: str, capfd: Capture) -> None:
+def test_rms_is_finite_for_a_rig_with_an_extreme_size(key: str, value: str, capfd: Capture) -> None:
     """Sizes from 1e-12 to 1e12 are accepted, and cause no overflow in the model."""
     if (key, value) in (("clearance_m", "1e12"), ("radius_m", "1e-12")):
         pytest.skip("this clearance exceeds the radius")

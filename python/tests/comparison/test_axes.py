@@ -126,7 +126,7 @@ def test_velocity_axis_has_12_bins_of_equal_count_in_each_direction(
 
 
 @pytest.mark.parametrize("speed", [2.2, 0.0375, 1e-7])
-def test_constant_speed_gives_one_velocity_bin_in_each_direction(speed: float) -> None:
+def test_velocity_axis_has_one_bin_in_each_direction_at_constant_speed(speed: float) -> None:
     n = 24
     force = 2.0 + 0.1 * np.random.default_rng(1).standard_normal(n)
     run = Run.from_arrays(0.002 * np.arange(n), np.full(n, speed), force)

@@ -111,12 +111,12 @@ def test_effect_force_excludes_the_fit_of_free_parameters(
             assert part == pytest.approx(reference, abs=5e-3)
 
 
-def test_effects_that_both_compared_models_have_get_no_share_of_the_force(full: Comparison) -> None:
+def test_effects_of_both_compared_models_explain_no_part_of_the_residual(full: Comparison) -> None:
     without_effects = compare(model_of([]), [p.run for p in full.campaign.prepared])
     assert explained_residual(full, without_effects) == explained_residual(full, full) == {}
 
 
-def test_parameter_without_influence_keeps_the_force_attributed_to_an_effect() -> None:
+def test_force_attributed_to_an_effect_is_unchanged_by_a_parameter_without_influence() -> None:
     """With a warm-up of size zero the force does not depend on the time constant."""
     runs = four_runs(lambda t, v, a: coulomb(t, v, a) + 0.5, noise_rms=0.01)
     idle = {"F_s": 6.0, **LAW, "warm_up.a": 0.0, "warm_up.tau_s": 30.0}

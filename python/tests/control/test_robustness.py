@@ -43,7 +43,7 @@ def square_outcomes() -> dict[str, Outcome]:
     ("worst", "verdict"),
     [(0.94, "help"), (HELP, "neutral"), (HARM, "neutral"), (1.03, "harm")],
 )
-def test_robustness_verdict_follows_from_the_largest_error_ratio_of_all_tasks(
+def test_robustness_verdict_is_determined_by_the_largest_error_ratio_of_all_tasks(
     worst: float, verdict: str
 ) -> None:
     assert (HELP, HARM) == (0.95, 1.02)

@@ -43,7 +43,7 @@ def test_feedback_gains_of_the_thesis_bench_are_those_of_the_thesis() -> None:
 OTHER_DRIVE = replace(THESIS_BENCH, damping_1_s=10.0, input_rad_s2_v=100.0)
 
 
-def test_feedback_gains_of_another_drive_give_the_same_closed_loop_poles() -> None:
+def test_closed_loop_poles_do_not_depend_on_the_drive() -> None:
     k1, k2 = gains(POSITION, OTHER_DRIVE)
     a, b = OTHER_DRIVE.damping_1_s, OTHER_DRIVE.input_rad_s2_v
     poles = np.sort_complex(np.roots([1.0, a + b * k2, b * k1]))

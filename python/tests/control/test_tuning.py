@@ -37,7 +37,7 @@ def test_friction_level_of_a_bearing_lies_just_below_its_breakaway_friction() ->
     assert (1.0 - 0.005 / FITTED["U_tr_m_s"]) * breakaway < level <= breakaway
 
 
-def test_settings_follow_from_time_step_encoder_resolution_and_friction_level() -> None:
+def test_tuned_settings_match_their_formulas_in_time_step_resolution_and_friction_level() -> None:
     level, settings = friction_level_v(DRY, VOLT), tune(DRY, VOLT)
     count_rad = 1.0 / VOLT.counts_per_rad
     speed_noise = count_rad / math.sqrt(12.0) * 60.0 * math.sqrt(60.0 * 0.002)

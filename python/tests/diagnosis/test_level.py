@@ -164,7 +164,9 @@ def _one_direction(direction: Array, noise: Array, blocks: list[int]) -> Directi
 
 
 @pytest.mark.parametrize(("rate", "gain"), [(0.1, 16.0), (0.15, 4.0), (0.6, 4.0), (0.7, 0.0)])
-def test_calibrated_level_is_a_quantile_of_random_signs(rate: float, gain: float) -> None:
+def test_calibrated_level_is_the_false_alarm_quantile_of_scores_with_random_signs(
+    rate: float, gain: float
+) -> None:
     """Signed sums of four unit scores are 4 in 1/8 of the draws, 2 in 1/2, and 0 otherwise."""
     noise = np.repeat([1.0, 1.0, -1.0, -1.0], 4)
     level = Level(false_alarm_rate=rate, candidates=1, chance=1.0)

@@ -75,7 +75,7 @@ def kinds(problem: Problem, solution: Solution) -> list[str]:
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.extended) for seed in range(1, 6))]
 )
-def test_samples_with_white_gaussian_noise_get_no_weights(seed: int) -> None:
+def test_samples_with_white_gaussian_noise_are_not_weighted(seed: int) -> None:
     campaign, _ = weighted_after_fit(white, seed)
     assert campaign.more_findings == ()
     assert campaign.samples.level is None
@@ -134,7 +134,7 @@ def test_inverse_squared_weights_are_linear_in_the_squared_force(unit: float) ->
     assert inverse.min() == pytest.approx(1.0)
 
 
-def test_noise_that_decreases_with_the_force_gets_no_weights() -> None:
+def test_noise_that_decreases_with_the_force_is_not_weighted() -> None:
     random = np.random.default_rng(2)
     assert kinds_of(lambda i, f: np.sqrt(81.0 - f**2) * random.standard_normal(len(f))) == []
 

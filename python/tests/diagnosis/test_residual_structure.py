@@ -152,7 +152,7 @@ def test_structure_within_the_quantisation_is_not_reported(part: float, found: b
 
 
 @pytest.mark.extended
-def test_step_of_the_friction_level_within_every_run_gives_an_unexplained_verdict() -> None:
+def test_verdict_is_unexplained_if_the_friction_level_steps_within_every_run() -> None:
     rig, runs, _ = simulated(21, foreign=("level_step",), strength=1.5)
     result = diagnose(rig, runs)
     assert (result.verdict, result.effects) == ("unexplained", ())

@@ -65,7 +65,7 @@ def test_hidden_effect_of_a_drive_is_named(seed: int, effect: str) -> None:
     assert (found.verdict, found.effects) == ("missing", (effect,)), found.summary()
 
 
-def test_friction_level_that_differs_by_stroke_gives_an_unexplained_verdict() -> None:
+def test_verdict_is_unexplained_if_the_friction_level_differs_by_stroke() -> None:
     found = diagnosed(4045, ("stroke_scatter",))
     assert (found.verdict, found.effects) == ("unexplained", ()), found.summary()
 

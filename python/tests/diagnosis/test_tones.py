@@ -69,7 +69,7 @@ def test_tone_is_reported_only_above_eight_periods_in_a_run(periods: int, found:
 
 
 @pytest.mark.parametrize(("samples", "found"), [(63, False), (64, True)])
-def test_tone_is_reported_only_in_runs_with_64_samples(samples: int, found: bool) -> None:
+def test_tone_is_reported_only_in_runs_of_at_least_64_samples(samples: int, found: bool) -> None:
     short, other = flat_spectrum(samples, {20: 1e3}), flat_spectrum(1024, {100: 1e4})
     assert bool(tones_in(short)) == found
     (tone,) = tones_in(short, other)

@@ -36,7 +36,7 @@ STRONG = DEFAULT.selection.weak_evidence + 1.0
         (1, 1, True, "unexplained"),
     ],
 )
-def test_verdict_follows_from_effects_alternatives_and_residual_structure(
+def test_verdict_is_determined_by_effects_alternatives_and_residual_structure(
     effects: int, alternatives: int, remains: bool, expected: str
 ) -> None:
     assert verdict(effects=effects, alternatives=alternatives, remains=remains) == expected

@@ -84,7 +84,9 @@ def fitted(runs: list[Run]) -> Fit:
     return fit(Rig(), runs, ["sensor_offset"], law="coulomb", fixed={"F_s": 6.0})
 
 
-def test_bootstrap_of_a_linear_fit_gives_regression_errors(fitted: Fit, runs: list[Run]) -> None:
+def test_bootstrap_errors_of_a_linear_fit_are_those_of_regression(
+    fitted: Fit, runs: list[Run]
+) -> None:
     v = np.concatenate([r.velocity for r in runs])
     x = np.column_stack([np.sign(v), v, np.ones(len(v))])
     errors = 0.2 * np.sqrt(np.diag(np.linalg.inv(x.T @ x)))

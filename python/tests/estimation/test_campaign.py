@@ -126,7 +126,7 @@ def test_temperature_effect_requires_a_range_of_two_kelvin(span_k: float, enough
     assert "temperature_c" in str(prepared(run()).missing_requirement(effect))
 
 
-def test_quantisation_rms_follows_from_step_and_noise_of_the_readings() -> None:
+def test_quantisation_rms_is_computed_from_step_and_noise_of_the_readings() -> None:
     noise, step = 0.1 * np.random.default_rng(5).standard_normal(N), 0.2
     campaign = prepared(run(force=step * np.round((5.0 * np.sign(SPEED) + noise) / step)))
     assert campaign.step_n == pytest.approx(step, rel=1e-6)

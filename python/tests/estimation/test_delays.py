@@ -134,7 +134,7 @@ def test_significance_of_a_delay_step_is_that_of_its_wald_statistic() -> None:
     assert STEP.p_value == pytest.approx(stats.chi2.sf(4.0, 2))
 
 
-def test_significance_of_unequal_delays_follows_from_their_weighted_scatter() -> None:
+def test_significance_of_unequal_delays_is_that_of_their_weighted_scatter() -> None:
     """Delays (5, 1) plus the step (3, -1) are (8, 0); the rows of C^-1 sum to 1/7 and 3/7, so the
     mean is 2, and (6, -2) has the square 112 / 7."""
     delays = np.array([5.0, 99.0, 1.0])

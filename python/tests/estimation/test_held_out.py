@@ -329,7 +329,7 @@ def test_effect_in_one_run_only_is_not_confirmed() -> None:
     assert refused >= 57
 
 
-def test_density_share_of_an_effect_in_all_runs_follows_from_its_noncentrality() -> None:
+def test_density_share_of_an_effect_in_all_runs_is_computed_from_its_noncentrality() -> None:
     """Expected: (z - 1) / (z + 1) with the noncentrality z = size^2 n."""
     shares = []
     for law, own, noise in linear(13, 60):
@@ -351,7 +351,7 @@ def test_confirmation_reports_held_out_rms_and_the_share_of_improved_runs() -> N
     assert found.better == np.mean(after < before)
 
 
-def test_confirmation_compares_models_only_at_samples_that_count_in_both() -> None:
+def test_confirmation_compares_models_only_at_samples_that_both_include() -> None:
     law, own, noise = linear(15, 1)[0]
     wild = [np.where(np.arange(COUNT) < 20, 30.0, 0.0) + e for e in noise]
     fewer = replace(SAMPLES, counted=(np.arange(COUNT) >= 20,) * RUNS)

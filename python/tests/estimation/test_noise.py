@@ -164,7 +164,7 @@ def test_periodic_model_error_is_not_taken_for_coloured_noise() -> None:
     assert fitted.noise.coloured_share(STEP_S) == pytest.approx(share, rel=0.2)
 
 
-def test_noise_of_a_model_is_estimated_from_the_samples_that_count() -> None:
+def test_noise_of_a_model_is_estimated_from_included_samples() -> None:
     slow = [autoregressive(i, 0.2, 0.3, 501) for i in range(4)]
     plain = zip(four_runs(coulomb, noise_rms=0.1), slow, strict=True)
     runs = [replace(run, friction=run.friction + noise) for run, noise in plain]

@@ -106,7 +106,9 @@ def motor(rng: np.random.Generator) -> np.ndarray:
     return np.column_stack([time, voltage, angle, speed + 0.01 * rng.standard_normal(len(time))])
 
 
-def test_motor_voltage_gives_the_constants_of_a_feedforward_in_volts(tmp_path: Path) -> None:
+def test_parameters_fitted_to_a_motor_voltage_are_feedforward_constants_in_volts(
+    tmp_path: Path,
+) -> None:
     log = motor(np.random.default_rng(8))
     header = "time [s],motor voltage [V],position [rad],velocity [rad/s]"
     found = import_files(written(tmp_path / "log.csv", header, *log.T))
@@ -143,7 +145,9 @@ def stribeck_table(path: Path, rng: np.random.Generator) -> Path:
     return written(path, "speed [rpm],torque [Nm]", rpm, torque)
 
 
-def test_steady_states_without_time_give_the_stribeck_curve(tmp_path: Path) -> None:
+def test_stribeck_curve_is_recovered_from_imported_rows_without_time(
+    tmp_path: Path,
+) -> None:
     file = stribeck_table(tmp_path / "curve.csv", np.random.default_rng(4))
     assert main(["import", str(file)]) == 0
     map_file = tmp_path / "map.toml"

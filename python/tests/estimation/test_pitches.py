@@ -133,7 +133,7 @@ def test_gain_of_the_highest_spectral_line_of_noise_is_below_the_threshold(seeds
 
 
 @pytest.mark.parametrize("shaft", [False, True])
-def test_longest_pitch_and_stroke_follow_from_the_path(shaft: bool) -> None:
+def test_longest_pitch_and_stroke_are_those_of_the_recorded_path(shaft: bool) -> None:
     """The pitch limit is a quarter of the path, the stroke the path plus a tenth at either end."""
     rig = Rig.thesis() if shaft else Rig()
     radius_m = rig.bearing.radius_m if rig.bearing is not None else 1.0
@@ -166,7 +166,9 @@ def test_longest_pitch_and_stroke_follow_from_the_path(shaft: bool) -> None:
         (None, ()),
     ],
 )
-def test_drive_gives_the_pitches_of_screw_and_motor(drive: Any, found: tuple[float, ...]) -> None:
+def test_known_pitches_of_a_drive_are_the_travel_per_turn_of_screw_and_motor(
+    drive: Any, found: tuple[float, ...]
+) -> None:
     assert known_pitches(Rig(drive=drive)) == pytest.approx(found)
 
 

@@ -83,7 +83,9 @@ def test_zero_offset_of_noisy_readings_is_their_circular_mean() -> None:
 
 @pytest.mark.parametrize("step", [1e-3, 40.0])
 @pytest.mark.parametrize("noise", [0.05, 0.3, 1.0])
-def test_noise_before_conversion_follows_from_repeated_readings(step: float, noise: float) -> None:
+def test_noise_before_conversion_is_estimated_from_repeated_readings(
+    step: float, noise: float
+) -> None:
     """The share of repetitions is `E max(0, 1 - |d|)`, d the difference of two noises in steps."""
     n, d = 100_000, stats.norm(0.0, np.sqrt(2.0) * noise)
     share, _ = integrate.quad(lambda x: (1.0 - x) * 2.0 * d.pdf(x), 0.0, 1.0)

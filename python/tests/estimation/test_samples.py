@@ -96,7 +96,7 @@ def test_stacked_rows_are_innovations_of_weighted_residuals_and_derivatives() ->
     assert SAMPLES.cost(VALUES, COLOURED) == pytest.approx(wanted)
 
 
-def test_innovations_are_zero_at_samples_that_do_not_count() -> None:
+def test_innovations_are_zero_at_excluded_samples() -> None:
     level = (np.full(4, 0.5), np.full(3, 0.25))
     samples = replace(SAMPLES, level=level)
     has_weight = [w > 0.0 for w in WEIGHT]

@@ -92,7 +92,7 @@ def test_every_starting_value_rule_named_in_the_catalogue_exists() -> None:
         ("drive_damping", (80.0,)),
     ],
 )
-def test_starting_values_of_each_catalogue_rule_follow_from_the_typical_magnitudes(
+def test_starting_values_of_each_catalogue_rule_are_computed_from_typical_magnitudes(
     rule: str, starts: tuple[float, ...]
 ) -> None:
     assert (RULES | LINEAR_RULES)[rule](SIZES) == pytest.approx(starts)
@@ -127,7 +127,7 @@ def test_upper_bound_of_the_transition_speed_is_five_times_the_fastest_speed(
 
 
 @pytest.mark.parametrize("name", ["drive_compliance.k", "backlash.gap"])
-def test_drive_effect_starts_follow_from_the_data_only_on_a_linear_axis(name: str) -> None:
+def test_drive_effect_starts_are_estimated_from_the_data_only_on_a_linear_axis(name: str) -> None:
     pages = parameters_of("coulomb", (name.partition(".")[0],))
     shaft, axis_ = (with_starts(pages, c, in_newtons=True)[name] for c in (on_bearing(), slide()))
     assert shaft.starts == pages[name].starts

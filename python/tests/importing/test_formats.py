@@ -52,7 +52,7 @@ def path(name: str, tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("name", WRITERS)
-def test_recording_in_every_format_gives_bit_identical_runs(
+def test_imported_runs_are_bit_identical_for_a_recording_in_every_format(
     name: str, wanted: list[list[str]], tmp_path: Path
 ) -> None:
     columns = SHORT

@@ -146,7 +146,7 @@ def test_import_with_the_plot_option_writes_a_png_and_reports_the_runs(capsys: C
     assert Path("cut.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_fit_and_compare_give_equal_results_for_a_map_and_its_import(capsys: Capture) -> None:
+def test_fit_and_compare_have_equal_results_for_a_map_and_its_import(capsys: Capture) -> None:
     Path("map.toml").write_text(RESTS)
     printed(capsys, IMPORT)
     options = "--law coulomb --effects inertia --out"

@@ -56,7 +56,7 @@ def cooler_campaign() -> tuple[Rig, list[Run], float]:
     return rig, [with_cooler(run, i) for i, run in enumerate(runs)], truth["noise_n"]
 
 
-def test_fit_recovers_the_parameter_of_a_user_effect_and_compare_gives_its_rms() -> None:
+def test_fit_recovers_the_parameter_of_a_user_effect_and_compare_reports_its_rms() -> None:
     rig, runs, noise_rms = cooler_campaign()
     jbf.register_effect(cooler, parameters=[HEAT])
     fitted = jbf.fit(rig, runs, ["cooler"])

@@ -30,7 +30,7 @@ TIED = {"coulomb_drag": ["sensor_offset"]}
         (("a", "b"), ("gaps",), "missing", ["a", "c"], {}, "named falsely"),
     ],
 )
-def test_outcome_of_a_diagnosis_follows_from_verdict_and_hidden_effects(
+def test_outcome_of_a_diagnosis_is_determined_by_verdict_and_hidden_effects(
     hidden: Any, artefacts: Any, verdict: str, named: Any, tied: Any, outcome: str
 ) -> None:
     assert judge(hidden, artefacts, verdict, named, tied) == outcome

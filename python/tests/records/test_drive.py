@@ -50,7 +50,7 @@ def test_force_per_ampere_or_percent_of_a_drive_includes_gear_and_screw(
     columns.refuse_foreign_columns(Path("a.csv"), 1, [*columns.known, "own"])
 
 
-def test_units_and_sensor_name_of_a_drive_follow_from_its_motion_and_source() -> None:
+def test_units_and_sensor_name_of_a_drive_are_determined_by_motion_and_source() -> None:
     assert [drive.quantities.force for drive in (TORQUE, CURRENT, SLIDE)] == ["N m", "N m", "N"]
     assert "torque sensor" in TORQUE.quantities.sensor
     assert "current sensor" in LINEAR_MOTOR.quantities.sensor
@@ -85,7 +85,7 @@ def test_inconsistent_drive_definition_is_reported_with_the_invalid_key(
     assert input_error(Drive.from_mapping, section, "rig.drive").key == f"rig.drive.{key}"
 
 
-def test_toml_section_gives_a_drive_and_its_invalid_keys_are_reported() -> None:
+def test_drive_is_read_from_a_toml_section_and_invalid_keys_are_reported() -> None:
     section: Any = {"motion": "linear", "friction": "force", "mass_kg": 3}
     assert Drive.from_mapping(section, "drive") == Drive("linear", "force", mass_kg=3.0)
     for wrong, key in ((3, "drive"), ({"motion": "linear"}, "drive.friction")):
@@ -93,7 +93,7 @@ def test_toml_section_gives_a_drive_and_its_invalid_keys_are_reported() -> None:
     assert input_error(Drive.from_mapping, {"motin": "linear"}, "drive").key == "drive.motin"
 
 
-def test_conversion_factors_of_motor_columns_follow_from_gear_and_screw() -> None:
+def test_conversion_factors_of_motor_columns_are_computed_from_gear_and_screw() -> None:
     joint, slide = DriveColumns.of(TORQUE), DriveColumns.of(SCREW)
     screw = 1.0 / (3.0 * 2.0 * pi / 0.02)
     assert joint.friction == {"torque_n_m": 1.0, "motor_torque_n_m": 20.0}

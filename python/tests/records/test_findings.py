@@ -75,7 +75,7 @@ def test_stribeck_friction_with_coloured_noise_has_no_findings(seed: int) -> Non
 @pytest.mark.parametrize(
     "shape", [pytest.param("triangle", marks=pytest.mark.extended), "stick and slip", "ramp"]
 )
-def test_corners_and_plateaus_of_a_noise_free_force_give_no_fault_finding(shape: str) -> None:
+def test_corners_and_plateaus_of_a_noise_free_force_are_not_reported_as_faults(shape: str) -> None:
     phase = np.mod(TIME_S, 5.0) / 5.0
     speed = {
         "triangle": 0.1 * (2.0 * np.abs(2.0 * phase - 1.0) - 1.0),
@@ -140,7 +140,7 @@ def test_findings_of_a_simulated_recording_are_those_of_its_artefact_only(artefa
         *(pytest.param(name, marks=pytest.mark.extended) for name in FOUND_WITH_A_MODEL),
     ],
 )
-def test_artefact_that_only_a_model_reveals_gives_no_finding_without_a_fit(artefact: str) -> None:
+def test_artefact_that_only_a_model_reveals_is_not_reported_without_a_fit(artefact: str) -> None:
     assert findings_of(artefact) == ()
 
 

@@ -36,7 +36,7 @@ def test_equal_readings_are_held_samples_if_their_probability_is_below_1e_minus_
     assert places(held_mask(repeating(pairs, 302, 31))) == list(range(303, 333))
 
 
-def test_minimum_length_of_held_samples_follows_from_noise_and_quantisation() -> None:
+def test_minimum_length_of_held_samples_depends_on_noise_and_quantisation() -> None:
     """Rounding to whole steps adds 1/12 to the variance of the noise. A reading in the middle of a
     step is repeated k times with probability p^k, which must be below 1e-6 in the record."""
     values = np.round(np.linspace(-50.0, 50.0, SAMPLES) + 0.5 * NOISE)

@@ -19,7 +19,7 @@ def stamps(size_s: float, samples: int = 400) -> Any:
 
 
 @pytest.mark.parametrize("size_s", [1.2e-4, 1e-3])
-def test_jitter_size_follows_from_fourth_differences_of_the_time_stamps(size_s: float) -> None:
+def test_jitter_size_is_estimated_from_fourth_differences_of_the_time_stamps(size_s: float) -> None:
     """Fourth differences are 16 times the size; in unit white noise their variance is 70."""
     finding: Any = uneven_stamps("a", STEP_S * np.arange(1000) + size_s * ALTERNATING)
     assert finding.size == pytest.approx(16.0 * size_s / 0.6745 / np.sqrt(70.0))

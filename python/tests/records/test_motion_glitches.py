@@ -134,7 +134,9 @@ def test_speed_that_contradicts_the_path_for_six_samples_is_not_used() -> None:
 
 @pytest.mark.parametrize("end", [0, SAMPLES - 1])
 @pytest.mark.parametrize("angle", [False, True])
-def test_speed_outlier_at_a_record_end_is_replaced_with_unknown_sign(end: int, angle: bool) -> None:
+def test_speed_outlier_at_a_record_end_is_replaced_and_its_sign_unknown(
+    end: int, angle: bool
+) -> None:
     speed = SPEED_M_S + white(SAMPLES, 5, 1e-4)
     speed[end] = 40.0
     run = Run.from_arrays(TIME_S, speed, angle_rad=PATH_M / 0.5 if angle else None)

@@ -39,7 +39,7 @@ def test_thesis_rig_has_the_dimensions_and_loads_of_its_tables(path: Path) -> No
     assert "4.2" in str(input_error(Rig.thesis, "4.1").remedy)
 
 
-def test_units_and_radius_of_a_rig_follow_from_its_bearing_or_drive() -> None:
+def test_units_and_radius_of_a_rig_are_those_of_its_bearing_or_drive() -> None:
     joint, slide = Rig(drive=Drive("rotary", "torque")), Rig(drive=Drive("linear", "force"))
     assert (Rig().quantities, Rig.thesis().quantities) == (LINEAR, BEARING)
     assert (joint.quantities.motion, slide.quantities.motion) == ("rotary", "linear")
@@ -83,7 +83,7 @@ def test_unreadable_or_malformed_rig_file_is_reported_with_its_cause(path: Path)
     assert input_error(read_rig, path).row == 2
 
 
-def test_empty_rig_file_gives_a_rig_without_sections(path: Path) -> None:
+def test_empty_rig_file_is_read_as_a_rig_without_sections(path: Path) -> None:
     path.write_text("")
     assert read_rig(path) == Rig()
 

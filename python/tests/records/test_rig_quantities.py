@@ -171,7 +171,7 @@ def test_quantity_out_of_range_is_refused_after_its_conversion(path: Path) -> No
     assert "-0.01" in error.problem
 
 
-def test_quantities_in_a_rig_and_in_a_model_file_give_the_same_rig(path: Path) -> None:
+def test_quantities_with_units_define_equal_rigs_in_a_rig_and_a_model_file(path: Path) -> None:
     rig = rig_of(path, JOINT)
     model = jbf.Model(rig, law="coulomb")
     model.save(path)

@@ -18,7 +18,7 @@ def with_errors(motion: Smoothed, **changed: float) -> Smoothed:
     return replace(motion, errors=replace(motion.errors, **changed))
 
 
-def test_runs_with_equal_reading_errors_give_no_additional_starts(trapezoids: Smoothed) -> None:
+def test_no_starts_are_added_if_the_runs_have_equal_reading_errors(trapezoids: Smoothed) -> None:
     other = with_errors(trapezoids, velocity_variance=3.0 * trapezoids.errors.velocity_variance)
     assert further_starts([trapezoids]) == ()
     assert further_starts([trapezoids, other, other]) == ()

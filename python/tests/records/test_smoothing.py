@@ -150,7 +150,7 @@ def test_long_record_is_smoothed_with_the_velocity_noise_recovered_within_5_perc
     assert np.mean(np.abs(motion.mean[:, 1] - velocity) < 2.0 * sd) > 0.92
 
 
-def test_record_of_one_to_five_samples_gives_a_finite_motion() -> None:
+def test_estimated_motion_of_one_to_five_samples_is_finite() -> None:
     position, velocity, _ = motion_of("sine", 20)
     for n in range(1, 6):
         motion = smooth(readings_of(position[:n], velocity[:n]))

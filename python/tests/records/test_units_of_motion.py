@@ -35,7 +35,7 @@ def test_windows_of_path_and_speed_that_contain_a_gap_are_omitted() -> None:
     assert [len(w.by_path) for w in windows] == [200 - 16, 200 - 32, 200 - 64]
 
 
-def test_number_of_window_widths_follows_from_the_length_of_the_record() -> None:
+def test_number_of_window_widths_depends_on_the_length_of_the_record() -> None:
     for samples, widths in ((67, 0), (68, 1), (75, 1), (76, 2), (92, 3)):
         clock: Any = 0.1 * np.arange(samples)
         assert len(list(window_comparisons(clock, clock, np.ones(samples)))) == widths

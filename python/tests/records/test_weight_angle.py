@@ -53,7 +53,7 @@ def test_weight_over_the_sum_of_two_joint_angles_is_recovered(arm: Path) -> None
     assert over_joint.rms > 10.0 * fit.rms
 
 
-def test_weight_angle_that_restarts_each_turn_gives_the_same_fit(arm: Path) -> None:
+def test_fit_is_unchanged_if_the_weight_angle_restarts_each_turn(arm: Path) -> None:
     runs = jbf.read_runs(arm, RIG)
     wrapped = [
         replace(run, extra={"weight_angle_rad": np.angle(np.exp(1j * a))})
@@ -64,7 +64,7 @@ def test_weight_angle_that_restarts_each_turn_gives_the_same_fit(arm: Path) -> N
 
 
 @pytest.mark.parametrize("effects", [["gravity"], ["gravity", "time_delay"]])
-def test_weight_angle_that_restarts_each_turn_gives_the_same_prediction(effects: list[str]) -> None:
+def test_prediction_is_unchanged_if_the_weight_angle_restarts_each_turn(effects: list[str]) -> None:
     values = {"gravity.G": WEIGHT, "time_delay.tau_s": 0.033}
     kept = {name: v for name, v in values.items() if name.split(".")[0] in effects}
     model = jbf.Model(RIG, law="coulomb", effects=effects, parameters=kept)

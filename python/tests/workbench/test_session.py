@@ -102,7 +102,7 @@ def test_model_is_not_saved_through_a_link_out_of_the_folder(fitted: Session) ->
     assert not outside.exists()
 
 
-def test_session_and_jbf_fit_give_same_parameter_and_standard_error(fitted: Session) -> None:
+def test_session_fit_has_the_parameter_and_standard_error_of_jbf_fit(fitted: Session) -> None:
     bench = fitted.on_bench()
     fit = jbf.fit(bench.rig, list(bench.runs), ["coulomb_drag"])
     shown = fitted.models.node(2)["parameters"]["coulomb_drag.F_d"]

@@ -153,7 +153,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _configure_process() -> None:
-    """Configure signals, streams and threads of a process that belongs to `jbf`.
+    """Set the plot backend and the error handling of the output streams of a `jbf` process.
 
     This is not done if jbf is used as a library.
     """

@@ -59,7 +59,8 @@ class Result(SharedResult):
     measured_angle_rad, estimated_velocity_rad_s : ndarray
         Signals available to the loop.
     error : ndarray
-        Measured angle or estimated speed, minus reference; the thesis's tables report this error.
+        Measured angle or estimated speed, minus reference; the tables of Cohn (1998) report this
+        error.
     base_v, compensation_v, output_v : ndarray
         Outputs of the control law and the compensator, and the input of the amplifier.
     estimated_friction_v, correction_v, forward_v : ndarray
@@ -182,7 +183,7 @@ def run(
         Settings of the observed compensator. Default: `tune(carried, assumed)`.
     guard
         Settings whose `moving_v` and `patience_s` guard the loop. Default: those of the observed
-        compensator; the thesis's schemes have no guard.
+        compensator; the schemes of Cohn (1998) have no guard.
     load_n
         Load on one bearing, N: a number, or one value per step. Default: that of the model.
     reference

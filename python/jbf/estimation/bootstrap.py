@@ -335,8 +335,8 @@ def _sign_randomised(
     for e, sign, counts, p in zip(
         innovations, np.split(signs, ends), plain.counted, campaign.prepared, strict=True
     ):
-        # The innovation of a sample that does not count is undefined. It is drawn at random from
-        # those of the samples that count.
+        # The innovation of an excluded sample is undefined. It is drawn at random from
+        # those of the included samples.
         filled = np.where(counts, e, random.choice(counted, len(e)))
         noise.append(solution.noise.coloured(sign * filled, p.step_s))
     return noise

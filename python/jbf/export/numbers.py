@@ -113,10 +113,10 @@ class Numbers:
 
 
 def _units_note(model: Model) -> str:
-    """Note that names such as `load_n` hold N m and rad for a rotary drive; otherwise empty.
+    """Note on the units of a rig whose names with suffixes of N, m and m/s hold other units.
 
-    Names in the exported source have the suffixes of N, m and m/s. The note states the actual units
-    of a rig with other quantities.
+    For example, `load_n` holds N m for a rotary drive. The note is empty if the suffixes are
+    correct.
     """
     quantities = model.rig.quantities
     if quantities.force == "N" and quantities.motion != "rotary":

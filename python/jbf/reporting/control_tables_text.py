@@ -95,7 +95,7 @@ def assumptions_text(alternatives: Sequence[tuple[str, Tables]]) -> str:
 
 
 def better_text(tables: Tables) -> str:
-    """Compare the observed compensator with the better of the thesis's two schemes.
+    """Compare the observed compensator with the better of the two schemes of Cohn (1998).
 
     The criterion is the true RMS error of the shaft.
     """

@@ -20,8 +20,8 @@ SCHEMES = ("none", "learning", "coulomb", "table", "repetitive", "observed")
 def scheme(name: str, model: Model | None = None, settings: Settings | None = None) -> Scheme:
     """Create the compensation scheme with this name; `model` is its friction model, if it uses one.
 
-    Without a model, the learning scheme has the parameters of the thesis. A table and the observed
-    compensator then have the friction that fits the thesis's bench.
+    Without a model, the learning scheme has the parameters of Cohn (1998). A table and the observed
+    compensator then have the friction that fits the bench of that thesis.
 
     Raises
     ------

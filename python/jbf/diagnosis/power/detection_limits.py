@@ -84,7 +84,7 @@ class Power:
         Effects that are confounded with this one at `detectable_80`, the least distinguishable
         first.
     hidden
-        True if the power is below 80 % at the usual strength of the catalogue.
+        True if the power is below 80 % at the typical strength of the catalogue.
     """
 
     effect: str
@@ -143,7 +143,7 @@ class _Detectable:
     model, parameters, price
         The effect, its number of parameters, and the threshold for its gain.
     times
-        Detectable strength for each of `LEVELS`, in multiples of the usual strength; nan if no
+        Detectable strength for each of `LEVELS`, in multiples of the typical strength; nan if no
         strength is sufficient.
     change
         Change of the predicted friction at the first strength.
@@ -178,7 +178,7 @@ class _Detectable:
     def change_at(self, runs: PresentRuns, factor: float) -> Change:
         """Friction change at `factor` times the smallest detectable strength.
 
-        The usual strength is used if no strength within the bounds is detectable.
+        The typical strength is used if no strength within the bounds is detectable.
         """
         return Change.of(runs, self.model, factor * _finite_or_one(self.times[0]))
 

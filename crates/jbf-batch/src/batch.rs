@@ -1,4 +1,6 @@
-//! The batch: laws and a method; films are in [`Films`], and the motion is passed with each call.
+//! Batch of journal laws with a common integration method.
+//!
+//! The states of the films are in [`Films`], and the motion is passed with each call.
 
 use crate::lane::Float;
 use crate::part::{self, Block, Out, LANES};
@@ -8,27 +10,27 @@ use jbf_core::law::journal::{Journal, State};
 use jbf_core::law::Law;
 use rayon::prelude::*;
 
-/// Integration method of a step.
+/// Integration method of the film equations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Explicit Euler method, as in the thesis's loop.
+    /// Explicit Euler method, as in the control loop of Cohn (1998).
     #[default]
     Euler,
     /// Classical Runge-Kutta method of order four.
     Rk4,
 }
 
-/// Laws that are stepped together.
+/// Journal laws (parameter sets) that are stepped together.
 #[derive(Clone, Debug)]
 pub struct Batch<F> {
     laws: Vec<Journal<F>>,
-    /// Integration method of a step.
+    /// Integration method of the film equations.
     pub method: Method,
-    /// Instruction set: the best of the machine, unless a test selects another.
+    /// Instruction set of the computation; [`Batch::new`] selects the best one of the machine.
     pub simd: Simd,
 }
 
-/// Films of a batch.
+/// States of the films of a batch, one per law.
 #[derive(Clone, Debug)]
 pub struct Films<F>(pub Vec<State<F>>);
 
@@ -42,14 +44,17 @@ impl<F: Float> Batch<F> {
         }
     }
 
-    /// Returns the films at the start of a run, each under the load of its law's constructor.
+    /// Returns the states of the films at the start of a run, each under the load given to its
+    /// law's constructor.
     pub fn start(&self) -> Films<F> {
         let film = |law: &Journal<F>| law.start(law.nominal().load_n());
         Films(self.laws.iter().map(film).collect())
     }
 
-    /// Computes the friction coefficients at every sample into `out`, with one row per sample and
-    /// one column per set.
+    /// Computes the friction coefficients of all laws at every sample.
+    ///
+    /// `out` has one row per sample and one column per law. `films` contains the states before the
+    /// call and is updated.
     ///
     /// # Panics
     /// If the sizes of `out`, `films` and `speeds` do not match.
@@ -73,7 +78,9 @@ impl<F: Float> Batch<F> {
         self.run(films, speeds, dt_s, &parts, outs);
     }
 
-    /// Sum over the samples of `(friction - data)^2`, one per set, without storing the friction.
+    /// Returns the sum over the samples of `(friction coefficient - data)^2` for each law.
+    ///
+    /// The friction coefficients are not stored.
     ///
     /// # Panics
     /// If the sizes of `data`, `films` and `speeds` do not match.
@@ -90,7 +97,10 @@ impl<F: Float> Batch<F> {
         self.run(films, speeds, dt_s, &parts, outs)
     }
 
-    /// First set and end of each part: whole blocks, a few parts per thread.
+    /// Divides the laws into parts for the threads.
+    ///
+    /// A part is a half-open range of indices that consists of whole blocks. There are two parts
+    /// per thread, if there are enough blocks.
     fn parts(&self) -> Vec<(usize, usize)> {
         let sets = self.laws.len();
         let blocks = sets.div_ceil(LANES);
@@ -135,7 +145,8 @@ impl<F: Float> Batch<F> {
         sums
     }
 
-    /// Sets `first..end` in blocks; the last block is filled up with copies of its last set.
+    /// Groups the laws `first..end` and their films into blocks; the last block is filled up with
+    /// copies of the last law.
     fn blocks(&self, films: &Films<F>, first: usize, end: usize) -> Vec<Block<F>> {
         (first..end)
             .step_by(LANES)

@@ -1,4 +1,4 @@
-//! Paths of several films in lanes, each along its own motion.
+//! Eccentricity along the motions of several films, integrated in the lanes of vector registers.
 
 use crate::lane::Lane;
 use crate::simd::Simd;
@@ -10,22 +10,22 @@ use jbf_core::Real;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 
-/// Number of films in one block: one register of AVX-512.
+/// Number of films in one block: one vector register of AVX-512.
 ///
-/// Roots and divisions keep one register busy. With few films of different lengths, few lanes wait
-/// for others.
+/// Square roots and divisions suffice to keep one register busy. A larger block would have more
+/// idle lanes if the films have different numbers of steps.
 const LANES: usize = 8;
 
-/// Number of steps that are sorted into lanes at a time.
+/// Number of steps that are transposed into lanes at a time.
 const TILE: usize = 64;
 
-/// Square of the eccentricity ratio after every step, for each film.
+/// Computes the square of the eccentricity ratio of each film after each of its steps.
 ///
-/// It is `None` for a film that a step carried out of its bearing; such a film must be stepped in a
-/// scalar type ([`Real::SIDE_BY_SIDE`]).
+/// The path of a film is `None` if a step moved its journal out of the bearing. Such a film must be
+/// stepped in a scalar type ([`Real::SIDE_BY_SIDE`]).
 ///
-/// The load of a film is that of its first step. The result is identical bit for bit to that of
-/// [`Law::advance`].
+/// Each film starts under the load of its first step. The result is identical bit for bit to that
+/// of [`Law::advance`].
 pub fn film_paths(films: &[(Journal<f64>, &[FilmStep])], simd: Simd) -> Vec<Option<Vec<f64>>> {
     // Neighbours of similar length waste no lanes.
     let mut order: Vec<usize> = (0..films.len()).collect();
@@ -49,7 +49,7 @@ pub fn film_paths(films: &[(Journal<f64>, &[FilmStep])], simd: Simd) -> Vec<Opti
     paths
 }
 
-/// Integrates at least one film and at most [`LANES`], the longest first.
+/// Integrates one block of 1 to [`LANES`] films, ordered from the longest to the shortest.
 ///
 /// The remaining lanes repeat the last film.
 #[inline(always)]
@@ -77,12 +77,12 @@ fn side_by_side(films: &[(Journal<f64>, &[FilmStep])]) -> Vec<Option<Vec<f64>>> 
         .collect()
 }
 
-/// Sorts the steps from `begin` on into lanes.
+/// Transposes the inputs of the steps from `begin` on: from one list per film to one array per
+/// step.
 ///
-/// A film at its end stays at its position, in steps of zero length.
-///
-/// It is a separate function, as is the next: wide instructions would turn it into gathers, which
-/// cost more than all the steps.
+/// A film without further steps is kept at its position by steps of zero length. This function and
+/// [`sort_out`] are not inlined: within the vector code they would become gathers, which take
+/// longer than all the steps.
 #[inline(never)]
 fn sort_in(
     asked: &mut [[[f64; LANES]; 4]; TILE],
@@ -109,7 +109,7 @@ fn sort_in(
     }
 }
 
-/// Sorts the results of a tile that begins at `begin` into the paths of the films.
+/// Transposes the results of the tile that begins at step `begin` into one path per film.
 #[inline(never)]
 fn sort_out(found: &[[f64; LANES]; TILE], paths: &mut [Vec<f64>], begin: usize) {
     for (lane, path) in paths.iter_mut().enumerate() {
@@ -119,7 +119,7 @@ fn sort_out(found: &[[f64; LANES]; TILE], paths: &mut [Vec<f64>], begin: usize) 
     }
 }
 
-/// Advances every film by one step.
+/// Advances every film by one step and stores the squares of the eccentricity ratios in `e2`.
 #[inline(always)]
 fn step(
     lanes: &mut SideBySide<Lane<f64>, LANES>,

@@ -1,20 +1,21 @@
-//! One lane of a vector: a plain number with a square root that the compiler can vectorise.
+//! Scalar type for one lane of a vector register: a number with a square root that the compiler can
+//! vectorise.
 //!
-//! IEEE 754 rounds a square root correctly, so those of `std` and `libm` have the same bits. That
-//! of `libm` is assembly code for one number at a time.
+//! IEEE 754 requires that square roots are rounded correctly, so `std` and `libm` return the same
+//! bits. The square root of `libm` is assembly code for one number at a time.
 
 use core::cmp::Ordering;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use jbf_core::Real;
 
-/// A number in a lane.
+/// Number in one lane of a vector register.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(transparent)]
 pub struct Lane<F>(pub F);
 
 /// Number types that a lane can hold.
 pub trait Float: Real + Send + Sync + Default {
-    /// Square root of `std`.
+    /// Returns the square root, computed by `std`.
     fn root(self) -> Self;
 }
 

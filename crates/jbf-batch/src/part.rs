@@ -1,5 +1,6 @@
-//! Work of one thread: some blocks of lanes, one tile of steps at a time, so that the rows that are
-//! written stay in the nearest cache.
+//! Work of one thread of a batch: some blocks of laws, advanced by one tile of steps at a time.
+//!
+//! The rows of the output that a tile writes fit into the nearest cache.
 
 use crate::batch::Method;
 use crate::lane::{Float, Lane};
@@ -10,14 +11,15 @@ use jbf_core::stepper::{Euler, Rk4, Stepper};
 use jbf_core::Real;
 use std::ops::Range;
 
-/// Number of sets in one block: four full registers of AVX-512 in double precision, so that each
-/// hides the latency of the others.
+/// Number of laws in one block: four full vector registers of AVX-512 in double precision.
+///
+/// Computations in one register hide the latency of those in the others.
 pub(crate) const LANES: usize = 32;
 
-/// Number of steps between two checks for lanes outside the bearing.
+/// Number of steps between two checks for a film that left its bearing.
 const TILE: usize = 64;
 
-/// Neighbouring sets and their films.
+/// Adjacent laws of a batch, their films, and their sums of squares.
 pub(crate) struct Block<F> {
     laws: [Journal<F>; LANES],
     lanes: SideBySide<Lane<F>, LANES>,
@@ -41,8 +43,10 @@ impl<F: Float> Block<F> {
         self.lanes.film_alone(lane)
     }
 
-    /// Repeats samples `begin..end` one set after the other, after a lane left the bearing and must
-    /// be limited.
+    /// Recomputes the samples of a tile with scalar steps, one law after the other.
+    ///
+    /// This is necessary after a film left its bearing, because only scalar steps limit the
+    /// eccentricity.
     #[cold]
     #[inline(never)]
     fn alone<S: Stepper>(
@@ -69,16 +73,17 @@ impl<F: Float> Block<F> {
     }
 }
 
-/// Destination of the friction.
+/// Output of the friction coefficients.
 pub(crate) enum Out<'a, F> {
-    /// One slice per sample, one element per set.
+    /// Store them: one slice per sample, with one element per law.
     Rows(Vec<&'a mut [F]>),
-    /// Sum of squared deviations from these values, one per sample.
+    /// Sum the squared deviations from these values, one per sample.
     Squares(&'a [F]),
 }
 
 impl<F: Float> Out<'_, F> {
-    /// Stores a tile of the block whose first set has index `place`.
+    /// Stores or sums the friction coefficients of one tile of a block; `place` is the index of the
+    /// first law of the block.
     #[inline(always)]
     fn take(
         &mut self,
@@ -111,7 +116,7 @@ impl<F: Float> Out<'_, F> {
     }
 }
 
-/// Runs all blocks of a part along the whole motion.
+/// Advances all blocks of a part along the whole motion and outputs the friction coefficients.
 #[inline(always)]
 pub(crate) fn run<F: Float>(
     blocks: &mut [Block<F>],
@@ -178,13 +183,14 @@ fn tiles<F: Float, C: Course<F>, S: Stepper>(
     }
 }
 
-/// Speed |U| at the start, middle and end of a step, linear between samples.
+/// Absolute surface speeds |U| at the start, middle and end of a step, interpolated linearly
+/// between two samples.
 #[inline(always)]
 fn ends<T: Real>(from: T, to: T) -> [T; 3] {
     [from.abs(), ((from + to) * T::of(0.5)).abs(), to.abs()]
 }
 
-/// Friction of every lane.
+/// Computes the friction coefficient of every lane.
 #[inline(always)]
 fn friction_of<F: Float>(
     lanes: &SideBySide<Lane<F>, LANES>,
@@ -198,7 +204,9 @@ fn friction_of<F: Float>(
     }
 }
 
-/// Friction of every lane now, followed by one step; combined because they share their roots.
+/// Computes the friction coefficient of every lane, and then advances every film by one step.
+///
+/// One function does both because they share square roots.
 #[inline(always)]
 fn step<F: Float, S: Stepper>(
     lanes: &mut SideBySide<Lane<F>, LANES>,

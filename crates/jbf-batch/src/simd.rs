@@ -1,7 +1,7 @@
-//! Instruction set, selected at run time.
+//! Instruction sets of a computation in lanes, selected at run time.
 //!
-//! Lanes are independent and nothing is contracted (no fused multiply-add), so every selection
-//! gives the same bits.
+//! Lanes are independent and nothing is contracted (no fused multiply-add), so every instruction
+//! set gives the same bits.
 
 use core::fmt::Debug;
 
@@ -38,7 +38,7 @@ impl InstructionSet for pulp::x86::V4 {
     }
 }
 
-/// Instruction set of the lanes.
+/// Instruction set of a computation in lanes.
 #[derive(Clone, Copy, Debug)]
 pub enum Simd {
     /// Baseline instruction set of the target (SSE2 on x86-64).

@@ -1,18 +1,18 @@
-//! Imposed motion: one for all sets, or one per set.
+//! Surface speed along a run: one motion for all parameter sets, or one per set.
 
 use crate::lane::Float;
 use crate::part::LANES;
 
-/// Surface speed, m/s, at equally spaced samples.
+/// Surface speed of the parameter sets of a batch at equally spaced samples, m/s.
 #[derive(Clone, Copy, Debug)]
 pub enum Speeds<'a, F> {
-    /// One motion for every set.
+    /// The same motion for every parameter set: one speed per sample.
     Common(&'a [F]),
-    /// One motion per set, in rows: one row per sample, with `sets` values.
+    /// A separate motion for each parameter set.
     Each {
-        /// Rows of speeds.
+        /// Speeds in row-major order, m/s: one row per sample, one column per parameter set.
         rows: &'a [F],
-        /// Number of values in a row.
+        /// Number of parameter sets (columns).
         sets: usize,
     },
 }
@@ -32,14 +32,13 @@ impl<F: Float> Speeds<'_, F> {
     }
 }
 
-/// Speeds of one block: the part of [`Speeds`] that the inner loop uses, in which a common speed is
-/// a single number.
+/// Speeds of one block of a batch, for the inner loop; a common speed is read once for all lanes.
 pub(crate) trait Course<F> {
-    /// Speed of each lane at a sample.
+    /// Returns the speed of each lane at a sample, m/s.
     fn at(&self, sample: usize) -> impl Fn(usize) -> F + Copy;
 }
 
-/// The same speed in every lane.
+/// Speeds that are the same in every lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Alike<'a, F>(pub(crate) &'a [F]);
 
@@ -52,7 +51,7 @@ impl<F: Float> Course<F> for Alike<'_, F> {
     }
 }
 
-/// A separate speed in each lane; lanes without a set are at rest.
+/// Speeds that differ between the lanes; a lane without a parameter set is at rest.
 #[derive(Clone, Copy)]
 pub(crate) struct Own<'a, F> {
     pub(crate) rows: &'a [F],

@@ -1,4 +1,4 @@
-//! Trajectories to a tolerance, several in lanes.
+//! Trajectories of journals with a given accuracy, several in the lanes of vector registers.
 
 use crate::lane::Lane;
 use crate::simd::Simd;
@@ -6,7 +6,8 @@ use jbf_core::driver::{self, Along, Cost, Excitation, Sample, Start};
 use jbf_core::law::journal::Journal;
 use jbf_core::Error;
 
-/// Calls [`jbf_core::driver::follow_side_by_side`] with the given instruction set.
+/// Integrates a film along several motions with the given instruction set; see
+/// [`jbf_core::driver::follow_side_by_side`].
 ///
 /// # Errors
 /// As [`jbf_core::driver::trajectory`].

@@ -1,6 +1,5 @@
-//! Paths of several films computed together equal, to the bit, those computed one by one.
-//!
-//! This holds for every instruction set.
+//! Tests that film paths computed in lanes equal those computed one by one, bit for bit, with every
+//! instruction set.
 
 use jbf_batch::{film_paths, Simd};
 use jbf_core::film_path::FilmStep;
@@ -17,7 +16,8 @@ fn law(i: usize, k0: f64) -> Journal<f64> {
     Journal::new(&Bearing::THESIS, 104.0, &parameters, Clock::Journal).expect("valid")
 }
 
-/// Steps of different lengths under a load that differs from the constructor's.
+/// Creates steps of different lengths, under a load that differs from that of the law's
+/// constructor.
 fn steps(count: usize, motion: usize, longest_s: f64) -> Vec<FilmStep> {
     let speed = |t: f64| 0.127 * (t * (0.4 + 0.3 * motion as f64)).sin().abs();
     let mut time_s = 0.0;
@@ -63,7 +63,7 @@ fn film_path_in_a_batch_has_the_bits_of_its_separate_path() {
     }
 }
 
-/// A film that leaves its bearing in a coarse step has no path; the other films have theirs.
+/// Only the film whose journal leaves its bearing in a coarse step has no path.
 #[test]
 fn film_that_leaves_the_bearing_has_no_path_and_others_keep_theirs() {
     let coarse = steps(200, 1, 5.0);

@@ -1,7 +1,8 @@
-//! Results are identical to the bit for every instruction set and number of threads.
+//! Tests that the results of a batch are identical bit for bit for every instruction set and number
+//! of threads.
 //!
-//! They equal those of the core stepping one set after the other, even where steps are so coarse
-//! that films are held.
+//! They also equal the results of `jbf_core` for one law after the other, even if steps are so
+//! coarse that the eccentricity is limited.
 
 use jbf_batch::{Batch, Films, Float, Method, Simd, Speeds};
 use jbf_core::law::journal::{Journal, Parameters};
@@ -11,7 +12,8 @@ use jbf_core::{Bearing, Clock};
 
 const SAMPLES: usize = 300;
 
-/// Parameter sets over the range of the printed tables; their number is not a multiple of a block.
+/// Parameter sets over the range of the tables in Cohn (1998); their number is not a multiple of
+/// the block size.
 fn laws<F: Float>(sets: usize) -> Vec<Journal<F>> {
     let share = |i: usize, k: usize| 0.8 + 0.4 * ((i * 37 + k * 101) % 97) as f64 / 97.0;
     (0..sets)
@@ -28,13 +30,14 @@ fn laws<F: Float>(sets: usize) -> Vec<Journal<F>> {
         .collect()
 }
 
-/// Motion in both directions with rests at zero; sets are out of phase where `set` differs.
+/// Surface speed at a sample, m/s: a motion in both directions with rests, and with a phase that
+/// depends on `set`.
 fn speed<F: Float>(sample: usize, set: usize) -> F {
     let wave = (0.03 * sample as f64 + set as f64).sin();
     F::of(if wave.abs() < 0.1 { 0.0 } else { 0.127 * wave })
 }
 
-/// Step one set after the other with the core.
+/// Computes the friction of one law after the other with `jbf_core`.
 fn alone<F: Float>(batch: &Batch<F>, dt_s: F, u: impl Fn(usize, usize) -> F) -> (Vec<F>, Films<F>) {
     let mut films = batch.start();
     let laws = laws::<F>(films.0.len());
@@ -124,7 +127,7 @@ fn batch_has_the_bits_of_single_laws_in_single_precision() {
     }
 }
 
-/// With steps so coarse that films leave the bearing, they are held as in the core.
+/// The eccentricity of a film that leaves its bearing in a coarse step is limited as in `jbf_core`.
 #[test]
 fn films_are_held_as_in_the_core_if_steps_are_too_coarse() {
     assert!(agree::<f64>(40, Method::Euler, 0.3) > 0);

@@ -1,4 +1,5 @@
-//! Trajectories computed in lanes have the bits and the steps of those computed one by one.
+//! Tests that trajectories computed in lanes have the bits and the steps of those computed one by
+//! one.
 
 use jbf_batch::{follow_side_by_side, Simd};
 use jbf_core::driver::{follow, Along, Cost, Excitation, Sample, Sampled, Sine, Start};

@@ -17,7 +17,7 @@ use core::ffi::c_char;
 use core::mem::{align_of, size_of};
 use jbf_core::{chain::State, law, Chain};
 
-/// Never reached from a step or a constructor.
+/// Satisfies the compiler's requirement of a panic handler; no step and no constructor can panic.
 #[cfg(not(feature = "std"))]
 #[panic_handler]
 fn panic(_info: &core::panic::PanicInfo<'_>) -> ! {
@@ -26,14 +26,15 @@ fn panic(_info: &core::panic::PanicInfo<'_>) -> ! {
     }
 }
 
-/// Name, number type, and the sizes of a model and a state in the header, in 64-bit words.
+/// Size of the memory of a law in C: name, number type, and the sizes of a model and a state in the
+/// header, in 64-bit words.
 pub type Size = (&'static str, &'static str, usize, usize);
 
 macro_rules! laws {
     ($($module:ident::$Type:ident, $kind:ident,
        $init:ident $effect:ident $start:ident $step:ident $predict:ident,
        $model_words:literal, $state_words:literal;)*) => {
-        /// All pairs of a law and a number type, as declared in the header.
+        /// Sizes of all pairs of a law and a number type, as declared in the header.
         pub const SIZES: &[Size] =
             &[$((stringify!($module), stringify!($kind), $model_words, $state_words),)*];
         $(
@@ -48,7 +49,10 @@ macro_rules! laws {
                 assert!(align_of::<Model>() <= 8 && align_of::<Changes>() <= 8);
             };
 
-            /// Builds the law; see `jbf.h`.
+            /// Builds the law; see `jbf_LAW_TYPE_init` in `jbf.h`.
+            ///
+            /// # Safety
+            /// As [`model::init`].
             #[no_mangle]
             pub unsafe extern "C" fn $init(
                 model: *mut Chain<$kind, law::$module::$Type<$kind>>,
@@ -62,7 +66,10 @@ macro_rules! laws {
                 model::init(model, bearing, load_n, (parameters, count), clock, error)
             }
 
-            /// Adds an effect; see `jbf.h`.
+            /// Adds an effect to a model; see `jbf_LAW_TYPE_effect` in `jbf.h`.
+            ///
+            /// # Safety
+            /// As [`model::effect`].
             #[no_mangle]
             pub unsafe extern "C" fn $effect(
                 model: *mut Chain<$kind, law::$module::$Type<$kind>>,
@@ -74,7 +81,10 @@ macro_rules! laws {
                 model::effect(model, name, (parameters, count), error)
             }
 
-            /// Sets the state at the first sample; see `jbf.h`.
+            /// Sets the state of a model at the first sample; see `jbf_LAW_TYPE_start` in `jbf.h`.
+            ///
+            /// # Safety
+            /// As [`model::start`].
             #[no_mangle]
             pub unsafe extern "C" fn $start(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,
@@ -84,7 +94,10 @@ macro_rules! laws {
                 model::start(model, state, motion)
             }
 
-            /// Advances one step; see `jbf.h`.
+            /// Advances a model by one step; see `jbf_LAW_TYPE_step` in `jbf.h`.
+            ///
+            /// # Safety
+            /// As [`model::step`].
             #[no_mangle]
             pub unsafe extern "C" fn $step(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,
@@ -95,7 +108,10 @@ macro_rules! laws {
                 model::step(model, state, motion, dt_s)
             }
 
-            /// Predicts a whole record; see `jbf.h`.
+            /// Predicts the friction along a whole record; see `jbf_LAW_TYPE_predict` in `jbf.h`.
+            ///
+            /// # Safety
+            /// As [`model::whole`].
             #[no_mangle]
             pub unsafe extern "C" fn $predict(
                 model: *const Chain<$kind, law::$module::$Type<$kind>>,

@@ -1,7 +1,7 @@
-//! Functions shared by all laws.
+//! Functions of the C interface, generic over the law and the number type.
 //!
-//! Null pointers are handled here. The caller must ensure that pointers satisfy the requirements of
-//! the header.
+//! Null pointers are handled here. The caller must ensure that the other pointers satisfy the
+//! requirements of the header.
 
 use crate::types::{clock, CBearing, CError, CMotion, CRecord, NAME, NULL, OK, PARAMETER};
 use core::ffi::{c_char, CStr};
@@ -12,10 +12,13 @@ use jbf_core::law::{Law, Named};
 use jbf_core::run::{predict, Record};
 use jbf_core::{Bearing, Chain, Motion, ParameterError, Real};
 
-/// Largest number of parameters of a law or an effect.
+/// Largest number of parameters of a law or an effect; further ones are ignored.
 const MOST: usize = 16;
 
-/// Reports a parameter that violates its rule.
+/// Writes the parameter that violates its rule to `error`, and returns [`PARAMETER`].
+///
+/// # Safety
+/// `error` must be null or valid for writes.
 unsafe fn refuse(error: *mut CError, why: ParameterError) -> i32 {
     if !error.is_null() {
         error.write(why.into());
@@ -23,7 +26,11 @@ unsafe fn refuse(error: *mut CError, why: ParameterError) -> i32 {
     PARAMETER
 }
 
-/// Converts `n` numbers at `values` to the number type of the model.
+/// Converts `n` numbers at `values` to the number type of the model; returns them with their count,
+/// at most [`MOST`].
+///
+/// # Safety
+/// `values` must be null or point to `n` numbers.
 unsafe fn lifted<T: Real>(values: *const f64, n: usize) -> ([T; MOST], usize) {
     let mut out = [T::ZERO; MOST];
     let given = if values.is_null() || n == 0 {
@@ -37,7 +44,13 @@ unsafe fn lifted<T: Real>(values: *const f64, n: usize) -> ([T; MOST], usize) {
     (out, given.len().min(MOST))
 }
 
-/// Builds a law at `model`; `bearing` may be null for a law in newtons.
+/// Builds a law without effects at `model`, and returns [`OK`] or the number of an error.
+///
+/// `bearing` may be null for a law in newtons.
+///
+/// # Safety
+/// `model` must be null or valid for writes, and `error` likewise. `bearing` must be null or point
+/// to a bearing, and `values` to `n` numbers.
 pub unsafe fn init<T: Real, L: Named<T>>(
     model: *mut Chain<T, L>,
     bearing: *const CBearing,
@@ -69,7 +82,11 @@ pub unsafe fn init<T: Real, L: Named<T>>(
     }
 }
 
-/// Adds an effect by its name.
+/// Adds the effect `name` to a model, and returns [`OK`] or the number of an error.
+///
+/// # Safety
+/// `model` must be null or point to a model that `init` built. `name` must be null or point to a
+/// zero-terminated text, and `values` to `n` numbers. `error` must be null or valid for writes.
 pub unsafe fn effect<T: Real, L: Named<T>>(
     model: *mut Chain<T, L>,
     name: *const c_char,
@@ -93,7 +110,14 @@ pub unsafe fn effect<T: Real, L: Named<T>>(
     }
 }
 
-/// Sets the state at the first sample and returns the reading there, N.
+/// Writes the state at the first sample to `state`, and returns the reading of the instrument
+/// there, N.
+///
+/// Returns zero if a pointer is null.
+///
+/// # Safety
+/// `model` must be null or point to a model that `init` built, and `motion` to a motion. `state`
+/// must be null or valid for writes.
 pub unsafe fn start<T: Real, L: Law<T>>(
     model: *const Chain<T, L>,
     state: *mut State<T, L::State>,
@@ -109,7 +133,13 @@ pub unsafe fn start<T: Real, L: Law<T>>(
     reading_n
 }
 
-/// Advances to a motion `dt_s` later and returns the reading there, N.
+/// Advances `state` to the motion `dt_s` later, and returns the reading of the instrument there, N.
+///
+/// Returns zero if a pointer is null.
+///
+/// # Safety
+/// `model` must be null or point to a model that `init` built, `state` to a state that `start`
+/// wrote, and `motion` to a motion.
 pub unsafe fn step<T: Real, L: Law<T>>(
     model: *const Chain<T, L>,
     state: *mut State<T, L::State>,
@@ -124,7 +154,14 @@ pub unsafe fn step<T: Real, L: Law<T>>(
     model.step(state, &Motion::from(motion), dt_s)
 }
 
-/// Computes the readings (N) along a whole record, as `jbf predict` does.
+/// Computes the readings of the instrument (N) at all samples of a record into `out_n`, as `jbf
+/// predict` does.
+///
+/// Returns [`OK`] or the number of an error.
+///
+/// # Safety
+/// `model` must be null or point to a model that `init` built. The columns of `record` must have as
+/// many values as the record has samples, and `out_n` must be valid for as many writes.
 pub unsafe fn whole<T: Real, L: Law<T>>(
     model: *const Chain<T, L>,
     record: *const CRecord,

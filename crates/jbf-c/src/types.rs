@@ -6,7 +6,7 @@ use jbf_core::{Bearing, Clock, Motion, ParameterError, Real};
 pub const OK: i32 = 0;
 /// A pointer is null.
 pub const NULL: i32 = -1;
-/// A parameter violates its rule.
+/// A parameter is outside its permitted range.
 pub const PARAMETER: i32 = -2;
 /// A name is not valid text, or is unknown.
 pub const NAME: i32 = -3;
@@ -57,7 +57,7 @@ pub struct CMotion<T> {
     pub load_n: T,
     /// Temperature, C; NaN if it is not measured.
     pub temperature_c: T,
-    /// Angle over which a weight acts minus the shaft angle, rad.
+    /// Shaft angle of the weight minus the shaft angle of the motion, rad.
     pub weight_offset_rad: T,
 }
 
@@ -95,19 +95,19 @@ pub struct CRecord {
     pub load_n: *const f64,
     /// Temperature, C; null if it was not recorded.
     pub temperature_c: *const f64,
-    /// Angle over which a weight acts minus the shaft angle, rad; null for the shaft angle itself.
+    /// Shaft angle of the weight minus the shaft angle of the motion, rad; null if they are equal.
     pub weight_offset_rad: *const f64,
 }
 
-/// Error report: the parameter, its value and the violated rule.
+/// Description of a refused parameter: its name, its value and the violated rule.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct CError {
-    /// Name, truncated to fit, zero-terminated.
+    /// Name of the parameter, truncated to fit, zero-terminated.
     pub name: [u8; 32],
-    /// Rule, truncated to fit, zero-terminated.
+    /// Violated rule, truncated to fit, zero-terminated.
     pub rule: [u8; 96],
-    /// Given value.
+    /// Value that was refused.
     pub value: f64,
 }
 
@@ -130,7 +130,8 @@ impl From<ParameterError> for CError {
     }
 }
 
-/// Returns the clock with this number.
+/// Returns the time scale of the film with a number of the header (`JBF_CLOCK_...`), if there is
+/// one.
 pub fn clock(number: i32) -> Option<Clock> {
     match number {
         0 => Some(Clock::Journal),

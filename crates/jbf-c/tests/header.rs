@@ -1,4 +1,4 @@
-//! The declarations of the header match the library, including the sizes.
+//! Tests that the declarations of `jbf.h` match the library, including the sizes.
 
 use jbf_c::SIZES;
 use jbf_core::law::CATALOGUE;

@@ -1,6 +1,7 @@
-//! A trajectory to a tolerance: two periods of U = 0.127 sin(w t), with 2000 samples on the second.
+//! Time of a trajectory to a tolerance: two periods of U = 0.127 sin(w t), with 2000 samples in the
+//! second period.
 //!
-//! These are the tasks T2 (reduced, 1e-6) and T3 (with inertia, 1e-5) of `peers.py`.
+//! The two cases are the tasks T2 (reduced, 1e-6) and T3 (with inertia, 1e-5) of `peers.py`.
 
 use criterion::Criterion;
 use jbf_benches::{law, LOAD_N};

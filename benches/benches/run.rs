@@ -1,6 +1,8 @@
-//! A recorded run of 60 s at 50 samples/s, with inner steps of 2 ms and of 20 ms.
+//! Time to predict the friction along a record of 60 s at 50 samples/s, with inner steps of 2 ms
+//! and of 20 ms.
 //!
-//! The times are those of one prediction in a fit, and of one with four derivatives.
+//! A fit makes such predictions, without derivatives and with derivatives with respect to four
+//! parameters.
 
 use criterion::{Criterion, Throughput};
 use jbf_benches::{chain, two_way};

@@ -1,4 +1,4 @@
-//! One step of every component of a control loop.
+//! Time of one step of every component of a control loop.
 
 use criterion::Criterion;
 use jbf_benches::steps::{all, Watch};

@@ -1,4 +1,5 @@
-//! Shared code of the benchmarks: Table 4.2 for any scalar, chains, and a sampled motion.
+//! Shared code of the benchmarks: the journal law of Table 4.2 (Cohn 1998) for any scalar type,
+//! signal chains, and a sampled motion.
 
 pub mod steps;
 
@@ -6,13 +7,15 @@ use jbf_core::effect::{Effects, Rig, CATALOGUE};
 use jbf_core::law::journal::{Journal, Parameters};
 use jbf_core::{Bearing, Chain, Clock, Motion, Real};
 
-/// Load of Table 4.2, N.
+/// Load on the bearing in Table 4.2 of Cohn (1998), N.
 pub const LOAD_N: f64 = 104.0;
 
-/// Step of the thesis's control loop, s.
+/// Time step of the control loop of Cohn (1998), s.
 pub const LOOP_STEP_S: f64 = 0.002;
 
-/// The law of Table 4.2 on the journal clock; `lift` may attach derivatives to the four parameters.
+/// Creates the journal law of Table 4.2 with the time scale [`Clock::Journal`].
+///
+/// `lift` converts parameter `i` to the scalar type, and may attach a derivative.
 pub fn law<T: Real>(lift: impl Fn(usize, f64) -> T) -> Journal<T> {
     let p = Parameters::TABLE_4_2;
     let parameters = Parameters {
@@ -24,7 +27,10 @@ pub fn law<T: Real>(lift: impl Fn(usize, f64) -> T) -> Journal<T> {
     Journal::new(&Bearing::THESIS, LOAD_N, &parameters, Clock::Journal).expect("Table 4.2 is valid")
 }
 
-/// The law of Table 4.2 with the named effects at their starting values.
+/// Creates a signal chain from the journal law of Table 4.2 and the named effects at their starting
+/// values.
+///
+/// `lift` converts parameter `i` of the law to the scalar type, as in [`law`].
 pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain<T, Journal<T>> {
     let mut all = Effects::NONE;
     for info in CATALOGUE.iter().filter(|info| effects.contains(&info.name)) {
@@ -43,7 +49,7 @@ pub fn chain<T: Real>(effects: &[&str], lift: impl Fn(usize, f64) -> T) -> Chain
     }
 }
 
-/// Motion in both directions of chapter 4, U = 0.127 sin(t), at a time.
+/// Motion U = 0.127 sin(t) of chapter 4 of Cohn (1998), in both directions, at `time_s`.
 pub fn two_way<T: Real>(time_s: f64) -> Motion<T> {
     let (sin, cos) = time_s.sin_cos();
     Motion::at_rest(T::of(LOAD_N))
@@ -53,7 +59,7 @@ pub fn two_way<T: Real>(time_s: f64) -> Motion<T> {
         .with_angle_rad(T::of(0.127 * (1.0 - cos) / Bearing::THESIS.radius_m))
 }
 
-/// One period of [`two_way`] at the loop's step.
+/// Samples of one period of [`two_way`], one per [`LOOP_STEP_S`].
 ///
 /// A benchmark thus includes reversals and full film in realistic proportions.
 pub fn period<T: Real>() -> Vec<Motion<T>> {

@@ -1,4 +1,4 @@
-//! Every component that a control loop can step, each with a name.
+//! List of every component that a control loop can step, each with a name.
 //!
 //! Criterion, the time budget and the instruction counts use this list. Laws and effects of the
 //! catalogues are included automatically. To add another kind of component, write a function like
@@ -21,16 +21,16 @@ use jbf_trace::loops::{coulomb_observer, each, velocity_observer, LoopVisitor};
 use jbf_trace::{asked, Shaft, LOOP_STEPS};
 use std::hint::black_box;
 
-/// Steps per period of the motion.
+/// Steps per period of the motion U = 0.127 sin(t).
 pub const PERIOD: u64 = 3141;
 
-/// An observer of stepped components.
+/// Receiver of the components, which measures their steps.
 pub trait Watch {
-    /// Receives a component by name; `steps(n)` makes `n` further steps of it.
+    /// Measures the component `name`; `steps(n)` makes `n` further steps of the component.
     fn watch(&mut self, name: &str, steps: &mut dyn FnMut(u64));
 }
 
-/// Steps every component.
+/// Passes every component to `watch`.
 pub fn all(watch: &mut impl Watch) {
     laws::<f64>(watch, "f64");
     laws::<f32>(watch, "f32");
@@ -41,7 +41,8 @@ pub fn all(watch: &mut impl Watch) {
     loops::<f32>(watch, "f32");
 }
 
-/// Calls `step` with the start and end of each step of the motion in turn.
+/// Passes a component to `watch`, which calls `step` with the motion at the start and the end of
+/// each step.
 fn along<T: Real, O>(
     watch: &mut impl Watch,
     name: &str,
@@ -57,7 +58,7 @@ fn along<T: Real, O>(
     });
 }
 
-/// |U| at the start, middle and end of a step.
+/// Absolute surface speeds |U| at the start, middle and end of a step.
 fn speeds<T: Real>(from: &Motion<T>, to: &Motion<T>) -> [T; 3] {
     let (u0, u1) = (from.velocity_m_s, to.velocity_m_s);
     [u0, (u0 + u1) * T::of(0.5), u1].map(T::abs)
@@ -71,7 +72,7 @@ struct Bare<'a, W> {
 impl<T: Real, W: Watch> Visitor<T> for Bare<'_, W> {
     type Output = ();
 
-    /// Steps the law alone: film or memory, friction, bristle.
+    /// Steps a law without effects: its state (film or frictional memory), friction and bristle.
     fn visit<L: Named<T>>(self, law: L) {
         let mut state = law.start(T::of(LOAD_N));
         let mut before = T::ZERO;
@@ -90,7 +91,7 @@ impl<T: Real, W: Watch> Visitor<T> for Bare<'_, W> {
     }
 }
 
-/// Steps every law of the catalogue with its own stepper, at its starting values.
+/// Steps every law of the catalogue with its own integration method, at its starting values.
 fn laws<T: Real>(watch: &mut impl Watch, kind: &str) {
     for page in law::CATALOGUE {
         let values: Vec<T> = page.parameters.iter().map(|p| T::of(p.starts[0])).collect();
@@ -109,7 +110,8 @@ fn laws<T: Real>(watch: &mut impl Watch, kind: &str) {
     }
 }
 
-/// Steps every stepper with the films that it supports, and the friction after it.
+/// Steps every integration method with the films that it supports, and evaluates the friction after
+/// each step.
 fn steppers<T: Real>(watch: &mut impl Watch, kind: &str) {
     let reduced = law::<T>(|_, v| T::of(v));
     let p = Parameters::TABLE_4_2;
@@ -154,10 +156,10 @@ fn one_chain<T: Real>(
     along(watch, name, |_, to| chain.step(&mut state, to, dt_s));
 }
 
-/// Steps the signal chain with the first law.
+/// Steps the signal chain of the first law of the catalogue.
 ///
-/// It is stepped without effects, with each effect, with all, and with derivatives with respect to
-/// the four parameters.
+/// There is one component without effects, one with each effect, one with all effects, and one with
+/// derivatives with respect to the four parameters.
 fn chains(watch: &mut impl Watch) {
     let all: Vec<&str> = CATALOGUE.iter().map(|info| info.name).collect();
     one_chain(watch, "chain/none/f64", &[], |_, v| v);
@@ -178,9 +180,10 @@ struct Looped<'a, W> {
 }
 
 impl<T: Real, W: Watch> LoopVisitor<T> for Looped<'_, W> {
-    /// Steps a complete loop from counter to voltage, along recorded encoder readings.
+    /// Steps a complete control loop, from encoder counter to voltage, along recorded encoder
+    /// readings.
     ///
-    /// A closed loop would also measure the simulation of the shaft.
+    /// With a closed loop, the time would include that of the simulated shaft.
     fn visit<C: Compensator<T>>(
         &mut self,
         name: &'static str,
@@ -209,7 +212,8 @@ impl<T: Real, W: Watch> LoopVisitor<T> for Looped<'_, W> {
     }
 }
 
-/// Steps the observers alone, and every loop with a compensator.
+/// Steps the velocity and friction observers without a loop, and a control loop with each
+/// compensator.
 fn loops<T: Real>(watch: &mut impl Watch, kind: &str) {
     let observer = velocity_observer::<T>().expect("valid");
     let mut velocity = T::ZERO;

@@ -1,6 +1,6 @@
-//! Time of each component relative to the 2 ms of a control loop, as a table.
+//! Prints a table of the time per step of each component, relative to the 2 ms of a control loop.
 //!
-//! An argument selects the names that contain it:
+//! An argument selects the components whose names contain it:
 //!
 //! `cargo run --release -p jbf-benches --bin budget -- chain/`
 
@@ -8,7 +8,7 @@ use jbf_benches::steps::{all, Watch, PERIOD};
 use jbf_benches::LOOP_STEP_S;
 use std::time::Instant;
 
-/// Number of batches of one period; the median time counts.
+/// Number of timed periods of the motion; the reported time is the median.
 const BATCHES: usize = 41;
 
 struct Budget {

@@ -1,11 +1,14 @@
-//! Steps for `benches/counts.py`, which runs this program under callgrind.
+//! Runs each component for `benches/counts.py`, which counts the instructions of this program with
+//! callgrind.
 //!
-//! A call of the mark separates the components; their names are printed in order.
+//! A call of `jbf_counts_mark` separates the components; their names are printed in order.
 
 use jbf_benches::steps::{all, Watch, PERIOD};
 use std::hint::black_box;
 
-/// Marks the end of a measurement: callgrind writes its counts since the previous mark.
+/// Marks the end of the measurement of a component.
+///
+/// Callgrind writes the instruction counts since the previous call.
 #[inline(never)]
 fn jbf_counts_mark() {
     black_box(());

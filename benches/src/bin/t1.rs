@@ -1,8 +1,8 @@
-//! Task T1 for `benches/peers.py`, which alternates with it.
+//! Task T1 of `benches/peers.py`, which runs this program and its Python peers alternately.
 //!
 //! 50,000 steps of the reduced law along U = 0.127 sin(t/4) at 2 ms, with friction stored at every
-//! step. It reads a line such as `euler f64`, and prints nanoseconds per step and the last friction
-//! coefficient.
+//! step. The program reads lines such as `euler f64`, and prints nanoseconds per step and the last
+//! friction coefficient.
 
 use jbf_benches::{law, LOAD_N, LOOP_STEP_S};
 use jbf_core::law::journal::{Journal, State};
@@ -14,7 +14,8 @@ use std::time::Instant;
 
 const STEPS: usize = 50_000;
 
-/// Steps a law and stores the friction coefficient before each step.
+/// Advances a journal law along a sampled speed and stores the friction coefficient before each
+/// step.
 ///
 /// `halves` contains the speed at every half step, m/s.
 #[inline(never)]
